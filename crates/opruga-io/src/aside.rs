@@ -1,18 +1,18 @@
-//! The files that are written before they get their names: who holds them, and which of them nobody does any more.
+//! Files that are written under a temporary name before they get their own: who holds them, and which of them were abandoned.
 //!
-//! A file is locked as long as its bytes come. The system frees the lock when the process ends, however it ends: a file of this kind that
-//! can be locked is what a killed process has left, and goes. Numbers of processes would not tell: they are given again, and folders are
-//! shared by machines.
+//! A file is locked while its bytes are written. The system frees the lock when the process ends, however it ends. A file of this kind that can be
+//! locked was therefore left by a killed process, and is removed. Process numbers would not identify it: they are reused, and several machines may
+//! share a folder.
 
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The ending of files that are being written.
+/// The ending of files while they are being written.
 const WRITING: &str = ".writing";
 
-/// The name under which the writer of this number writes a file before it gets its own.
+/// The temporary name under which the writer of this number writes a file.
 fn name_of(name: &OsStr, writer: u64) -> OsString {
     let mut aside = OsString::from(".");
     aside.push(name);
@@ -20,12 +20,12 @@ fn name_of(name: &OsStr, writer: u64) -> OsString {
     aside
 }
 
-/// The name under which this process writes a file before it gets its own.
+/// The temporary name under which this process writes a file.
 pub(crate) fn aside_name(name: &OsStr) -> OsString {
     name_of(name, std::process::id().into())
 }
 
-/// The name that a file of [`aside_name`] shall get; none for other files.
+/// The final name of a file that has a name of [`aside_name`]; none for other files.
 fn name_within(aside: &str) -> Option<&str> {
     let (name, process) = aside.strip_prefix('.')?.strip_suffix(WRITING)?.rsplit_once('.')?;
     (!process.is_empty() && process.bytes().all(|b| b.is_ascii_digit())).then_some(name)
@@ -36,7 +36,7 @@ pub(crate) fn is_aside(name: &str) -> bool {
     name_within(name).is_some()
 }
 
-/// Makes a file that shall get a name in a folder, locked as long as it is open.
+/// Creates a temporary file in a folder for a file of this name. It is locked while it is open.
 pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, File)> {
     let mut writer = u64::from(std::process::id());
     loop {
@@ -50,12 +50,12 @@ pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, Fi
                     }
                     _ => {}
                 }
-                // Somebody may have taken it for one of the dead in the moment before it was locked.
+                // Between its creation and its lock, another process may have taken the file for an abandoned one.
                 if is_the_file(&file, &aside) {
                     return Ok((aside, file));
                 }
             }
-            // Another writer of this number: another thread, or a process in another container.
+            // Another writer has the same number: another thread, or a process in another container.
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists && !remove_if_dead(&aside) => writer += 1,
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
             Err(e) => return Err(e),
@@ -63,7 +63,7 @@ pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, Fi
     }
 }
 
-/// Removes what killed processes have left of a file of this name in a folder; without a name, of all files.
+/// Removes the temporary files that killed processes left for a file of this name in a folder; without a name, those for all files.
 pub(crate) fn remove_the_dead(folder: &Path, name: Option<&OsStr>) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for found in entries.filter_map(|entry| entry.file_name().into_string().ok()) {
@@ -74,11 +74,12 @@ pub(crate) fn remove_the_dead(folder: &Path, name: Option<&OsStr>) {
     }
 }
 
-/// Removes a file that nobody holds; whether it is gone. Where the file system knows no locks, nobody knows, and it stays.
+/// Removes a file that nobody holds, and returns whether it is gone. If the file system has no locks, nobody can know whether the file is held, and
+/// it stays.
 fn remove_if_dead(aside: &Path) -> bool {
     match File::open(aside) {
         Ok(file) => match file.try_lock() {
-            // While it is locked: its name may mean another file afterwards.
+            // While it is locked: afterwards its name may mean another file.
             Ok(()) => is_the_file(&file, aside) && fs::remove_file(aside).is_ok(),
             Err(TryLockError::WouldBlock | TryLockError::Error(_)) => false,
         },

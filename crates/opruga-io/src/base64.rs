@@ -13,12 +13,12 @@ fn value(letter: u8) -> Option<u8> {
     })
 }
 
-/// Bytes from letters; none for other letters. Groups of four may be filled up with `=` anywhere, as where several texts follow one another.
+/// Decodes letters to bytes; none if there are other letters. Any group of four may be padded with `=`, as when several texts follow one another.
 pub fn decode(letters: &[u8]) -> Option<Vec<u8>> {
     decode_up_to(letters, usize::MAX).map(|found| found.0)
 }
 
-/// At least so many bytes from the beginning of letters, if they hold that many, and how many letters that took.
+/// Decodes at least `most` bytes from the beginning of the letters, if they hold that many. Also returns the number of letters read.
 pub(crate) fn decode_up_to(letters: &[u8], most: usize) -> Option<(Vec<u8>, usize)> {
     let mut out = Vec::with_capacity(usize::min(most.saturating_add(3), letters.len() / 4 * 3 + 3));
     let mut taken = 0;
@@ -29,7 +29,7 @@ pub(crate) fn decode_up_to(letters: &[u8], most: usize) -> Option<(Vec<u8>, usiz
         taken += group.len();
         let filled = group.iter().rev().take_while(|letter| **letter == b'=').count();
         let own = &group[..group.len() - filled];
-        // One letter alone holds no byte; a group that is not filled up can only be the last.
+        // A single letter holds no byte. Only the last group may be incomplete.
         if own.len() < 2 || (group.len() < 4 && taken < letters.len()) {
             return None;
         }
@@ -43,7 +43,7 @@ pub(crate) fn decode_up_to(letters: &[u8], most: usize) -> Option<(Vec<u8>, usiz
     Some((out, taken))
 }
 
-/// Letters from bytes.
+/// Encodes bytes as letters.
 pub fn encode(bytes: &[u8]) -> String {
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for group in bytes.chunks(3) {
@@ -62,7 +62,7 @@ pub fn encode(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    /// The vectors of RFC 4648, section 10.
+    /// The test vectors of RFC 4648, section 10.
     #[test]
     fn known_texts() {
         for (plain, coded) in [

@@ -1,20 +1,20 @@
-//! Brackets of a scene that are never closed: the slip behind the many errors that a parser then finds.
+//! Brackets of a scene that are never closed: one such slip causes the many errors that a parser then reports.
 
 use crate::source::end_of_string;
 
-/// A bracket that is still open where the next part of the scene begins.
+/// A bracket that is still open when the next part of the scene begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Unclosed {
-    /// Its byte.
+    /// The byte of the bracket.
     pub(crate) open: usize,
-    /// What would close it.
+    /// The character that would close it.
     pub(crate) wanted: char,
     /// The byte where the next part begins, or the end of the text.
     pub(crate) until: usize,
 }
 
-/// The first bracket of a value that is open where a line begins as none within a value does, with the head of a table or, in
-/// a list, with a key; or at the end of the text.
+/// Returns the outermost bracket of a value that is still open at a line that cannot be part of a value, or at the end of the text. Such a line is
+/// the head of a table or, in a list, a line with a key.
 pub(crate) fn unclosed(text: &str) -> Option<Unclosed> {
     let bytes = text.as_bytes();
     let mut open: Vec<usize> = Vec::new();
@@ -26,7 +26,7 @@ pub(crate) fn unclosed(text: &str) -> Option<Unclosed> {
             let in_list = open.last().is_some_and(|at| bytes[*at] == b'[');
             match outer {
                 Some(outer) if is_head(line) || in_list && is_key(line) => return Some(at_end(bytes, outer, at)),
-                // A head is no value.
+                // A head is not a value.
                 None if line.trim_start().starts_with('[') => {
                     at += line.len();
                     begins = false;
@@ -46,7 +46,7 @@ pub(crate) fn unclosed(text: &str) -> Option<Unclosed> {
                 continue;
             }
             b'[' | b'{' => open.push(at),
-            // One that closes nothing is an error of its own line.
+            // A bracket that closes nothing is an error of its own line.
             b']' | b'}' => _ = open.pop(),
             _ => {}
         }
@@ -59,7 +59,8 @@ fn at_end(bytes: &[u8], open: usize, until: usize) -> Unclosed {
     Unclosed { open, wanted: if bytes[open] == b'[' { ']' } else { '}' }, until }
 }
 
-/// Whether a line is the head of a table, `[time]` or `[[body]]`: no list holds bare words but these three.
+/// Whether a line is the head of a table, such as `[time]` or `[[body]]`. The only bare words that a list may hold are `true`, `false`, `inf` and
+/// `nan`.
 fn is_head(line: &str) -> bool {
     let line = line.split('#').next().unwrap_or(line).trim();
     let inner = line.strip_prefix('[').and_then(|l| l.strip_suffix(']'));

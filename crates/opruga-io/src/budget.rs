@@ -1,9 +1,9 @@
-//! How much work a file may ask for: limits of what small files can make large.
+//! Limits of the work that a file may ask for, in cases where a small file can ask for a lot.
 //!
-//! A file that is read as it stands takes time and memory as its bytes, which are limited themselves. What is listed here can grow faster: points that
-//! curves are cut into, elements and triangles that are named again and again, texts that stand for longer ones, compressed data. Each limit is far
-//! above what people draw, and small enough that a file which goes up to it is read within seconds. What goes beyond is refused with the count, before
-//! memory is taken for it.
+//! The time and memory for a file that is read as it is are proportional to its bytes, which are limited themselves. The items listed here can grow
+//! faster: points of curves, elements and triangles that are named repeatedly, texts that stand for longer ones, compressed data. Each limit is far
+//! above what people draw, and small enough that a file at the limit is read within seconds. A file above a limit is refused with the count before
+//! memory is allocated for it.
 
 use crate::problem::SceneError;
 use opruga_math::{messages, terms};
@@ -24,7 +24,7 @@ terms! {
 }
 
 terms! {
-    /// What helps where a file asks for too much.
+    /// What helps if a file asks for too much.
     pub(crate) enum LimitHint = "part.limit_hint" {
         Picture = "take a picture with fewer spots: one that is smoothed, or drawn with fewer colours",
         Entities = "write the drawing without entities, or with `use`",
@@ -35,7 +35,7 @@ terms! {
 }
 
 messages! {
-    /// What a file asks for beyond a limit; the code is that of the limit.
+    /// A request of a file beyond a limit; the code is that of the limit.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum LimitError {
         "part.limit" #[error("the file asks for {count} {what} or more")] #[value("{count}")] #[allowed("at most {most} {what}")]
@@ -43,48 +43,51 @@ messages! {
     }
 }
 
-/// The most of something that one file may ask for.
+/// The largest number of something that one file may ask for.
 #[derive(Debug)]
 pub(crate) struct Limit {
     /// The code of the error: `limit.…`.
     code: &'static str,
-    /// How many there may be.
+    /// The largest number.
     pub(crate) most: u64,
     /// What is counted.
     what: Counted,
 }
 
-/// Closed curves of a drawing, a map, a text or a picture: a body has so many parts. A chessboard in pixels, or noise, has a million.
+/// Closed curves of a drawing, a map, a text or a picture, each of which is a part of a body. A chessboard of pixels, or noise, has a million.
 pub(crate) const OUTLINES: Limit = Limit { code: "limit.outlines", most: 1 << 16, what: Counted::Outlines };
 
-/// Points of these curves: as drawn, as often as `use`, arcs of a topology or letters repeat them, and as many as curves are cut into.
+/// Points of these curves. Points that `use`, arcs of a topology or letters repeat count every time; a curve counts as the points that it is divided
+/// into.
 pub(crate) const POINTS: Limit = Limit { code: "limit.points", most: 1 << 21, what: Counted::Points };
 
 /// Pixels of a picture. They are read row by row; only contours are kept.
 pub(crate) const PIXELS: Limit = Limit { code: "limit.pixels", most: 1 << 26, what: Counted::Pixels };
 
-/// Elements of a drawing, counted as often as `use` draws them: two in two in two … draw nothing 2⁶⁰ times.
+/// Elements of a drawing, counted as often as `use` draws them: elements that each use another one twice could draw nothing 2⁶⁰ times.
 pub(crate) const ELEMENTS: Limit = Limit { code: "limit.elements", most: 1 << 19, what: Counted::Elements };
 
 /// Bytes that the entities of an XML file, or the parts of composite letters, stand for.
 pub(crate) const EXPANSION: Limit = Limit { code: "limit.expansion", most: 1 << 24, what: Counted::Text };
 
-/// How often rules of style sheets are compared with elements.
+/// Comparisons of style sheet rules with elements.
 pub(crate) const RULES: Limit = Limit { code: "limit.rules", most: 1 << 26, what: Counted::Rules };
 
-/// Vertices, or corners of triangles, of a glTF file that are drawn more often than they stand there, and parts of its meshes.
+/// Vertices, or corners of triangles, of a glTF file beyond those that the file contains, because they are drawn repeatedly; also the parts of its
+/// meshes.
 pub(crate) const INSTANCES: Limit = Limit { code: "limit.instances", most: 1 << 22, what: Counted::Vertices };
 
 /// Numbers in the arrays of a compressed file, besides [`NUMBERS_PER_BYTE`] for each of its bytes.
 pub(crate) const NUMBERS: Limit = Limit { code: "limit.numbers", most: 1 << 20, what: Counted::Numbers };
 
-/// Meshes are compressed to a byte for every one or two of their numbers; zeros to a byte for a thousand.
+/// A compressed mesh has about one byte for one or two of its numbers; zeros have one byte for a thousand.
 pub(crate) const NUMBERS_PER_BYTE: u64 = 8;
 
-/// Values of cells and numbers of nodes, and cells in groups: names times cells, whether a file gives them all or leaves most of them out.
+/// Values of cells, numbers of nodes, and cells in groups: the number of names times the number of cells, whether a file gives all values or omits
+/// most of them.
 pub(crate) const VALUES: Limit = Limit { code: "limit.values", most: 1 << 25, what: Counted::Values };
 
-/// What is left out of a file is listed up to so many; the rest is counted.
+/// The largest number of omitted things that are listed; the rest are counted.
 pub(crate) const NOTICES: usize = 50;
 
 impl Limit {
@@ -93,7 +96,7 @@ impl Limit {
         self.check_beside(count, 0)
     }
 
-    /// The same where there may be some more.
+    /// Refuses a count that exceeds the limit by more than `more`.
     pub(crate) fn check_beside(&self, count: u64, more: u64) -> Result<(), SceneError> {
         let Limit { code, what, .. } = *self;
         let most = self.most.saturating_add(more);

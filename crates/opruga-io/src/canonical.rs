@@ -1,11 +1,11 @@
-//! Texts that print alike as one text.
+//! Equality of texts that look the same in print.
 
 use unicode_normalization::char::{canonical_combining_class, decompose_canonical};
 
-/// The canonical decomposition of a text (NFD): `é`, one character (U+00E9) or two (U+0065 U+0301), is two.
+/// The canonical decomposition of a text (NFD): `é` becomes two characters (U+0065 U+0301), whether it was one (U+00E9) or two.
 ///
-/// It is made of the library's tables for characters: its iterators bring those of compatibility along, which take a page in a browser
-/// tens of kilobytes.
+/// It uses the character tables of the library and not its iterators, because these include the tables for compatibility, which add tens of kilobytes
+/// to a web page.
 ///
 /// Source: Unicode Standard Annex 15.
 pub(crate) fn decomposed(text: &str) -> String {
@@ -13,7 +13,7 @@ pub(crate) fn decomposed(text: &str) -> String {
     for letter in text.chars() {
         decompose_canonical(letter, |part| all.push(part));
     }
-    // Marks that follow a letter stand in the order of their classes.
+    // The marks that follow a letter are sorted by their classes.
     for marks in all.chunk_by_mut(|_, next| canonical_combining_class(*next) != 0) {
         let first = usize::from(marks.first().is_some_and(|mark| canonical_combining_class(*mark) == 0));
         marks[first..].sort_by_key(|mark| canonical_combining_class(*mark));

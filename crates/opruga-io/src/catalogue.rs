@@ -13,7 +13,8 @@ pub struct Catalogue {
     pub colliders: Vec<&'static Spec>,
 }
 
-/// The specifications of each kind together, in the order of the first of each: several where dimensions differ in a field.
+/// Groups the specifications by kind, in the order in which the kinds first occur. A kind has several specifications if its fields differ between
+/// dimensions.
 pub(crate) fn by_kind(list: &[&'static Spec]) -> Vec<Vec<&'static Spec>> {
     let mut kinds: Vec<Vec<&'static Spec>> = Vec::new();
     for spec in list {
@@ -33,7 +34,7 @@ pub(crate) fn dimensions(kind: &[&'static Spec]) -> Vec<usize> {
     dimensions
 }
 
-/// The fields of a kind in their order: one of each name and meaning, with the specifications that have it.
+/// The fields of a kind in their order, one for each name and meaning, with the specifications that have it.
 pub(crate) fn fields(kind: &[&'static Spec]) -> Vec<(&'static Field, Vec<&'static Spec>)> {
     let mut fields: Vec<(&'static Field, Vec<&'static Spec>)> = Vec::new();
     for spec in kind {
@@ -41,7 +42,7 @@ pub(crate) fn fields(kind: &[&'static Spec]) -> Vec<(&'static Field, Vec<&'stati
             match fields.iter_mut().find(|(known, _)| **known == *field) {
                 Some((_, of)) => of.push(spec),
                 None => {
-                    // Beside the field of the same name, if another dimension has one.
+                    // Next to the field of the same name, if another dimension has one.
                     let index = fields.iter().rposition(|(known, _)| known.name == field.name);
                     fields.insert(index.map_or(fields.len(), |index| index + 1), (field, vec![spec]));
                 }
@@ -51,7 +52,7 @@ pub(crate) fn fields(kind: &[&'static Spec]) -> Vec<(&'static Field, Vec<&'stati
     fields
 }
 
-/// The specification of a kind, if it is in the list: of several (one per dimension) the one that exists in `dimension`.
+/// The specification of a kind, if it is in the list. If there are several (one per dimension), the one that exists in `dimension`.
 pub(crate) fn find(list: &[&'static Spec], kind: &str, dimension: usize) -> Option<&'static Spec> {
     let mut named = list.iter().copied().filter(|s| s.kind == kind);
     let first = named.clone().next();

@@ -24,7 +24,7 @@ const HEAD: usize = 32;
 /// The contents of a checkpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checkpoint {
-    /// The text of the scene as it was read: the checkpoint needs no other file. Overrides belong into the payload.
+    /// The text of the scene as it was read: the checkpoint needs no other file. Overrides belong in the payload.
     pub scene: String,
     /// The state, in the form of the world that wrote it.
     pub payload: Vec<u8>,
@@ -34,21 +34,21 @@ messages! {
     /// Why a checkpoint was refused.
     #[derive(Clone, Debug, PartialEq)]
     pub enum CheckpointError {
-        /// It does not begin as a checkpoint.
+        /// It does not begin like a checkpoint.
         "checkpoint.not_one" #[error("this is not a checkpoint of Opruga")] #[allowed("a whole checkpoint of version {VERSION}")]
         NotOne {},
         /// Another version of the program wrote it.
         "checkpoint.version" #[error("the checkpoint has version {found}; this program reads version {VERSION}")]
         #[allowed("a whole checkpoint of version {VERSION}")]
         Version { found: u32 },
-        /// It is shorter than its head says.
+        /// It is shorter than its header says.
         "checkpoint.cut_off" #[error("the checkpoint is cut off: it has {found} bytes of {expected}")]
         #[allowed("a whole checkpoint of version {VERSION}")]
         CutOff { found: u64, expected: u64 },
         /// Something follows its end.
         "checkpoint.too_long" #[error("{extra} bytes follow the end of the checkpoint")] #[allowed("a whole checkpoint of version {VERSION}")]
         TooLong { extra: u64 },
-        /// A checksum does not fit.
+        /// A checksum does not match.
         "checkpoint.damaged" #[error("the checkpoint is damaged between bytes {from} and {to}")]
         #[allowed("a whole checkpoint of version {VERSION}")]
         Damaged { from: u64, to: u64 },
@@ -91,10 +91,10 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Reads a checkpoint. Sizes are compared with the bytes at hand before anything is allocated.
+    /// Reads a checkpoint. Sizes are compared with the number of bytes present before anything is allocated.
     ///
     /// # Errors
-    /// Every flipped byte, every truncation, every addition and every other version is refused.
+    /// Any flipped byte, truncation or addition, and any other version, is refused.
     pub fn read(bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
         let found = bytes.len() as u64;
         if !bytes.starts_with(&MAGIC[..bytes.len().min(8)]) {
@@ -133,7 +133,7 @@ impl Checkpoint {
     }
 }
 
-/// The next so many bytes, if the checksum after them fits.
+/// Returns the next `size` bytes if the checksum after them matches.
 fn checked<'b>(bytes: &'b [u8], at: &mut usize, size: usize) -> Result<&'b [u8], CheckpointError> {
     let from = *at;
     let to = from + size;

@@ -1,4 +1,4 @@
-//! A parsed scene as a tree of values, each of which knows where it was written.
+//! A parsed scene as a tree of values, each with the location where it was written.
 
 use crate::brackets::unclosed;
 use crate::limits::Limits;
@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 /// Where a value was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Location {
-    /// From byte to byte of the scene.
+    /// The range of bytes in the scene.
     Bytes(usize, usize),
     /// In the override of this number.
     Override(usize),
@@ -33,7 +33,7 @@ pub(crate) enum Data {
     Text(String),
     /// A whole number; none if it does not fit into 64 bits.
     Integer(Option<i64>, String),
-    /// A number as it was written, perhaps not finite.
+    /// A number as it was written; it may not be finite.
     Number(f64, String),
     Boolean(bool),
     Date(String),
@@ -66,7 +66,7 @@ impl Node {
             _ => None,
         }
     }
-    /// What kind of value it is, in words.
+    /// The type of the value, in words.
     pub(crate) fn kind(&self) -> ValueKind {
         match &self.data {
             Data::Table(_) => ValueKind::Table,
@@ -94,7 +94,7 @@ impl Node {
     }
 }
 
-/// Parses a scene. Errors of syntax stop it; keys that occur twice are reported and the first one counts.
+/// Parses a scene. A syntax error stops parsing; a key that occurs twice is reported, and its first value is used.
 pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     let (table, problems) = DeTable::parse_recoverable(source.text);
     let end = table.span().end;
@@ -107,7 +107,7 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     let count = problems.len();
     for problem in problems.into_iter().take(MOST_SHOWN) {
         let span = problem.span().unwrap_or(0..0);
-        // All that is read as part of a list that is never closed makes no sense: that is one slip.
+        // Everything that is read as part of an unclosed list makes no sense, but is only one slip.
         if let Some(open) = open.filter(|open| span.start >= open.open) {
             if !std::mem::replace(&mut reported, true) {
                 let (line, until) = (source.position(open.open).0, source.position(open.until).0);
@@ -115,7 +115,7 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
                     ']' => TextError::OpenList { line },
                     _ => TextError::OpenTable { line },
                 };
-                // The parser stumbles first where the bracket is missing, or where what follows begins.
+                // The first error of the parser is at the missing bracket, or where the next part begins.
                 let location = if span.start < open.until { span.start } else { open.open };
                 let bracket = open.wanted;
                 let hint = match location == open.open {
@@ -131,7 +131,7 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
             errors.push(duplicate(source, &root, span.start, span.end));
             continue;
         }
-        // What stands in the lines after an error follows from it, up to the next line that is sound.
+        // Errors in the lines after an error follow from it, up to the next valid line.
         let line = source.position(span.start).0;
         let structure = FOLLOW.iter().any(|what| problem.message().starts_with(what));
         let follows = broken_line.is_some_and(|before| line == before || line == before + 1 && structure);
@@ -156,10 +156,10 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     (if broken { None } else { Some(root) }, errors)
 }
 
-/// How the parser complains of lines that make no sense since the line before made none.
+/// Errors of the parser about lines that make no sense because the previous line made none.
 const FOLLOW: [&str; 3] = ["invalid key-value pair", "missing table open", "key with no value"];
 
-/// What helps where a value is a number with a unit behind it.
+/// A hint if the value is a number followed by a unit.
 fn with_unit(value: &str) -> Option<TextHint> {
     let value = value.split('#').next().unwrap_or(value).trim();
     let end = value.find(|c: char| !(c.is_ascii_digit() || "+-._eE".contains(c)))?;
@@ -169,7 +169,7 @@ fn with_unit(value: &str) -> Option<TextHint> {
     known.then(|| TextHint::Unit { bare: number.into() })
 }
 
-/// The error for a key that was written a second time, naming the first location.
+/// The error for a key that is written a second time; it names the first location.
 fn duplicate(source: &Source<'_>, root: &Node, start: usize, end: usize) -> SceneError {
     let word = source.text.get(start..end).unwrap_or("").trim_matches(['"', '\'']);
     let mut first = None;
@@ -183,7 +183,7 @@ fn duplicate(source: &Source<'_>, root: &Node, start: usize, end: usize) -> Scen
     source.mark(error.path(word), start, end)
 }
 
-/// The last location before a byte where a key of this name stands.
+/// Finds the last location before a byte at which a key of this name is written.
 fn last_before(node: &Node, word: &str, before: usize, best: &mut Option<usize>) {
     match &node.data {
         Data::Table(entries) => {
@@ -248,7 +248,7 @@ fn node(value: Spanned<DeValue<'_>>) -> Node {
     Node { location, data }
 }
 
-/// The value of an override: a TOML value, or a bare word. It may be as deep and as large as one in a scene.
+/// Parses the value of an override: a TOML value or a bare word. The limits of its depth and size are those of a value in a scene.
 ///
 /// # Errors
 /// `set.value`, `scene.depth` or `scene.too_large`, without a location.

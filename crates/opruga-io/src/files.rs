@@ -1,4 +1,4 @@
-//! The files that a scene names: looked up beside it, or held in memory.
+//! The files that a scene names: they are next to it, or in memory.
 
 use crate::problem::{SceneError, visible};
 use crate::text_errors::{FileError, Measured};
@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-/// Where the files of a scene are.
+/// The source of the files of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Files {
     /// Files by the name that the scene uses, such as those that come with the program.
     in_memory: BTreeMap<String, Arc<[u8]>>,
     /// The folder of the scene.
     folder: Option<PathBuf>,
-    /// Whether files may lie outside of that folder.
+    /// Whether files may be outside that folder.
     outside: bool,
 }
 
@@ -24,48 +24,48 @@ impl Files {
         Files { folder: Some(folder.into()), ..Files::default() }
     }
 
-    /// Files beside a scene file.
+    /// Files in the folder of a scene file.
     pub fn beside(scene: &Path) -> Files {
         let folder = scene.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         Files::in_folder(folder)
     }
 
-    /// Files that are held in memory, by the name that the scene uses.
+    /// Files in memory, by the name that the scene uses.
     pub fn in_memory(files: impl IntoIterator<Item = (String, Arc<[u8]>)>) -> Files {
         Files { in_memory: files.into_iter().collect(), ..Files::default() }
     }
 
-    /// The same with more files that are held in memory; one of the same name replaces that before.
+    /// Adds files in memory; a file replaces an earlier one of the same name.
     #[must_use]
     pub fn with(mut self, files: impl IntoIterator<Item = (String, Arc<[u8]>)>) -> Files {
         self.in_memory.extend(files);
         self
     }
 
-    /// The files that are held in memory, in the order of their names.
+    /// The files in memory, in the order of their names.
     pub fn files_in_memory(&self) -> impl Iterator<Item = (&str, &Arc<[u8]>)> {
         self.in_memory.iter().map(|(name, bytes)| (name.as_str(), bytes))
     }
 
-    /// A file that is held in memory.
+    /// Returns a file in memory.
     pub fn file_in_memory(&self, name: &str) -> Option<&Arc<[u8]>> {
         self.in_memory.get(name)
     }
 
-    /// The same, but files may lie anywhere.
+    /// Sets whether files may be outside the folder of the scene.
     #[must_use]
     pub fn allow_outside(mut self, allow: bool) -> Files {
         self.outside = allow;
         self
     }
 
-    /// Where a file lies that a scene names; none where it is held in memory or may not be read.
+    /// The path of a file that a scene names; none if it is in memory or may not be read.
     pub fn path_of(&self, name: &str) -> Option<PathBuf> {
         let path = self.folder.as_ref().filter(|_| !self.in_memory.contains_key(name))?.join(name);
         self.check_location(self.folder.as_ref()?, &path, name).is_ok().then_some(path)
     }
 
-    /// The bytes of a file that a scene names.
+    /// Returns the bytes of a file that a scene names.
     ///
     /// # Errors
     /// `shape.outside` for a name that leads out of the folder of the scene; `read.failed` with the nearest name; `read.not_regular_file`;
@@ -91,14 +91,14 @@ impl Files {
             .map_err(|error| if path.exists() { error.value(visible(name)) } else { self.missing(folder, name) })
     }
 
-    /// Refuses names that lead out of the folder, by words or by links.
+    /// Refuses names that lead out of the folder by their words or by links.
     fn check_location(&self, folder: &Path, path: &Path, name: &str) -> Result<(), SceneError> {
         if self.outside {
             return Ok(());
         }
         let plain = Path::new(name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
         let foreign = name.contains('\\') || name.contains('\0') || name.as_bytes().get(1) == Some(&b':');
-        // A link is followed before its goal is compared.
+        // A link is followed before its target is compared.
         let inside = match (folder.canonicalize(), path.canonicalize()) {
             (Ok(folder), Ok(path)) => path.starts_with(folder),
             _ => true,
@@ -109,7 +109,7 @@ impl Files {
         Err(SceneError::of(FileError::Outside { name: visible(name) }))
     }
 
-    /// That a file is not there, with the nearest name that exists in the same folder.
+    /// The error for a missing file, with the nearest name in the same folder.
     fn missing(&self, folder: &Path, name: &str) -> SceneError {
         let (before, last) = name.rsplit_once('/').map_or(("", name), |(before, last)| (before, last));
         let entries = std::fs::read_dir(folder.join(before)).into_iter().flatten().flatten();

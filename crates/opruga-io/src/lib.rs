@@ -1,5 +1,5 @@
-//! What Opruga reads and writes: scene files with all their errors at once, their reference page and JSON Schema,
-//! tables, checkpoints, and files that are never half written.
+//! Everything that Opruga reads and writes: scene files, whose errors are all reported at once, with their reference page and JSON Schema; tables;
+//! checkpoints; and files that are never left half written.
 
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 

@@ -1,13 +1,13 @@
-//! How much memory the machine gives to this program.
+//! The memory that the machine gives to this program.
 
 use std::fs::read_to_string;
 use std::path::Path;
 
-/// The part of it that the bodies of a scene may take: the program, its threads and the reader of the scene need some too.
+/// The fraction of the memory that the bodies of a scene may take. The program, its threads and the scene reader need the rest.
 const PART: f64 = 0.8;
 
-/// What bodies may take on a machine that says what it has: the least of its physical memory, of what groups of processes
-/// that this one belongs to may take (cgroups, as containers have), and of the limit of its address space [bytes].
+/// The memory that bodies may take, if the machine reports what it has [bytes]. It is limited by the physical memory, by the limits of the process
+/// groups that contain this process (cgroups, as in containers), and by the limit of the address space; the least of these counts.
 pub(crate) fn memory_bytes() -> Option<u64> {
     let physical = read_to_string("/proc/meminfo").ok().and_then(|text| physical(&text));
     let group = read_to_string("/proc/self/cgroup").ok().and_then(|text| group(&text, Path::new("/sys/fs/cgroup")));
@@ -22,7 +22,7 @@ fn physical(text: &str) -> Option<u64> {
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// The soft limits of `/proc/self/limits` that ask for memory ends at.
+/// The soft limits in `/proc/self/limits` beyond which memory cannot be allocated.
 fn address_space(text: &str) -> Option<u64> {
     let soft = |name: &str| {
         let line = text.lines().find_map(|line| line.strip_prefix(name))?;
@@ -31,7 +31,7 @@ fn address_space(text: &str) -> Option<u64> {
     ["Max address space", "Max data size"].into_iter().filter_map(soft).min()
 }
 
-/// The least limit of the groups in `/proc/self/cgroup` and of those around them, in version 2 or 1.
+/// The lowest limit of the groups in `/proc/self/cgroup` and of their parents, in version 2 or 1.
 fn group(text: &str, root: &Path) -> Option<u64> {
     let mut least: Option<u64> = None;
     for line in text.lines() {
@@ -43,7 +43,7 @@ fn group(text: &str, root: &Path) -> Option<u64> {
             _ => continue,
         };
         let inner = mount.join(path.trim_start_matches('/'));
-        // A container sees its own group as the root, whatever it is called outside.
+        // A container sees its own group as the root, whatever its name outside is.
         for folder in inner.ancestors().take_while(|folder| folder.starts_with(&mount)) {
             let limit = read_to_string(folder.join(file)).ok().and_then(|text| text.trim().parse().ok());
             least = [least, limit].into_iter().flatten().min();
@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(group("0::/outer/inner\n", root.path()), Some(4000));
         put("memory/box/memory.limit_in_bytes", "3000\n");
         assert_eq!(group("5:memory:/box\n4:cpu:/box\n0::/outer/inner\n", root.path()), Some(3000));
-        // Inside a container the path leads nowhere, and the root has the limit.
+        // Inside a container the path does not exist, and the root has the limit.
         put("memory/memory.limit_in_bytes", "2000\n");
         assert_eq!(group("5:memory:/elsewhere\n", root.path()), Some(2000));
         assert_eq!(group("0::/elsewhere\n", root.path()), None);

@@ -1,4 +1,4 @@
-//! The folder that a run writes into: its lock, and files that get their names together.
+//! The folder that a run writes to: its lock, and files that get their names together.
 
 use crate::aside::{aside_name, is_the_file, remove_the_dead};
 use crate::safe_write::{
@@ -9,7 +9,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// What happens where the output of an earlier run is found.
+/// What happens if the folder contains the output of an earlier run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
     /// It is an error.
@@ -18,21 +18,21 @@ pub enum Existing {
     Replace,
 }
 
-/// A folder for the output of one run, locked against other processes as long as this value lives.
+/// A folder for the output of one run, locked against other processes while this value exists.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
     force: bool,
-    // Held for its lock, which ends with the process at the latest.
+    // Kept for its lock, which ends with the process at the latest.
     lock: Option<File>,
 }
 
-/// A change of the folder that is ready to be made.
+/// A prepared change of the folder.
 #[derive(Debug)]
 enum Change {
-    /// A file gets its name; the one that has the name now is first given the second one.
+    /// Gives a file its name; before that, the file that has the name now gets the second one.
     Name { file: Aside, second: Option<PathBuf> },
-    /// A file goes.
+    /// Removes a file.
     Remove(PathBuf),
 }
 
@@ -63,11 +63,11 @@ impl Change {
 pub(crate) const LOCK: &str = ".opruga-lock";
 
 impl OutputFolder {
-    /// Makes the folder and those around it, locks it, and tries whether it can be written: before the run, not after.
+    /// Makes the folder with its parents, locks it, and checks that it can be written, before the run begins.
     ///
     /// # Errors
-    /// `write.folder` where it cannot be made or written, `write.locked` where another process writes into it,
-    /// `write.exists` where it holds other files and `existing` refuses them.
+    /// `write.folder` if it cannot be made or written, `write.locked` if another process writes to it, `write.exists` if it contains other files and
+    /// `existing` refuses them.
     pub fn open(path: &Path, existing: Existing) -> Result<OutputFolder, WriteError> {
         let cannot = |doing: Doing, e: &io::Error| {
             WriteError::of(path, WriteFault::Folder { doing, reason: crate::regular_file::reason(e) })
@@ -82,7 +82,7 @@ impl OutputFolder {
         let mut lock = open().map_err(|e| cannot(Doing::Written, &e))?;
         let mut locked = lock.try_lock();
         while locked.is_ok() && !is_the_file(&lock, &path.join(LOCK)) {
-            // Its last owner took it away in the moment before: what is locked here nobody else would find.
+            // Its last owner has just removed it: nobody else would find the lock that is taken here.
             lock = open().map_err(|e| cannot(Doing::Written, &e))?;
             locked = lock.try_lock();
         }
@@ -91,11 +91,11 @@ impl OutputFolder {
             Err(fs::TryLockError::WouldBlock) => {
                 return Err(WriteError::of(path, WriteFault::FolderLocked {}));
             }
-            // A file system without locks: the folder can still be used.
+            // On a file system without locks, the folder can still be used.
             Err(fs::TryLockError::Error(e)) if e.kind() == io::ErrorKind::Unsupported => {}
             Err(fs::TryLockError::Error(e)) => return Err(cannot(Doing::Locked, &e)),
         }
-        // What was being written when an earlier owner of the lock was killed.
+        // Files that were being written when an earlier owner of the lock was killed.
         remove_the_dead(path, None);
         for entry in fs::read_dir(path).map_err(|e| cannot(Doing::Read, &e))?.flatten() {
             if entry.file_name().to_str().is_some_and(|name| name.ends_with(TRIAL)) {
@@ -110,7 +110,7 @@ impl OutputFolder {
                 .collect();
             names.sort();
             if let Some(first) = names.first() {
-                // Nothing of ours is left in a folder that is somebody else's, nor the lock of a process that was killed here.
+                // None of our files stays in a folder that belongs to somebody else, nor does the lock of a process that was killed here.
                 let _ = fs::remove_file(path.join(LOCK));
                 let file = crate::problem::visible(first);
                 return Err(WriteError::of(
@@ -136,36 +136,36 @@ impl OutputFolder {
         self.path.join(name)
     }
 
-    /// Writes a file of the folder by [`safe_write`]. A file that this run has written before may be written again.
+    /// Writes a file of the folder by [`safe_write`]. A file that this run has already written may be written again.
     ///
     /// # Errors
-    /// As [`safe_write`].
+    /// Those of [`safe_write`].
     pub fn write(
         &self,
         name: &str,
         force: bool,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<u64, WriteError> {
-        // What killed processes have left went when the folder was opened.
+        // Files of killed processes were removed when the folder was opened.
         safe_write_through(&self.path(name), force || self.force, |file| file, fill)
     }
 
-    /// Files that get their names and go together.
+    /// Begins a group of files that get their names, or are removed, together.
     pub fn together(&self) -> Together<'_> {
         Together { folder: self, waiting: Vec::new() }
     }
 
-    /// Removes a file of the folder if it is there.
+    /// Removes a file of the folder if it exists.
     ///
     /// # Errors
-    /// `write.failed`; then it is still there.
+    /// `write.failed`; the file then still exists.
     pub fn remove(&self, name: &str) -> Result<(), WriteError> {
         remove(&self.path(name))
     }
 }
 
-/// Changes of a folder that are made one right after the other once all of them are ready: a disk that fills up on the way
-/// leaves everything as it was.
+/// Changes of a folder that are all made one right after the other once all of them are ready. If the disk fills up before that, everything stays as
+/// it was.
 #[derive(Debug)]
 #[must_use = "nothing changes before the end"]
 pub struct Together<'a> {
@@ -174,7 +174,7 @@ pub struct Together<'a> {
 }
 
 impl Together<'_> {
-    /// Writes a file that shall replace the one of its name.
+    /// Writes a file that will replace the one with its name.
     ///
     /// # Errors
     /// `write.failed`.
@@ -182,8 +182,8 @@ impl Together<'_> {
         self.ready(name, None, Box::new(fill))
     }
 
-    /// As [`Together::write`]; the file that is replaced, if there is one, is kept under a second name, in place of the file
-    /// that had it. At every moment, a crash included, both names are whole files.
+    /// Does the same as [`Together::write`], but keeps the replaced file, if there is one, under a second name, where it replaces an older file. At
+    /// every moment, even after a crash, both names are complete files.
     ///
     /// # Errors
     /// `write.failed`.
@@ -198,7 +198,7 @@ impl Together<'_> {
 
     fn ready(&mut self, name: &str, second: Option<PathBuf>, fill: Fill<'_>) -> Result<(), WriteError> {
         let file = Aside::write(&self.folder.path(name), true, Box::new(|file| Box::new(file)), fill)?;
-        // What was ready under this name counts no more.
+        // An earlier change prepared for this name is dropped.
         let of_name = |other: &Change| matches!(other, Change::Name { file: old, .. } if old.path == file.path);
         let (old, others): (Vec<Change>, Vec<Change>) =
             std::mem::take(&mut self.waiting).into_iter().partition(of_name);
@@ -208,7 +208,7 @@ impl Together<'_> {
         Ok(())
     }
 
-    /// Lets a file go if it is there.
+    /// Removes a file if it exists.
     pub fn remove(&mut self, name: &str) {
         self.waiting.push(Change::Remove(self.folder.path(name)));
     }
@@ -216,7 +216,7 @@ impl Together<'_> {
     /// Makes the changes in their order.
     ///
     /// # Errors
-    /// `write.failed` for a name that could not be given; those behind it are not, and their files are as they were.
+    /// `write.failed` for a name that could not be given; later changes are not made, and their files stay as they were.
     pub fn finish(mut self) -> Result<(), WriteError> {
         let mut changes = std::mem::take(&mut self.waiting).into_iter();
         let made = changes.try_for_each(Change::make);
@@ -231,14 +231,14 @@ impl Drop for Together<'_> {
     }
 }
 
-/// Gives a file a second name in its folder; does nothing where there is no such file.
+/// Gives a file a second name in its folder; does nothing if the file does not exist.
 fn keep(from: &Path, to: &Path) -> Result<(), WriteError> {
     if !from.exists() {
         return Ok(());
     }
     let aside = to.with_file_name(aside_name(to.file_name().unwrap_or_default()));
     let _ = fs::remove_file(&aside);
-    // Some file systems know no second names: there it is a copy.
+    // Some file systems do not support second names; there the file is copied.
     let copied = || fs::copy(from, &aside).and_then(|_| File::open(&aside)?.sync_all());
     let kept = fs::hard_link(from, &aside).or_else(|_| copied()).and_then(|()| fs::rename(&aside, to));
     kept.and_then(|()| sync_folder(folder_of(to))).map_err(|e| {
@@ -247,7 +247,7 @@ fn keep(from: &Path, to: &Path) -> Result<(), WriteError> {
     })
 }
 
-/// Removes a file if it is there.
+/// Removes a file if it exists.
 fn remove(path: &Path) -> Result<(), WriteError> {
     match fs::remove_file(path) {
         Err(e) if e.kind() != io::ErrorKind::NotFound => Err(WriteError::failed(path, 0, &e)),
@@ -257,7 +257,7 @@ fn remove(path: &Path) -> Result<(), WriteError> {
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        // While it is still locked, so that nobody can have locked it meanwhile; some systems keep files that are open.
+        // It is removed while still locked, so that nobody can have locked it in the meantime. Some systems do not remove open files.
         let gone = cfg!(unix) && fs::remove_file(self.path(LOCK)).is_ok();
         drop(self.lock.take());
         if !gone {

@@ -1,7 +1,7 @@
-//! Outputs that would destroy an input, or one another: found before anything is computed, and refused whatever `--force` says.
+//! Outputs that would destroy an input or each other: they are found before anything is computed, and refused even with `--force`.
 //!
-//! `--force` lets a call replace what an earlier one has written. It is no leave to replace what the call reads: the file that is lost
-//! may be a drawing or a scene that nobody can compute again.
+//! `--force` lets a call replace the output of an earlier one. It does not allow it to replace an input: the lost file may be a drawing or a scene
+//! that cannot be computed again.
 
 use crate::aside::is_aside;
 use crate::safe_write::WriteError;
@@ -10,7 +10,7 @@ use crate::write_faults::WriteFault;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// The files that a call reads and those that it will write.
+/// The files that a call reads and writes.
 #[derive(Default)]
 #[allow(missing_debug_implementations, reason = "it holds functions")]
 pub struct Uses {
@@ -21,7 +21,7 @@ pub struct Uses {
 
 /// A file of a call.
 struct Used {
-    /// What it is to the call.
+    /// Its role in the call.
     what: Use,
     named: PathBuf,
     file: Found,
@@ -30,19 +30,19 @@ struct Used {
 /// Whether a command writes a file of this name into its folder.
 type Writes = Box<dyn Fn(&str) -> bool>;
 
-/// A folder that a command writes into.
+/// A folder that a command writes to.
 struct Folder {
     named: PathBuf,
     real: PathBuf,
     writes: Writes,
 }
 
-/// A file by what it is, whatever it is called.
+/// A file identified independently of its name.
 #[derive(Clone, Debug, PartialEq)]
 struct Found {
-    /// Its path without links, `.` and `..`, as far as it is there.
+    /// Its path without links, `.` and `..`, as far as the path exists.
     real: PathBuf,
-    /// The number of the file and of its device, which hard links share; none where it is not there.
+    /// The numbers of the file and its device, which are the same for hard links; none if the file does not exist.
     number: Option<(u64, u64)>,
 }
 
@@ -52,22 +52,22 @@ impl Uses {
         self.inputs.push(Used { what, named: path.to_path_buf(), file: Found::of(path) });
     }
 
-    /// Adds a file that the call will write, by what the call names it.
+    /// Adds a file that the call will write, with the option that names it.
     pub fn output(&mut self, option: &'static str, path: &Path) {
         let what = Use::Option { option };
         self.outputs.push(Used { what, named: path.to_path_buf(), file: Found::of(path) });
     }
 
-    /// Adds a folder that the call will write into, and which names its files may have.
+    /// Adds a folder that the call will write to, and a test of the names that its files may have.
     pub fn folder(&mut self, path: &Path, writes: impl Fn(&str) -> bool + 'static) {
         let writes: Writes = Box::new(move |name| name == crate::output_folder::LOCK || is_aside(name) || writes(name));
         self.folders.push(Folder { named: path.to_path_buf(), real: Found::of(path).real, writes });
     }
 
-    /// Looks whether every output is a file of its own.
+    /// Checks that every output is a separate file.
     ///
     /// # Errors
-    /// `write.input` for an output that is an input, `write.twice` for two outputs that are one file.
+    /// `write.input` for an output that is an input, `write.twice` for two outputs that are the same file.
     pub fn check(&self) -> Result<(), WriteError> {
         for (place, output) in self.outputs.iter().enumerate() {
             if let Some(input) = self.inputs.iter().find(|input| input.file.is(&output.file)) {
@@ -102,19 +102,19 @@ fn twice(path: &Path, one: &Use, other: &Use) -> WriteError {
 }
 
 impl Folder {
-    /// The path under which the command would write this very file, if it would.
+    /// The path under which the command would write this file, if it would.
     fn goal(&self, file: &Found) -> Option<PathBuf> {
         if let (Some(folder), Some(name)) = (file.real.parent(), file.real.file_name().and_then(|name| name.to_str()))
             && folder == self.real
         {
-            // Where case says nothing, a name in capitals is one that is written in small letters.
+            // On systems that ignore case, a name in capitals is the same as one in small letters.
             let small = name.to_lowercase();
             let same = || file.number.is_none() || Found::of(&self.real.join(&small)).is(file);
             if (self.writes)(name) || (self.writes)(&small) && same() {
                 return Some(self.named.join(name));
             }
         }
-        // A link in the folder may lead to the file.
+        // A link in the folder may point to the file.
         let number = file.number?;
         let entries = fs::read_dir(&self.real).into_iter().flatten().flatten();
         let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
@@ -131,23 +131,23 @@ impl Found {
         Found { real, number }
     }
 
-    /// Whether two names mean one file.
+    /// Whether two names mean the same file.
     fn is(&self, other: &Found) -> bool {
         self.real == other.real || self.number.is_some() && self.number == other.number
     }
 
-    /// Whether two names mean one file, or will once they are written. Names that are not there yet and differ by case or by the form of
-    /// their letters alone are one file on many systems: which kind this one is shows only when it is too late.
+    /// Whether two names mean the same file, or will once they are written. On many systems, names that do not exist yet and differ only by case or
+    /// by the Unicode form of their letters are the same file. Whether this is such a system shows only when it is too late.
     fn would_be(&self, other: &Found) -> bool {
         let form = |found: &Found| crate::canonical::decomposed(&found.real.to_string_lossy().to_lowercase());
         self.is(other) || self.number.is_none() && other.number.is_none() && form(self) == form(other)
     }
 }
 
-/// Links that are followed before they count as a circle.
+/// The number of links that are followed before they count as a loop.
 const MOST_LINKS: u32 = 40;
 
-/// A path without links, `.` and `..`; what is not there stays as it is named.
+/// A path without links, `.` and `..`; parts that do not exist stay as they are named.
 fn real(path: &Path, links: &mut u32) -> PathBuf {
     let whole = match path.is_absolute() {
         true => path.to_path_buf(),
@@ -163,7 +163,7 @@ fn real(path: &Path, links: &mut u32) -> PathBuf {
                 let here = out.join(name);
                 out = match (here.canonicalize(), fs::read_link(&here)) {
                     (Ok(there), _) => there,
-                    // A link to what is not there yet: who writes it, writes that.
+                    // A link to a file that does not exist yet: writing the link writes that file.
                     (Err(_), Ok(goal)) if *links < MOST_LINKS => {
                         *links += 1;
                         real(&out.join(goal), links)
@@ -181,7 +181,7 @@ fn number_of(path: &Path) -> Option<(u64, u64)> {
     use std::os::unix::fs::MetadataExt as _;
     fs::metadata(path).ok().map(|about| (about.dev(), about.ino()))
 }
-// Without numbers of files, hard links stay unknown; everything else shows in paths without links.
+// Without file numbers, hard links cannot be detected; all other cases show in the paths without links.
 #[cfg(not(unix))]
 fn number_of(_: &Path) -> Option<(u64, u64)> {
     None
@@ -231,7 +231,7 @@ mod tests {
             });
             assert_eq!(found, "", "{other}");
         }
-        // In a folder, by the names that are written into it.
+        // Names that are written to a folder.
         let into = |path: &Path| {
             code(|uses| {
                 uses.input(Use::Input {}, &at.join("a/s.toml"));
@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(two("q.msh", "a/q.msh"), "");
         #[cfg(unix)]
         {
-            // A link to a file that is not there yet.
+            // A link to a file that does not exist yet.
             std::os::unix::fs::symlink("q.msh", at.join("link")).expect("a link");
             assert_eq!((two("q.msh", "link"), two("link", "a/../link")), ("write.twice", "write.twice"));
             std::os::unix::fs::symlink("circle", at.join("circle")).expect("a link");

@@ -1,7 +1,7 @@
-//! `--set PATH=VALUE`: changes of a scene before it is checked, by the paths of its parameters.
+//! `--set PATH=VALUE`: changes parameters of a scene before it is checked.
 //!
-//! A path is the way through the file: `time.substeps`, `world.gravity`, `integrator.kind`, `body.ball.mass`,
-//! `body.0.models.mass_spring.stiffness`, `seed`. In a list an entry is named by its number, its `name` or its `kind`.
+//! PATH is the position of the field in the scene file, with dots between its parts: `time.substeps`, `world.gravity`, `integrator.kind`,
+//! `body.ball.mass`, `body.0.models.mass_spring.stiffness`, `seed`. An entry of a list is named by its number, its `name` or its `kind`.
 
 use crate::document::{self, Data, Entry, Location, Node};
 use crate::problem::{SceneError, visible};
@@ -11,7 +11,7 @@ use opruga_core::spec::nearest;
 /// Splits `PATH=VALUE`.
 ///
 /// # Errors
-/// `set.syntax` where there is no `=` or no path.
+/// `set.syntax` if there is no `=` or no path.
 pub fn split(argument: &str) -> Result<(String, String), SceneError> {
     match argument.split_once('=') {
         Some((path, value)) if !path.trim().is_empty() => Ok((path.trim().to_string(), value.trim().to_string())),
@@ -60,7 +60,7 @@ fn apply(root: &mut Node, path: &str, value: &str, number: usize) -> Result<(), 
     set(root, &parts, "", value, number)
 }
 
-/// Walks along the path; tables that are not there yet are made, entries of lists must be there.
+/// Follows the path and sets the value. Missing tables are created; entries of lists must exist.
 fn set(node: &mut Node, parts: &[&str], walked: &str, value: Node, number: usize) -> Result<(), SceneError> {
     let Some((head, rest)) = parts.split_first() else {
         *node = value;

@@ -1,4 +1,4 @@
-//! What is wrong, where, and what would be right: for people and, as JSON, for programs.
+//! Errors and notices: what is wrong, where, and what would be right. They are written for people and, as JSON, for programs.
 
 use crate::scene::errors::FieldError;
 use core::fmt;
@@ -14,7 +14,7 @@ opruga_math::terms! {
 }
 
 opruga_math::messages! {
-    /// What stands around the text of an error or a warning.
+    /// Texts around the sentence of an error or a warning.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Around {
         "part.label" #[error("{count} times")]
@@ -31,7 +31,7 @@ opruga_math::messages! {
     }
 }
 
-/// An error in a scene, with its place.
+/// An error in a scene, with its location.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneError {
     /// A stable word for programs, such as `scene.unknown_field`.
@@ -40,11 +40,11 @@ pub struct SceneError {
     pub message: String,
     /// The file, or the option of the command line.
     pub file: String,
-    /// The line, from 1; none where the error is in no line.
+    /// The line, from 1; none if the error belongs to no line.
     pub line: Option<usize>,
     /// The column in characters, from 1.
     pub column: Option<usize>,
-    /// The path of the field, as `--set` takes it: `body.0.models.1.stiffness`.
+    /// The path of the field, as used by `--set`: `body.0.models.1.stiffness`.
     pub path: String,
     /// The offending value, as it was written.
     pub value: Option<String>,
@@ -56,36 +56,36 @@ pub struct SceneError {
     pub excerpt: Option<Excerpt>,
     /// The offending byte of a file that has no lines.
     pub byte: Option<usize>,
-    /// What is wrong, as a value: translations of other languages read it. None where the texts above are all there is.
+    /// The error as a value, for translations to other languages. None if there are only the texts above.
     pub about: Option<AnyMessage>,
-    /// What would help, as a value, where the message itself does not say it.
+    /// What would help, as a value, if the message itself does not give it.
     pub advice: Option<AnyMessage>,
-    /// What is allowed, as a value, where the message itself does not say it.
+    /// What is allowed, as a value, if the message itself does not give it.
     pub allowance: Option<AnyMessage>,
 }
 
 /// A line of a file with a part of it marked.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Excerpt {
-    /// The line, shortened around the marked part, unprintable characters made visible.
+    /// The line, shortened around the marked part, with unprintable characters made visible.
     pub line: String,
-    /// How many characters lie before the marked part.
+    /// The number of characters before the marked part.
     pub start: usize,
-    /// How many characters are marked.
+    /// The number of marked characters.
     pub length: usize,
 }
 
-/// Something odd that a scene may do: counted, never silent.
+/// Something unusual in a scene, with a count.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    /// The same description as that of an error.
+    /// Its description, in the form of an error.
     pub about: SceneError,
     /// How often it occurs.
     pub count: usize,
 }
 
 impl SceneError {
-    /// An error in no particular line.
+    /// Makes an error without a line.
     pub fn new(code: &'static str, message: impl Into<String>) -> SceneError {
         SceneError {
             code,
@@ -104,7 +104,7 @@ impl SceneError {
             allowance: None,
         }
     }
-    /// An error of a message, with its code, value, what is allowed and what helps; in no particular line.
+    /// Makes an error from a message, with its code, its value, what is allowed and what helps, but without a line.
     pub fn of(message: impl Into<AnyMessage>) -> SceneError {
         let about = message.into();
         SceneError {
@@ -115,11 +115,11 @@ impl SceneError {
             ..SceneError::new(about.code(), about.to_string())
         }
     }
-    /// What stands behind the errors that are shown: so many were only counted.
+    /// The last entry after the errors that are shown: the number of errors that were only counted.
     pub(crate) fn and_more(count: usize) -> SceneError {
         SceneError::of(FieldError::More { count })
     }
-    /// How many errors this one stands for.
+    /// The number of errors that this one represents.
     fn stands_for(&self) -> usize {
         match (&self.value, self.code) {
             (Some(count), MORE) => count.parse().unwrap_or(1),
@@ -174,8 +174,7 @@ impl SceneError {
             None => self,
         }
     }
-    /// The error object of the command line: `{code, message, file, line, column, path, value, allowed, hint}`; what an
-    /// error does not have is null.
+    /// The error object of the command line: `{code, message, file, line, column, path, value, allowed, hint}`; missing parts are null.
     pub fn to_json(&self) -> serde_json::Value {
         let there = |text: &String| Some(text.clone()).filter(|text| !text.is_empty());
         serde_json::json!({
@@ -190,17 +189,17 @@ impl SceneError {
             "hint": self.hint,
         })
     }
-    /// What is wrong, in the language of a translation, in English without one.
+    /// The sentence that says what is wrong, in the language of the translation, or in English if there is none.
     pub fn sentence(&self, translation: Option<&Translation>) -> String {
         let text = self.sentence_alone(translation);
         let suffix = self.byte.map_or_else(String::new, |byte| in_words(translation, &Around::AtByte { byte }));
         text + &suffix
     }
-    /// The same as [`fmt::Display`] writes it, in the language of a translation.
+    /// The text that [`fmt::Display`] writes, in the language of a translation.
     pub fn text(&self, translation: Option<&Translation>) -> String {
         describe(self, Label::Error, translation)
     }
-    /// The same with what stands for settings elsewhere than in a scene.
+    /// The same error with the names that replace the settings of a scene elsewhere.
     #[must_use]
     pub fn replaced(mut self, settings: &Replacing<'_>) -> SceneError {
         for message in [&mut self.about, &mut self.advice, &mut self.allowance].into_iter().flatten() {
@@ -213,7 +212,7 @@ impl SceneError {
         self.hint = text(&self.advice).or_else(|| about.hint()).or(self.hint);
         self
     }
-    /// The sentence without a place.
+    /// The sentence without a location.
     fn sentence_alone(&self, translation: Option<&Translation>) -> String {
         let known = translation.zip(self.about.as_ref()).and_then(|(translation, about)| translation.text(&**about));
         known.unwrap_or_else(|| self.message.clone())
@@ -236,13 +235,13 @@ impl SceneError {
     }
 }
 
-/// The code of the error that stands for those that are not shown.
+/// The code of the error that represents those that are not shown.
 const MORE: &str = "scene.more";
 
-/// The most errors that are shown of a file: who has mended fifty calls again.
+/// The largest number of errors that are shown for a file: after fixing fifty, the user runs the check again.
 pub const MOST_SHOWN: usize = 50;
 
-/// The first errors of a list, and one behind them that says how many more there are.
+/// The first errors of a list, followed by one that gives the number of the others.
 pub fn shown(mut errors: Vec<SceneError>) -> Vec<SceneError> {
     let of_list = |error: &SceneError| error.code != MORE;
     let mut hidden: usize = errors.iter().filter(|error| !of_list(error)).map(SceneError::stands_for).sum();
@@ -256,7 +255,7 @@ pub fn shown(mut errors: Vec<SceneError>) -> Vec<SceneError> {
     errors
 }
 
-/// How many errors a list stands for.
+/// The number of errors that a list represents.
 pub fn count_of(errors: &[SceneError]) -> usize {
     errors.iter().map(SceneError::stands_for).sum()
 }
@@ -269,16 +268,16 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// What is told of because the scene itself asks for it, or a flat face with all of its corners is nothing odd: worth knowing, and no error where
-/// warnings are errors.
+/// Notices about things that the scene itself asks for, or that are not unusual (a flat face with all of its corners). They are worth knowing, but
+/// are not errors if warnings are errors.
 const ASKED_FOR: [&str; 3] = ["shape.overlap", "shape.dropped", "mesh.concave_face"];
 
 impl Notice {
-    /// Whether a notice of this code tells of nothing but what was asked for, or stands so in the file.
+    /// Whether a notice with this code only reports what the scene asked for, or what is so in the file.
     pub fn is_asked_for(code: &str) -> bool {
         ASKED_FOR.contains(&code)
     }
-    /// The same as [`fmt::Display`] writes it, in the language of a translation.
+    /// The text that [`fmt::Display`] writes, in the language of a translation.
     pub fn text(&self, translation: Option<&Translation>) -> String {
         let severity = if Notice::is_asked_for(self.about.code) { Label::Note } else { Label::Warning };
         let text = describe(&self.about, severity, translation);
@@ -289,7 +288,7 @@ impl Notice {
     }
 }
 
-/// The notice without its place in the file.
+/// The notice without its location in the file.
 impl From<Notice> for Warning {
     fn from(Notice { about, count }: Notice) -> Warning {
         let message = about.sentence(None);
@@ -303,7 +302,7 @@ impl fmt::Display for Notice {
     }
 }
 
-/// A message in the language of a translation, in English without one.
+/// A message in the language of a translation, or in English if there is none.
 pub fn in_words(translation: Option<&Translation>, message: &dyn Message) -> String {
     translation.map_or_else(|| message.to_string(), |translation| translation.text_or_english(message))
 }
@@ -319,7 +318,7 @@ pub fn warning_text(warning: &Warning, translation: Option<&Translation>) -> Str
     }
 }
 
-/// `file:line:column: error[code]: message`, the line with its marked part, what is allowed, what would help.
+/// `file:line:column: error[code]: message`, the line with its marked part, what is allowed, and what would help.
 fn describe(error: &SceneError, severity: Label, translation: Option<&Translation>) -> String {
     let mut out = String::new();
     if !error.file.is_empty() {
@@ -345,8 +344,8 @@ fn describe(error: &SceneError, severity: Label, translation: Option<&Translatio
     out
 }
 
-/// A text from outside, fit to be printed: control characters, marks that turn the direction of writing and invisible
-/// characters are written as escapes, and more than 120 characters are cut.
+/// Makes a text from outside fit to be printed: control characters, marks that change the direction of writing and invisible characters are escaped,
+/// and texts of more than 120 characters are cut.
 pub fn visible(text: &str) -> String {
     let mut out = String::new();
     for (n, c) in text.chars().enumerate() {

@@ -1,4 +1,4 @@
-//! The reference page of the scene format, made from the same descriptions as the reader.
+//! The reference page of the scene format, made from the descriptions that the reader uses.
 
 use crate::catalogue::{self, Catalogue};
 use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
@@ -65,8 +65,7 @@ fn table(out: &mut String, level: &str, section: &Section, tag: Option<&str>) {
     rows(out, section, tag);
 }
 
-/// A section for each kind, under a heading that no other chapter has; a field that differs between the dimensions has a
-/// row for each.
+/// A section for each kind, under a heading that no other chapter has. A field that differs between the dimensions has one row for each.
 fn kinds(out: &mut String, title: &str, path: &str, specs: &[&'static Spec]) {
     let _ = writeln!(out, "## {title}: `{path}`\n");
     for kind in catalogue::by_kind(specs) {
@@ -91,7 +90,7 @@ fn kinds(out: &mut String, title: &str, path: &str, specs: &[&'static Spec]) {
     }
 }
 
-/// The head of a table of fields.
+/// The header of a table of fields.
 const HEAD: &str = "| field | unit | allowed | default | meaning |\n|---|---|---|---|---|\n";
 
 /// The row of a field.

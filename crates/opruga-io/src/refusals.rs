@@ -1,4 +1,4 @@
-//! What a world refuses, said as errors of the scene: with the location of the part that is meant.
+//! Converts errors of a world to errors of the scene, with the location of the part that they are about.
 
 use crate::document::{self, Data, Entry, Location, Node};
 use crate::overrides;
@@ -13,7 +13,7 @@ use opruga_world::schema::{self, MOST_SUBSTEPS};
 use opruga_world::{RefusedCommand, Warning, WorldError};
 
 messages! {
-    /// What helps where a scene is refused, beside what the world itself says.
+    /// What helps if a scene is refused, in addition to the hints of the world.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum RefusalHint {
         "part.refusal_hint" #[error("substeps >= {substeps}, such as --set time.substeps={substeps}; or another integrator")]
@@ -32,7 +32,7 @@ messages! {
         BodyOrSubsteps { substeps: u32 },
     }
 
-    /// What a command of a scene was refused for.
+    /// The reason why a command of a scene was refused.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CommandRefusal {
         "part.command" #[error("the command `{word}`: {about}")]
@@ -45,7 +45,7 @@ messages! {
 pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[RefusalHint::VARIANTS, CommandRefusal::VARIANTS];
 
 impl From<&WorldError> for SceneError {
-    /// The same in the words of a scene: what is wrong, what is allowed, what would help. The location is that of the path;
+    /// Converts the error to one in the terms of a scene: what is wrong, what is allowed, what would help. The location is that of the path;
     /// [`in_scene`] finds its line.
     fn from(error: &WorldError) -> SceneError {
         let scene_error = SceneError { code: error.code(), ..SceneError::of(error.clone()) }.path(path_of(error));
@@ -67,7 +67,7 @@ impl From<&WorldError> for SceneError {
     }
 }
 
-/// Whether an error about a body is about one of its own fields, and not about a model.
+/// Whether an error about a body is about one of its own fields rather than about a model.
 fn is_field_of_body(kind: &str) -> bool {
     let plain = schema::BODY.spec.fields.iter().map(|field| field.name);
     plain.chain(schema::BODY.children.iter().map(|child| child.name)).any(|name| name == kind && name != "models")
@@ -80,7 +80,7 @@ fn path_of(error: &WorldError) -> String {
         WorldError::Build { part, source } => {
             let around = match part {
                 Part::Body { name } => match source.kind.as_str() {
-                    // Where a body lies, what holds it, and how it is stepped or swings is no matter of one model.
+                    // Fields such as the position, the pins and the integrator belong to the body, not to a model.
                     kind if is_field_of_body(kind) => {
                         return format!("{}.{}", body(name), valued(source).unwrap_or(kind.into()));
                     }
@@ -118,7 +118,7 @@ fn valued(error: &BuildError) -> Option<String> {
     error.about.value().and_then(|_| error.about.parameters().into_iter().next())
 }
 
-/// A warning of a world as an error, for those who want no warnings.
+/// Converts a warning of a world to an error, for callers that want no warnings.
 impl From<&Warning> for SceneError {
     fn from(warning: &Warning) -> SceneError {
         const CODES: [&str; 4] = ["units.sag", "step.no_stable_step", "step.unstable", "contact.starts_inside"];
@@ -131,8 +131,8 @@ impl From<&Warning> for SceneError {
     }
 }
 
-/// Gives an error its file, and the line of its path in the text of the scene: that of the parameter that it is
-/// about, or of the nearest part around it where the path itself is not written; or the override that has set it.
+/// Adds the file and the line of its path to an error: the line of the parameter that the error is about, or of the nearest enclosing part if the
+/// path itself is not written. If an override set the parameter, the override is named instead.
 #[must_use]
 pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String, String)]) -> SceneError {
     let source = Source { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) };
@@ -141,9 +141,9 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
         return error;
     }
     let Some(mut root) = document::parse(&source).0 else { return error };
-    // What an override could not set has been an error before any world was built.
+    // An override that cannot be applied was an error before the world was built.
     let _ = overrides::apply_all(&mut root, overrides);
-    // Its step is as long as any part of `time` has made it.
+    // The length of the step depends on all fields of `time`.
     let of_time = |(path, _): &(String, String)| error.code == "step.unstable" && path.starts_with("time.");
     if let Some((path, value)) = overrides.iter().rfind(|set| of_time(set)) {
         return SceneError { file: overrides::named(path, value), ..error };
@@ -151,7 +151,7 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
     if error.code == "model.cell_value"
         && let Some(mesh) = mesh_file(&root, &error.path)
     {
-        // The field of the scene is right: it is a number of the mesh that is not.
+        // The field of the scene is right; a number of the mesh is wrong.
         return SceneError { file: mesh.into(), ..error };
     }
     let parameters = error.about.as_ref().map_or_else(Vec::new, |about| about.parameters());
@@ -165,7 +165,7 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
     }
 }
 
-/// What a command of a scene was refused for while it ran, with the location of the command and what would help there.
+/// Converts the error with which a running command of a scene was refused: adds the location of the command and what would help there.
 #[must_use]
 pub fn of_command(
     error: &WorldError,
@@ -179,7 +179,7 @@ pub fn of_command(
     let mut scene_error = SceneError { about, message, file: file.to_string(), path: "command".into(), ..scene_error };
     let sets = command.sets.is_some();
     if let WorldError::UnstableStep { substeps, .. } = error {
-        // What an override sets lasts until a command sets it.
+        // An override remains in effect until a command sets the same parameter.
         let (substeps, earlier) = (*substeps, command.substeps_were_set);
         let hint = match substeps {
             ..=MOST_SUBSTEPS => Some(match (sets, earlier) {
@@ -208,7 +208,7 @@ pub fn of_command(
     }
 }
 
-/// The table of a command in a scene, and its number; none for one that a program has given.
+/// The table of a command in a scene, and its number; none for a command that a program gave.
 fn written<'n>(root: &'n Node, command: &RefusedCommand<'_>) -> Option<(usize, &'n Node)> {
     let Data::Array(tables) = &root.get("command")?.data else { return None };
     let begins = |node: &Node| match node.data {
@@ -225,7 +225,7 @@ fn written<'n>(root: &'n Node, command: &RefusedCommand<'_>) -> Option<(usize, &
     })
 }
 
-/// The file of the mesh of the body that a path leads to.
+/// The mesh file of the body that a path belongs to.
 fn mesh_file<'n>(root: &'n Node, path: &str) -> Option<&'n str> {
     let name = path.split('.').nth(1)?;
     let Data::Array(bodies) = &root.get("body")?.data else { return None };
@@ -233,7 +233,7 @@ fn mesh_file<'n>(root: &'n Node, path: &str) -> Option<&'n str> {
     body.get("shape")?.get("file")?.text()
 }
 
-/// The location of the last part of a path that is written, or of a parameter in it; none where nothing of it is.
+/// The location of the last part of a path that is written, or of a parameter in it; none if no part of it is written.
 fn location(root: &Node, path: &str, parameters: &[String]) -> Option<Location> {
     let (mut node, mut location) = (root, None);
     for part in path.split('.') {
@@ -250,13 +250,13 @@ fn location(root: &Node, path: &str, parameters: &[String]) -> Option<Location> 
         (node, location) = (next, Some(at));
     }
     let named = parameters.iter().find_map(|parameter| node.entry(parameter)).map(shown_at);
-    // A part of which an override has changed something is as that has made it.
+    // A part in which an override has changed something gets the location of the override.
     let changed =
         || node.entries().iter().map(|entry| entry.value.location).rfind(|at| matches!(at, Location::Override(_)));
     named.or_else(changed).or(location)
 }
 
-/// A table is shown by its key, a value by itself.
+/// The location of a table is that of its key; that of another value is the value itself.
 fn shown_at(entry: &Entry) -> Location {
     match entry.value.data {
         Data::Table(_) | Data::Array(_) => entry.location,

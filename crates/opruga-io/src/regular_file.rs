@@ -1,11 +1,11 @@
-//! Regular files, read whole and within a limit.
+//! Reads regular files completely, up to a limit.
 
 use crate::problem::SceneError;
 use crate::text_errors::{FileError, Measured, TextError};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The bytes of a regular file no larger than a limit.
+/// Returns the bytes of a regular file that is not larger than a limit.
 pub(crate) fn regular_file(
     path: &Path,
     most: u64,
@@ -24,7 +24,7 @@ pub(crate) fn regular_file(
     }
     let mut file = std::fs::File::open(path).map_err(failed)?;
     let before = Stamp::of(&file).map_err(failed)?;
-    // One byte more than allowed, in case that the file grows while it is read.
+    // One byte more than allowed, in case the file grows while it is read.
     let mut bytes = Vec::new();
     (&mut file).take(most + 1).read_to_end(&mut bytes).map_err(failed)?;
     before.unchanged(&file, bytes.len() as u64)?;
@@ -34,7 +34,7 @@ pub(crate) fn regular_file(
     Ok(bytes.into())
 }
 
-/// Size and time of change of a file, to tell whether it was changed while it was read.
+/// Size and modification time of a file, which show whether it was changed while it was read.
 #[derive(Debug, PartialEq)]
 struct Stamp {
     bytes: u64,
@@ -47,7 +47,7 @@ impl Stamp {
         Ok(Stamp { bytes: about.len(), changed: about.modified().ok() })
     }
 
-    /// Refuses what was read if it may be half old and half new.
+    /// Refuses bytes that may be partly old and partly new.
     fn unchanged(&self, file: &std::fs::File, read: u64) -> Result<(), SceneError> {
         match Stamp::of(file) {
             Ok(now) if now == *self && read == self.bytes => Ok(()),
@@ -56,7 +56,7 @@ impl Stamp {
     }
 }
 
-/// The reason of an error of the system, without its number.
+/// The reason of a system error, without its number.
 pub(crate) fn reason(error: &std::io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
     use std::io::Write as _;
 
-    /// A file that grows, or is written over, between the first and the last byte that is read is refused.
+    /// A file that grows or is overwritten between the first and the last byte that is read is refused.
     #[test]
     fn a_file_that_changes_while_it_is_read_is_refused() {
         let path = std::env::temp_dir().join(format!("opruga-changed-{}", std::process::id()));

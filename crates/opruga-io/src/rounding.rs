@@ -1,13 +1,13 @@
-//! How much of a shape the numbers of its file have rounded away.
+//! How much of a shape was lost by the rounding of the numbers in its file.
 //!
-//! Numbers of 4 bytes have seven digits: ten thousand kilometres from the origin they are a metre apart, and a cube of 1.3 m becomes one of 1 m. Bodies
-//! may lie anywhere once they are read; what the file has lost stays lost.
+//! Numbers of 4 bytes have seven digits. Ten thousand kilometres from the origin, neighbouring numbers differ by a metre, and a cube of 1.3 m becomes
+//! one of 1 m. Bodies may be anywhere once they are read, but what the file has lost cannot be recovered.
 
 use crate::problem::SceneError;
 use opruga_math::words::rounded;
 
 opruga_math::messages! {
-    /// What the numbers of a file have lost.
+    /// What is lost in the numbers of a file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum Rounded {
         "mesh.rounded"
@@ -23,15 +23,15 @@ opruga_math::messages! {
     }
 }
 
-/// Rounding above this part of the distance of neighbouring nodes is reported: strains and angles are off by as much.
+/// Rounding above this fraction of the distance of neighbouring nodes is reported: strains and angles have errors of the same size.
 const WARNED: f64 = 1e-3;
-/// Above this part it is refused: the shape is another one.
+/// Above this fraction the file is refused, because the shape has changed.
 const REFUSED: f64 = 0.1;
 
-/// Coordinates as they stand in a file: how far from the origin they lie, and how far neighbours are from one another.
+/// Coordinates as stored in a file: their distance from the origin, and the distance between neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Stored {
-    /// Half of the distance of neighbouring numbers [m], where coordinates are largest.
+    /// Half of the difference between neighbouring numbers at the largest coordinate [m].
     rounding: f64,
     /// The largest coordinate [m].
     farthest: f64,
@@ -42,7 +42,7 @@ pub(crate) struct Stored {
 }
 
 impl Stored {
-    /// Of nodes and the elements between them.
+    /// Computes the values for nodes and the elements between them.
     pub(crate) fn of<'e>(positions: &[[f64; 3]], elements: impl Iterator<Item = &'e [u32]>, single: bool) -> Stored {
         let farthest = positions.iter().flatten().fold(0.0, |most: f64, x| if x.abs() > most { x.abs() } else { most });
         let (mut sum, mut count) = (0.0, 0.0);
@@ -65,20 +65,20 @@ impl Stored {
         Stored { rounding: 0.5 * step, farthest, apart, single }
     }
 
-    /// The rounding as a part of the distance of neighbours; none where they all lie in one place.
+    /// The rounding as a fraction of the distance of neighbours; zero if there is no such distance.
     fn part(&self) -> f64 {
         if self.apart > 0.0 && self.apart.is_finite() { self.rounding / self.apart } else { 0.0 }
     }
 
-    /// Of two parts of a file the one that has lost more.
+    /// Returns the one of two parts of a file that has lost more.
     pub(crate) fn worse(self, other: Stored) -> Stored {
         if other.part() > self.part() { other } else { self }
     }
 
-    /// What to warn of, if anything.
+    /// The warning, if one is due.
     ///
     /// # Errors
-    /// `mesh.rounded` where the shape is another one.
+    /// `mesh.rounded` if the shape has changed.
     pub(crate) fn warning(&self) -> Result<Option<SceneError>, SceneError> {
         let part = self.part();
         if part <= WARNED {

@@ -1,4 +1,4 @@
-//! Files that are never half written: written aside, synced, then renamed.
+//! Files that are never left half written: they are written under a temporary name, synced, then renamed.
 
 use crate::aside::{make_aside, remove_the_dead};
 use crate::problem::SceneError;
@@ -9,21 +9,21 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// A file that could not be written. What was there before is unchanged.
+/// A file that could not be written. An earlier file is unchanged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WriteError {
     /// What happened.
     pub about: AnyMessage,
     /// The file or folder.
     pub path: PathBuf,
-    /// How many bytes had been written.
+    /// The number of bytes that had been written.
     pub bytes: u64,
-    /// What would help, where the message does not say it.
+    /// What would help, if the message does not say it.
     pub advice: Option<AnyMessage>,
 }
 
 impl WriteError {
-    /// An error of a message.
+    /// Makes an error from a message.
     pub fn of(path: &Path, about: impl Into<AnyMessage>) -> WriteError {
         WriteError { about: about.into(), path: path.to_path_buf(), bytes: 0, advice: None }
     }
@@ -52,7 +52,7 @@ impl WriteError {
             "column": null, "path": null, "value": self.bytes, "allowed": null, "hint": hint,
         })
     }
-    /// The same as [`core::fmt::Display`] writes it, in the language of a translation.
+    /// The text that [`core::fmt::Display`] writes, in the language of a translation.
     pub fn text(&self, translation: Option<&Translation>) -> String {
         let mut error = SceneError::of(self.about.clone());
         error.file = self.path.display().to_string();
@@ -68,12 +68,12 @@ impl core::fmt::Display for WriteError {
 
 impl std::error::Error for WriteError {}
 
-/// Writes a file so that its name always means a whole file: aside in the same folder, synced, renamed, folder synced.
-/// Returns how many bytes it has.
+/// Writes a file so that its name always means a complete file: it is written under a temporary name in the same folder, synced and renamed, and the
+/// folder is synced. Returns its size [bytes].
 ///
 /// # Errors
-/// `write.exists` where the file is there and `force` is not given; `write.failed` with the number of bytes written so
-/// far. In both cases the old file is whole and nothing is left behind; what a killed process has left of it goes.
+/// `write.exists` if the file exists and `force` is not given; `write.failed` with the number of bytes written so far. In both cases the old file
+/// stays intact and no temporary file remains. Temporary files that a killed process left for this name are removed.
 pub fn safe_write(
     path: &Path,
     force: bool,
@@ -85,13 +85,13 @@ pub fn safe_write(
     safe_write_through(path, force, |file| file, fill)
 }
 
-/// The ending of files that are written to see whether they can be.
+/// The ending of files that are written to test whether writing is possible.
 pub(crate) const TRIAL: &str = ".opruga-trial";
 
-/// Tries whether a file could be written by [`safe_write`]; leaves what is there as it is.
+/// Tests whether [`safe_write`] could write a file; an existing file stays as it is.
 ///
 /// # Errors
-/// `write.exists` where the file is there and `force` is not given; `write.failed`.
+/// `write.exists` if the file exists and `force` is not given; `write.failed`.
 pub fn try_write(path: &Path, force: bool) -> Result<(), WriteError> {
     if !force && path.exists() && !path.is_dir() {
         return Err(WriteError::of(path, WriteFault::FileExists {}));
@@ -105,19 +105,19 @@ pub fn try_write(path: &Path, force: bool) -> Result<(), WriteError> {
     }
     safe_write(&trial, true, |w| w.write_all(b"opruga\n"))
         .and_then(|_| match fs::remove_file(&trial) {
-            // Somebody who has begun in this folder meanwhile has removed it.
+            // Another process that has started in this folder in the meantime has removed it.
             Err(e) if e.kind() != io::ErrorKind::NotFound => Err(WriteError::failed(path, 7, &e)),
             _ => Ok(()),
         })
         .map_err(of_path)
 }
 
-/// Where the bytes of a file go, and how they are made to last.
+/// The destination of the bytes of a file, which can also be synced.
 pub trait Target: Write {
-    /// Returns when everything written so far would survive a loss of power.
+    /// Returns when everything written so far would survive a power failure.
     ///
     /// # Errors
-    /// Those of the system: drives in a network often report only here that they are gone.
+    /// Those of the system: network drives often report only here that they are gone.
     fn sync(&self) -> io::Result<()>;
 }
 
@@ -133,10 +133,10 @@ impl Target for File {
     }
 }
 
-/// [`safe_write`] through a writer of the caller's making: for tests that let the disk fail.
+/// [`safe_write`] with a writer made by the caller, for tests in which the disk fails.
 ///
 /// # Errors
-/// As [`safe_write`].
+/// Those of [`safe_write`].
 pub fn safe_write_through<'a, W: Target + 'a>(
     path: &Path,
     force: bool,
@@ -146,25 +146,25 @@ pub fn safe_write_through<'a, W: Target + 'a>(
     Aside::write(path, force, Box::new(|file| Box::new(wrap(file))), Box::new(fill))?.name(force)
 }
 
-/// Makes a file into what its bytes go through.
+/// Wraps a file in the writer that its bytes go through.
 type Wrap<'a> = Box<dyn FnOnce(File) -> Box<dyn Target + 'a> + 'a>;
-/// Writes what a file shall hold.
+/// Writes the contents of a file.
 pub(crate) type Fill<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
-/// A whole file that has no name of its own yet.
+/// A complete file that does not have its own name yet.
 #[derive(Debug)]
 pub(crate) struct Aside {
     pub(crate) path: PathBuf,
     aside: PathBuf,
     bytes: u64,
-    /// Held for its lock until the file has its name.
+    /// Kept for its lock until the file has its name.
     _lock: File,
 }
 
 impl Aside {
-    /// Writes and syncs a file beside the place where it belongs.
+    /// Writes and syncs a file next to its final path.
     ///
     /// # Errors
-    /// As [`safe_write`]; then nothing is left behind.
+    /// Those of [`safe_write`]; nothing is left behind then.
     pub(crate) fn write<'a>(path: &Path, force: bool, wrap: Wrap<'a>, fill: Fill<'a>) -> Result<Aside, WriteError> {
         if path.is_dir() {
             return Err(WriteError::of(path, WriteFault::IsFolder {}));
@@ -192,10 +192,10 @@ impl Aside {
         }
     }
 
-    /// Gives the file its name, in place of the file that had it; returns how many bytes it has.
+    /// Gives the file its name, replacing the file that had it; returns its size [bytes].
     ///
     /// # Errors
-    /// As [`safe_write`]; then nothing is left behind.
+    /// Those of [`safe_write`]; nothing is left behind then.
     pub(crate) fn name(self, force: bool) -> Result<u64, WriteError> {
         let Aside { path, bytes, .. } = &self;
         if !force && path.exists() {
@@ -219,7 +219,7 @@ impl Aside {
     }
 }
 
-/// The folder that a file lies in.
+/// The folder that contains a file.
 pub(crate) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -227,7 +227,7 @@ pub(crate) fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Everything up to the renaming; an error comes with the number of bytes that reached the file.
+/// Does everything before the renaming; an error comes with the number of bytes that reached the file.
 fn fill_and_sync<'a>(file: &File, wrap: Wrap<'a>, fill: Fill<'a>) -> Result<u64, (u64, io::Error)> {
     let inner = wrap(file.try_clone().map_err(|e| (0, e))?);
     let mut writer = BufWriter::with_capacity(1 << 16, Counted { inner, bytes: 0 });
@@ -239,22 +239,22 @@ fn fill_and_sync<'a>(file: &File, wrap: Wrap<'a>, fill: Fill<'a>) -> Result<u64,
     }
 }
 
-/// Makes a folder, and those around it that are missing; where the last cannot be made, none is left behind.
+/// Makes a folder and its missing parents. If the last one cannot be made, those made before are removed.
 pub(crate) fn make_folders(path: &Path) -> io::Result<()> {
     let missing: Vec<&Path> =
         path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists()).collect();
     fs::create_dir_all(path).inspect_err(|_| {
-        // Only those that are empty go.
+        // This removes empty folders only.
         missing.iter().for_each(|folder| drop(fs::remove_dir(folder)));
     })
 }
 
-/// Makes a renaming last; only where folders can be opened.
+/// Syncs a renaming to the disk, if the system can open folders.
 pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }
 
-/// Counts the bytes that went through.
+/// Counts the bytes that pass through.
 #[derive(Debug)]
 pub(crate) struct Counted<W> {
     pub(crate) inner: W,
@@ -272,14 +272,14 @@ impl<W: Write> Write for Counted<W> {
     }
 }
 
-/// A writer that fails at a byte, as a full disk does: everything before it is written, short writes included.
+/// A writer that fails after a number of bytes, like a full disk. Everything before is written, and writes may be short.
 #[derive(Debug)]
 pub struct Failing<W> {
     inner: W,
     left: u64,
-    /// The error of the system; none: no space is left.
+    /// The error number of the system; none means that no space is left.
     system: Option<i32>,
-    /// Whether it fails when the bytes shall last.
+    /// Whether it fails only when it is synced.
     at_sync: bool,
 }
 
@@ -288,11 +288,11 @@ impl<W: Write> Failing<W> {
     pub fn after(bytes: u64, inner: W) -> Failing<W> {
         Failing { inner, left: bytes, system: None, at_sync: false }
     }
-    /// Lets `bytes` bytes through; then the system reports the error of this number, such as 5 for a drive that is gone.
+    /// Lets `bytes` bytes through; then the system reports the error with this number, such as 5 for a drive that is gone.
     pub fn with(bytes: u64, system: i32, inner: W) -> Failing<W> {
         Failing { system: Some(system), ..Failing::after(bytes, inner) }
     }
-    /// Takes every byte, and fails when they shall last.
+    /// Takes every byte, and fails when it is synced.
     pub fn at_sync(system: i32, inner: W) -> Failing<W> {
         Failing { at_sync: true, ..Failing::with(u64::MAX, system, inner) }
     }

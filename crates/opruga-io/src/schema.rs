@@ -1,4 +1,4 @@
-//! The JSON Schema of scenes, for editors: made from the same descriptions as the reader.
+//! The JSON Schema of scenes, for editors: made from the descriptions that the reader uses.
 
 use crate::catalogue::{self, Catalogue};
 use opruga_core::spec::{Allowed, Bound, Default, Field, Spec};
@@ -60,8 +60,8 @@ fn describe(spec: &Spec) -> String {
     }
 }
 
-/// Tables of which `kind` chooses one: each kind once, since a table that fits two of `oneOf` fits none. Where a field
-/// differs between the dimensions, what either allows is allowed.
+/// Tables of which `kind` selects one. Each kind occurs once, because a table that matches two entries of `oneOf` is invalid. If a field differs
+/// between the dimensions, the values of both are allowed.
 fn kinds(specs: &[&'static Spec], catalogue: &Catalogue) -> Value {
     let table = |kind: Vec<&'static Spec>| {
         let mut schema = section(&Section { spec: kind[0], children: &[] }, Some("kind"), catalogue);

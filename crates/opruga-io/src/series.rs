@@ -1,5 +1,5 @@
-//! Frames for other programs: VTK (ParaView), Wavefront OBJ (Blender) and Stanford PLY (MeshLab), one file a frame.
-//! Whole runs in one file are [`crate::tracks`].
+//! Frames for other programs: VTK (ParaView), Wavefront OBJ (Blender) and Stanford PLY (MeshLab), one file per frame. [`crate::tracks`] writes whole
+//! runs to one file.
 
 pub(crate) mod vtu;
 
@@ -11,33 +11,33 @@ use std::io::{self, Write};
 /// A body in one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<'a> {
-    /// Its name, what spans its nodes, and where it lay when it came: displacements are counted from there.
+    /// Its name, its elements, and its position when it was added, from which displacements are measured.
     pub body: &'a dyn AnyBody,
     /// Positions, node by node; z is 0 in the plane [m].
     pub positions: &'a [[f64; 3]],
     /// Velocities, node by node [m/s].
     pub velocities: &'a [[f64; 3]],
-    /// What models say of every cell, such as stress.
+    /// Quantities that models compute for every cell, such as stress.
     pub cell_fields: &'a [CellField<'a>],
 }
 
-/// Numbers of every filled cell of a body, in the order of [`opruga_mesh::Cells::iter`].
+/// The values for every filled cell of a body, in the order of [`opruga_mesh::Cells::iter`].
 #[derive(Clone, Copy, Debug)]
 pub struct CellField<'a> {
     /// Its name with its unit, such as `von Mises stress [Pa]`.
     pub name: &'a str,
-    /// Numbers of a cell: 1, or 9 for a tensor, row by row.
+    /// Number of values per cell: 1, or 9 for a tensor, row by row.
     pub components: usize,
-    /// The numbers, cell by cell.
+    /// The values, cell by cell.
     pub values: &'a [f64],
 }
 
-/// A kind of file that frames are written as.
+/// A file format for frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Legacy VTK, ASCII: cells, surfaces and lines, with velocities, the number of the body, and the time.
     Vtk,
-    /// VTK XML, base64: as `Vtk`, with displacements, groups, values of cells and fields of models (stress).
+    /// VTK XML, base64: like `Vtk`, with displacements, groups, values of cells and fields of models (stress).
     Vtu,
     /// Wavefront OBJ: surfaces and lines, body by body.
     Obj,
@@ -56,7 +56,7 @@ impl Format {
         }
     }
 
-    /// Writes one frame. In the plane z is zero. Numbers have all their digits.
+    /// Writes one frame. In the plane z is zero. Numbers are written with all their digits.
     ///
     /// # Errors
     /// Those of the writer.
@@ -70,7 +70,7 @@ impl Format {
     }
 }
 
-/// Writes the list of a series of VTK files with their times, as ParaView reads it (`NAME.vtk.series`).
+/// Writes the list of a series of VTK files with their times, in the format of ParaView (`NAME.vtk.series`).
 ///
 /// # Errors
 /// Those of the writer.
@@ -81,7 +81,7 @@ pub fn write_vtk_series(out: &mut dyn Write, files: &[(String, f64)]) -> io::Res
     writeln!(out)
 }
 
-/// What is drawn of a body: nodes of every element, counted from the first node of the first body.
+/// The elements that are drawn for a body. Their nodes are counted from the first node of the first body.
 struct Elements {
     /// Elements with their VTK type.
     all: Vec<(u8, Vec<usize>)>,
@@ -96,7 +96,7 @@ const QUADRATIC_TRIANGLE: u8 = 22;
 const QUADRATIC_TETRAHEDRON: u8 = 24;
 
 impl Elements {
-    /// Filled bodies by their cells where `filled` wants them, others by what bounds them; wires always.
+    /// The cells of filled bodies if `filled` is set, otherwise the boundary; wires are always included.
     fn of(body: &dyn AnyBody, filled: bool, first: usize) -> Elements {
         let (cells, flat) = (body.cells(), body.dimension() == 2);
         let mut all = Vec::new();
@@ -142,7 +142,7 @@ fn three([x, y, z]: &[f64; 3]) -> String {
     format!("{x:e} {y:e} {z:e}")
 }
 
-/// A text that stays on its line; spaces would end a name.
+/// Makes a text safe to be a name on a line: without spaces, which would end it.
 fn word(text: &str) -> String {
     text.chars().map(|c| if c.is_control() || c.is_whitespace() { '_' } else { c }).collect()
 }
@@ -160,7 +160,7 @@ fn vtk(out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_>]) -> io:
     let points: usize = shapes.iter().map(|s| s.positions.len()).sum();
     let all = || elements.iter().enumerate().flat_map(|(body, e)| e.all.iter().map(move |e| (body, e)));
     let (count, size) = all().fold((0, 0), |(count, size), (_, e)| (count + 1, size + 1 + e.1.len()));
-    // The first line but one may have 256 bytes.
+    // The second line may have 256 bytes.
     let title: String = line(title).chars().filter(char::is_ascii).collect();
     writeln!(out, "# vtk DataFile Version 3.0\n{title}\nASCII\nDATASET UNSTRUCTURED_GRID")?;
     writeln!(out, "FIELD FieldData 1\nTIME 1 1 double\n{time:e}")?;
@@ -262,7 +262,7 @@ mod tests {
         String::from_utf8(out).expect("text")
     }
 
-    /// Nodes of the second body count on behind those of the first; OBJ counts from one, the others from zero.
+    /// The nodes of the second body are numbered after those of the first. OBJ counts from one, the others from zero.
     #[test]
     fn elements_name_the_nodes_of_their_own_body() {
         let obj = written(Format::Obj);
@@ -277,7 +277,7 @@ mod tests {
         assert!(vtk.contains("LOOKUP_TABLE default\n0\n0\n0\n1\nPOINT_DATA 5\n"), "{vtk}");
     }
 
-    /// A solid is exported with its inside to VTK, by its surface to the others.
+    /// A solid is exported to VTK with its interior, to the others by its surface.
     #[test]
     fn solids_have_cells_in_vtk_and_surfaces_elsewhere() {
         let mut mesh = Mesh::<3> {
@@ -299,7 +299,7 @@ mod tests {
         assert!(text(Format::Ply).ends_with("3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"));
     }
 
-    /// The frame of a solid as VTK XML is a mesh file again; time, displacement and fields of cells stand where VTK wants them.
+    /// The frame of a solid as VTK XML can be read as a mesh file; time, displacement and fields of cells are where VTK expects them.
     #[test]
     fn frames_in_vtk_xml_are_whole() {
         let grid = Mesh::<3>::grid([0.0; 3], [1.0; 3], [2, 1, 1]).unwrap().into_simplices().unwrap();

@@ -1,4 +1,4 @@
-//! The bytes of a scene before they are parsed: encoding, size, depth, and where a byte lies in the text.
+//! The bytes of a scene before they are parsed: encoding, size, depth, and the position of a byte in the text.
 
 use crate::limits::Limits;
 use crate::problem::{Excerpt, SceneError, unprintable};
@@ -7,14 +7,14 @@ use crate::text_errors::{Measured, TextError};
 /// The byte-order mark of UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// What a value in a list takes in the memory of a parser, in pieces of which a line and a word take one: measured with `toml` 1.2,
-/// a line or a word takes 50 bytes, a value in a list 200, a line with a key 490, a table that a dotted key makes 600. Without
-/// lines and words in the count, 30 million empty lines took 1.4 GB (test: `torture.rs`, `the_memory_of_a_parser_is_bounded`).
+/// The memory that a parser takes for a value in a list, in units of the memory for a line or a word. Measured with `toml` 1.2, a line or a word
+/// takes 50 bytes, a value in a list 200, a line with a key 490, and a table made by a dotted key 600. Without lines and words in the count, 30
+/// million empty lines took 1.4 GB (test: `torture.rs`, `the_memory_of_a_parser_is_bounded`).
 const PIECES: u64 = 4;
-/// What a table of a dotted key takes.
+/// The memory for the table of a dotted key, in the same units.
 const OF_TABLE: u64 = 12;
 
-/// A text with its name, able to say in which line a byte lies.
+/// A text with its name, which can find the line of a byte.
 #[derive(Debug)]
 pub(crate) struct Source<'a> {
     pub(crate) file: &'a str,
@@ -41,7 +41,7 @@ impl<'a> Source<'a> {
         }
         let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
         if bytes.starts_with(MARK) {
-            // The parser would skip a second one: two programs took the file for one without a mark.
+            // The parser would skip a second one. It occurs if two programs took the file for one without a mark.
             return Err(Source { file, text: "" }.mark(error(TextError::TwoMarks {}), 0, 0));
         }
         let text = match core::str::from_utf8(bytes) {
@@ -62,7 +62,7 @@ impl<'a> Source<'a> {
         Ok(source)
     }
 
-    /// Checks a value that stands outside of a scene, as on the command line: the same depth and the same size.
+    /// Checks a value outside a scene, such as one on the command line, for the same depth and size.
     ///
     /// # Errors
     /// `scene.depth` or `scene.too_large`, without a location.
@@ -83,7 +83,7 @@ impl<'a> Source<'a> {
         (before.bytes().filter(|b| *b == b'\n').count() + 1, before[line_start..].chars().count() + 1)
     }
 
-    /// The byte at a line and a column, both from 1; columns count characters. The end of the text where there is none.
+    /// The byte at a line and a column, both from 1; columns count characters. The end of the text if there is no such position.
     pub(crate) fn offset(&self, line: usize, column: usize) -> usize {
         let mut start = 0;
         for _ in 1..line {
@@ -96,7 +96,7 @@ impl<'a> Source<'a> {
         start + rest.char_indices().nth(column.saturating_sub(1)).map_or(rest.len(), |(k, _)| k)
     }
 
-    /// Adds place and excerpt to an error.
+    /// Adds location and excerpt to an error.
     pub(crate) fn mark(&self, mut error: SceneError, start: usize, end: usize) -> SceneError {
         let start = self.boundary(start);
         let end = self.boundary(end.max(start));
@@ -145,13 +145,13 @@ impl<'a> Source<'a> {
         offset
     }
 
-    /// One pass that knows strings and comments and counts how deep tables and arrays are nested (by brackets and by
-    /// dots in keys) and what a parser would make of the text, before it allocates or recurses. `value`: the text is that of
-    /// a value, and not of a whole scene.
+    /// Scans the text once, with knowledge of strings and comments. Counts the depth of nested tables and arrays (by brackets and by dots in keys)
+    /// and the memory that a parser would take for the text, before the parser allocates or recurses. `value` says that the text is a value and not a
+    /// whole scene.
     fn check_nesting(&self, limits: &Limits, value: bool) -> Result<(), SceneError> {
         let too_deep = |at: usize| self.mark(SceneError::of(TextError::Depth { most: limits.depth }), at, at + 1);
         let bytes = self.text.as_bytes();
-        // An open bracket: whether it is an inline table, and how deep the key before it was.
+        // For every open bracket: whether it is an inline table, and the depth of the key before it.
         let mut open: Vec<(bool, usize)> = Vec::new();
         let (mut depth, mut key, mut in_key, mut header, mut pieces) = (0usize, 0usize, !value, 0usize, 0u64);
         let mut at = 0;
@@ -182,7 +182,7 @@ impl<'a> Source<'a> {
                 }
                 b' ' | b'\t' | b'\r' | b'\n' => {}
                 b'[' if line_begins && open.is_empty() => {
-                    // A header: its depth holds for all lines below it.
+                    // A header: its depth applies to all lines below it.
                     at += usize::from(bytes.get(at + 1) == Some(&b'['));
                     let end = end_of_header(bytes, at + 1);
                     header = 1 + bytes[at..end].iter().filter(|b| **b == b'.').count();
@@ -234,7 +234,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// One past the end of a string that begins at `at`; an unclosed one ends with its line or the text.
+/// The index after a string that begins at `at`; an unclosed string ends with its line or the text.
 pub(crate) fn end_of_string(bytes: &[u8], at: usize) -> usize {
     let quote = bytes[at];
     let long = bytes[at..].starts_with(&[quote; 3]);
@@ -244,7 +244,7 @@ pub(crate) fn end_of_string(bytes: &[u8], at: usize) -> usize {
             k += 2;
         } else if long && bytes[k..].starts_with(&[quote; 3]) {
             k += 3;
-            // Two more quotes may belong to the text.
+            // Two more quotes may belong to the string.
             while k < bytes.len() && bytes[k] == quote {
                 k += 1;
             }

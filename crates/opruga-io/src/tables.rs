@@ -15,7 +15,7 @@ pub struct FinalBody<'a> {
     pub velocities: &'a [[f64; 3]],
 }
 
-/// Writes `final.csv` of a world of so many dimensions: `body,node,x,y[,z],vx,vy[,vz]`, 17 significant digits.
+/// Writes `final.csv` of a world of this dimension: `body,node,x,y[,z],vx,vy[,vz]`, 17 significant digits.
 ///
 /// # Errors
 /// Those of the writer.
@@ -27,7 +27,7 @@ pub fn write_final<'a>(
     write_final_with(out, dimension, &[], bodies.map(|body| (body, Vec::new())))
 }
 
-/// Writes `final.csv` with further columns: for every body its nodes, and a row of further numbers for each.
+/// Writes `final.csv` with additional columns; for every body, these have one row of numbers per node.
 ///
 /// # Errors
 /// Those of the writer.
@@ -56,7 +56,7 @@ pub fn write_final_with<'a>(
     Ok(())
 }
 
-/// A table of numbers: a head, then rows of as many numbers; `diagnostics.csv` is one.
+/// A table of numbers: a header and rows with the same number of columns; `diagnostics.csv` is one.
 #[derive(Debug)]
 pub struct NumberTable {
     columns: Vec<String>,
@@ -68,7 +68,7 @@ impl NumberTable {
     pub fn new(columns: Vec<String>) -> NumberTable {
         NumberTable { columns, rows: Vec::new() }
     }
-    /// Adds a row. Too few numbers are filled up with NaN, too many are an error of the caller and are left out.
+    /// Adds a row. Missing numbers become NaN. Too many numbers are a fault of the caller; the surplus is dropped.
     pub fn push(&mut self, row: &[f64]) {
         debug_assert_eq!(row.len(), self.columns.len(), "a row fits its head");
         self.rows.extend((0..self.columns.len()).map(|k| row.get(k).copied().unwrap_or(f64::NAN)));
@@ -105,27 +105,27 @@ impl core::fmt::Display for Digits {
     }
 }
 
-/// A text as a cell of a table: in quotes where it holds commas, quotes or ends of lines.
+/// A text as a cell of a table: in quotes if it contains commas, quotes or line ends.
 pub fn cell(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_string() }
 }
 
-/// What `summary.json` says about a run; `schema` is added when it is written.
+/// The contents of `summary.json` for a run; `schema` is added when it is written.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
     /// The name of the scene.
     pub scene: String,
     /// 2 or 3.
     pub dimension: usize,
-    /// How many bodies there are at the end.
+    /// The number of bodies at the end.
     pub bodies: usize,
-    /// How many nodes.
+    /// The number of nodes.
     pub nodes: usize,
-    /// How many elements: springs, edges of the gas, triangles …
+    /// The number of elements: springs, edges of the gas, triangles …
     pub elements: usize,
     /// The kinds of the models in use.
     pub models: Vec<String>,
-    /// The kind of the integrator; where bodies have their own, all kinds, with commas between them.
+    /// The kind of the integrator; if bodies have their own, all kinds, separated by commas.
     pub integrator: String,
     /// The length of a frame [s].
     pub frame: f64,
@@ -133,19 +133,19 @@ pub struct Summary {
     pub substeps: u32,
     /// The length of a substep [s].
     pub h: f64,
-    /// How many substeps were taken, those before the checkpoint of a resumed run not counted.
+    /// The number of substeps, without those before the checkpoint of a resumed run.
     pub steps: u64,
-    /// Simulated time of the checkpoint from which the run went on [s]; none where it began at the beginning.
+    /// Simulated time of the checkpoint from which the run was resumed [s]; none if it was not resumed.
     pub resumed_at: Option<f64>,
     /// Simulated time at the end [s].
     pub time: f64,
     /// Wall-clock time [s].
     pub wall_seconds: f64,
-    /// Wall-clock time per node and substep [ns]; none where no step was taken.
+    /// Wall-clock time per node and substep [ns]; none if there was no step.
     pub nanoseconds_per_node_step: Option<f64>,
-    /// The path of the processor's instructions: `scalar`, `avx2`, `avx512` …
+    /// The instruction set in use: `scalar`, `avx2`, `avx512` …
     pub simd: String,
-    /// How many threads.
+    /// The number of threads.
     pub threads: usize,
     /// `everywhere` or `this_cpu_class`.
     pub reproducibility: String,
@@ -155,26 +155,26 @@ pub struct Summary {
     pub momentum: MomentumSummary,
     /// 16 hexadecimal digits over positions, then velocities.
     pub state_hash: String,
-    /// What implicit integrators did; left out where there is none.
+    /// Statistics of implicit integrators; omitted if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub solver: Option<SolverSummary>,
-    /// How good the cells of bodies are; left out where no body has any.
+    /// The quality of the cells of bodies; omitted if no body has cells.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cells: Vec<CellSummary>,
-    /// What was odd, counted.
+    /// Warnings with their counts.
     pub warnings: Vec<WarningSummary>,
     /// The files that were written.
     pub files: Vec<String>,
 }
 
-/// How good the cells of a body are at rest; bodies of one mesh have one entry, by the name of the first.
+/// The quality of the cells of a body at rest; bodies with the same mesh have one entry, named after the first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CellSummary {
     /// The name of the body.
     pub body: String,
-    /// How many cells it has.
+    /// The number of cells.
     pub cells: usize,
-    /// The smallest angle: between faces of tetrahedra, between sides of others [°].
+    /// The smallest angle [°]: between faces of tetrahedra, between sides of other cells.
     pub smallest_angle: f64,
     /// The largest angle [°].
     pub largest_angle: f64,
@@ -203,28 +203,28 @@ pub struct EnergySummary {
     pub closure: f64,
 }
 
-/// What implicit integrators did since the beginning.
+/// Statistics of implicit integrators since the beginning.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct SolverSummary {
-    /// Systems of equations, one a body and step.
+    /// Number of systems of equations, one per body and step.
     pub systems: u64,
     /// Iterations of Newton's method.
     pub newton_iterations: u64,
     /// Products with the matrix, or factorisations.
     pub linear_iterations: u64,
-    /// The largest force out of balance on a node at the end of a step [N].
+    /// The largest residual at a node at the end of a step [N].
     pub largest_residual: f64,
-    /// Steps that counted though they had not converged.
+    /// Number of steps that were accepted without convergence.
     pub accepted: u64,
-    /// Steps that were made in two halves.
+    /// Number of steps that were divided into halves.
     pub halved: u64,
-    /// Steps in real time that may be worse than that setting promises.
+    /// Number of real-time steps that may be less accurate than that setting promises.
     pub cut_off: u64,
-    /// The most that such a step left out of balance, as the way that it would move nodes if each stood alone [m].
+    /// The largest residual of such a step, as the displacement that it would cause if each node stood alone [m].
     pub largest_left: f64,
-    /// How often a body that rested in a degenerate shape was displaced at random (`[world] unfold = true`).
+    /// How often a body at rest in a degenerate shape was displaced at random (`[world] unfold = true`).
     pub disturbed: u64,
-    /// How often that was in vain.
+    /// How often such a displacement had no effect.
     #[serde(rename = "odd_rests")]
     pub stayed_degenerate: u64,
 }
@@ -245,7 +245,7 @@ pub struct WarningSummary {
     pub code: String,
     /// One sentence.
     pub message: String,
-    /// How often.
+    /// How often it occurred.
     pub count: u64,
 }
 
@@ -256,7 +256,7 @@ impl From<&Warning> for WarningSummary {
 }
 
 impl Summary {
-    /// The object of `summary.json`, with `schema = 1` in front. Numbers that are not finite become null.
+    /// The object of `summary.json`, with `schema = 1` first. Numbers that are not finite become null.
     pub fn to_json(&self) -> serde_json::Value {
         let mut object = serde_json::Map::new();
         object.insert("schema".into(), 1.into());

@@ -1,4 +1,4 @@
-//! The text of `opruga new NAME`: a scene to begin with.
+//! The text that `opruga new NAME` writes: a scene to start from.
 
 use crate::problem::unprintable;
 

@@ -1,15 +1,15 @@
-//! What is wrong with the text of a scene, with overrides and with files, before anything in them is understood.
+//! Errors in the text of a scene, in overrides and in files, before their contents are interpreted.
 
 use crate::scene::errors::ValueKind;
 use opruga_math::{messages, terms};
 
 terms! {
-    /// What has a size.
+    /// Things that have a size.
     pub(crate) enum Measured = "part.measured" { Scene = "the scene", File = "the file" }
 }
 
 messages! {
-    /// What is wrong with a text.
+    /// Errors in a text.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum TextError {
         "scene.syntax" #[error("the text is not TOML: a value is missing")]
@@ -42,7 +42,7 @@ messages! {
         Size { what: Measured, size: u64, most: u64 },
     }
 
-    /// What helps where a text is wrong.
+    /// What helps if a text is wrong.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum TextHint {
         "part.text_hint" #[error("a `{bracket}` is missing between here and line {line}")]
@@ -57,7 +57,7 @@ messages! {
         Sweep {},
     }
 
-    /// What is wrong with a file.
+    /// Errors in a file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum FileError {
         "read.failed" #[error("the file cannot be read: {reason}")]
@@ -80,7 +80,7 @@ messages! {
         Outside { name: String },
     }
 
-    /// What is wrong with an override.
+    /// Errors in an override.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum OverrideError {
         "set.syntax" #[error("`{argument}` is not an override")] #[value("{argument}")] #[allowed("PATH=VALUE")]

@@ -1,20 +1,20 @@
-//! Whole runs in one file: point caches of Blender and others (PC2, MDD), and glTF with one morph target a frame.
+//! Whole runs in one file: point caches of Blender and others (PC2, MDD), and glTF with one morph target per frame.
 //!
-//! A point cache holds positions alone, for a mesh with the same nodes in the same order: the OBJ series writes that. glTF brings its surface along.
+//! A point cache contains only positions, for a mesh with the same nodes in the same order, which the OBJ series contains. glTF includes its surface.
 
 use opruga_mesh::triangle_parts;
 use opruga_world::AnyBody;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
-/// Where the nodes of one body were, frame by frame.
+/// The positions of the nodes of one body, frame by frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Track {
     /// Name of the body.
     pub name: String,
     /// Number of nodes.
     pub nodes: usize,
-    /// Triangles of its surface, outward.
+    /// Triangles of its surface, facing outward.
     pub triangles: Vec<[u32; 3]>,
     /// Its wires, and outlines in the plane.
     pub lines: Vec<[u32; 2]>,
@@ -46,7 +46,7 @@ impl Track {
         track
     }
 
-    /// Adds a frame; one of another number of nodes is left out.
+    /// Adds a frame; a frame with another number of nodes is ignored.
     pub fn add(&mut self, time: f64, positions: &[[f64; 3]]) {
         if positions.len() == self.nodes {
             self.times.push(time as f32);
@@ -54,12 +54,12 @@ impl Track {
         }
     }
 
-    /// Bytes that its frames take.
+    /// Memory of its frames [bytes].
     pub fn bytes(&self) -> usize {
         12 * self.positions.len()
     }
 
-    /// Writes the point cache PC2: from its first frame on, one sample a frame of `length` seconds.
+    /// Writes a PC2 point cache: beginning with its first frame, one sample per frame of `length` seconds.
     ///
     /// # Errors
     /// Those of the writer.
@@ -79,7 +79,7 @@ impl Track {
         Ok(())
     }
 
-    /// Writes the motion file MDD: times and positions, highest byte first.
+    /// Writes the motion file MDD: times and positions, big-endian.
     ///
     /// # Errors
     /// Those of the writer.
@@ -96,7 +96,7 @@ impl Track {
     }
 }
 
-/// Bytes of a glTF file and what is said of their parts.
+/// The bytes of a glTF file and the descriptions of their parts.
 #[derive(Default)]
 struct Binary {
     bytes: Vec<u8>,
@@ -123,7 +123,7 @@ impl Binary {
         self.add(&bytes, 5126, kind, count, target)
     }
 
-    /// Adds vectors with the bounds that glTF wants of positions.
+    /// Adds vectors with the bounds that glTF requires for positions.
     fn vectors(&mut self, values: &[[f32; 3]]) -> usize {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         for x in values {
@@ -139,10 +139,10 @@ impl Binary {
     }
 }
 
-/// Writes bodies as binary glTF 2.0 (`.glb`): each a mesh whose frames are morph targets, one after the other in an animation.
+/// Writes bodies as binary glTF 2.0 (`.glb`). Each is a mesh whose frames are morph targets, played one after the other by an animation.
 ///
 /// # Errors
-/// Those of the writer; `InvalidInput` where the file would be larger than 4 GiB, which the format cannot hold.
+/// Those of the writer; `InvalidInput` if the file would exceed 4 GiB, the limit of the format.
 ///
 /// # Source
 /// Khronos Group, glTF 2.0 specification, sections 3.7.2.2 (morph targets), 3.11 (animations), 4.4 (binary).
@@ -152,7 +152,7 @@ pub fn write_glb(out: &mut dyn Write, title: &str, tracks: &[Track]) -> io::Resu
     for track in tracks.iter().filter(|track| !track.times.is_empty() && track.nodes > 0) {
         let frames: Vec<&[[f32; 3]]> = track.positions.chunks_exact(track.nodes).collect();
         let base = binary.vectors(frames[0]);
-        // Targets say how far nodes are from the first frame.
+        // Targets contain displacements from the first frame.
         let mut targets = Vec::new();
         for frame in &frames[1..] {
             let moved: Vec<[f32; 3]> =
@@ -177,7 +177,7 @@ pub fn write_glb(out: &mut dyn Write, title: &str, tracks: &[Track]) -> io::Resu
         let mut mesh = json!({"name": track.name, "primitives": primitives});
         if !targets.is_empty() {
             mesh["weights"] = json!(vec![0; targets.len()]);
-            // In frame k only target k − 1 counts; in between, glTF mixes two of them.
+            // In frame k only target k − 1 has weight; between frames, glTF interpolates between two targets.
             let mut weights = vec![0f32; frames.len() * targets.len()];
             for k in 1..frames.len() {
                 weights[k * targets.len() + k - 1] = 1.0;
@@ -211,7 +211,7 @@ pub fn write_glb(out: &mut dyn Write, title: &str, tracks: &[Track]) -> io::Resu
         root["buffers"] = json!([{"byteLength": binary.bytes.len()}]);
     }
 
-    // Chunks fill up to multiples of four bytes.
+    // Chunks are padded to multiples of four bytes.
     let mut text = serde_json::to_vec(&root)?;
     text.resize(text.len().next_multiple_of(4), b' ');
     binary.bytes.resize(binary.bytes.len().next_multiple_of(4), 0);
@@ -267,7 +267,7 @@ mod tests {
         );
     }
 
-    /// What glTF's own rules ask of sizes, offsets and counts.
+    /// The requirements of glTF for sizes, offsets and counts.
     #[test]
     fn gltf_is_whole_and_its_weights_choose_one_target_a_frame() {
         let mut glb = Vec::new();

@@ -4,7 +4,7 @@ use opruga_math::message::AnyMessage;
 use opruga_math::{messages, terms};
 
 terms! {
-    /// What could not be done with a folder.
+    /// The operation on a folder that failed.
     pub enum Doing = "part.doing" { Made = "made", Written = "written", Locked = "locked", Read = "read" }
 }
 
@@ -51,7 +51,7 @@ messages! {
         "write.twice" #[error("{one} and {other} are one file: only the last would be left")] #[hint("choose another name for one of them")]
         OneFile { one: Use, other: Use },
     }
-    /// What a file is to a call.
+    /// The role of a file in a call.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Use {
         "part.use" #[error("the input")]

@@ -1,4 +1,4 @@
-//! From the nodes and elements of a file to a body, or to what is wrong with them.
+//! Makes a body from the nodes and elements of a file, or reports what is wrong with them.
 
 use super::errors::{CornerOrder, MeshFileError, MeshFileNotice};
 use super::found::{Found, Item, Kind};
@@ -9,27 +9,28 @@ use opruga_math::message::{AnyMessage, Setting};
 use opruga_mesh::{Mesh, THIN_ELEMENT};
 use std::collections::BTreeMap;
 
-/// What may be mended where a file is not sound.
+/// What may be repaired in a file that is not sound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mending {
-    /// Inverted cells are turned round, and counted.
+    /// Flips inverted cells, and counts them.
     pub turn_inverted: bool,
-    /// Nodes that no cell names are left out, and counted.
+    /// Drops nodes that no cell uses, and counts them.
     pub leave_out_unreferenced: bool,
 }
 
-/// Makes a body of what a file, or one of nodes and one of elements, holds; nodes keep their order. Returns what was left out or mended, counted.
+/// Makes a body from the contents of a file, or of a file of nodes and a file of elements. Nodes keep their order. Also returns what was dropped or
+/// repaired, with counts.
 ///
 /// # Errors
-/// `mesh.empty`, `mesh.dimension`, `mesh.mixed_dimension`, `mesh.degenerate_element`, `mesh.duplicate_element`, `mesh.inverted`,
-/// `mesh.unreferenced`, `mesh.non_manifold`, with the place of the element or node.
+/// `mesh.empty`, `mesh.dimension`, `mesh.mixed_dimension`, `mesh.degenerate_element`, `mesh.duplicate_element`, `mesh.inverted`, `mesh.unreferenced`,
+/// `mesh.non_manifold`, with the position of the element or node.
 pub(super) fn assemble<const D: usize>(
     mut found: Found,
     nodes: &Scanner<'_>,
     items: &Scanner<'_>,
     mending: Mending,
 ) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
-    // Nodes keep their order, so these are theirs as they stand.
+    // Nodes keep their order, so their values can be used as they are.
     let node_values = std::mem::take(&mut found.node_values);
     let work = Assembly { found: &found, nodes, items };
     let dimension = work.dimension::<D>()?;
@@ -37,7 +38,7 @@ pub(super) fn assemble<const D: usize>(
     let stored = Stored::of(&found.positions, found.items.iter().map(Item::nodes), found.single);
     notices.extend(stored.warning().map_err(|error| work.file(error))?);
     let mut mesh = Mesh::<D> { positions: work.positions(&mut notices)?, node_values, ..Mesh::default() };
-    // Cells are counted kind by kind: `order` says which item each of them was.
+    // Cells are counted kind by kind; `order` gives the item of each cell.
     let order = work.order(dimension);
     work.distinct(&order)?;
     work.fill(&mut mesh, &order);
@@ -54,7 +55,7 @@ pub(super) fn assemble<const D: usize>(
 
 struct Assembly<'a> {
     found: &'a Found,
-    /// Where nodes stand, and where elements do.
+    /// The file with the nodes, and the file with the elements.
     nodes: &'a Scanner<'a>,
     items: &'a Scanner<'a>,
 }
@@ -119,7 +120,7 @@ impl Assembly<'_> {
         Ok(points.iter().map(|p| core::array::from_fn(|d| p[d])).collect())
     }
 
-    /// Items of the highest dimension, kind by kind in the order of `Cells`.
+    /// Items of the highest dimension, sorted by kind in the order of `Cells`.
     fn order(&self, dimension: usize) -> Vec<u32> {
         let rank = |kind: Kind| match kind {
             Kind::QuadraticTriangle | Kind::QuadraticTetrahedron => 1,
@@ -132,7 +133,7 @@ impl Assembly<'_> {
         order
     }
 
-    /// Refuses elements that name a node twice, and two elements with the same nodes.
+    /// Refuses elements that name a node twice, and pairs of elements with the same nodes.
     fn distinct(&self, order: &[u32]) -> Result<(), SceneError> {
         let mut keys: Vec<([u32; 10], u32)> = Vec::with_capacity(order.len());
         for &k in order {
@@ -180,13 +181,13 @@ impl Assembly<'_> {
         }
     }
 
-    /// Elements of lower dimension only name parts of cells: refuses those that are no part of one.
+    /// Refuses elements of lower dimension that are not part of a cell: such elements only name parts of cells.
     fn lower(&self, dimension: usize, order: &[u32], nodes: usize) -> Result<(), SceneError> {
         let items = &self.found.items;
         if order.len() == items.len() {
             return Ok(());
         }
-        // The cells at every node, list by list.
+        // The cells at every node, as consecutive lists.
         let mut starts = vec![0u32; nodes + 1];
         let ends = || order.iter().flat_map(|k| items[*k as usize].nodes().iter().map(move |node| (*node, *k)));
         ends().for_each(|(node, _)| starts[node as usize + 1] += 1);
@@ -211,7 +212,7 @@ impl Assembly<'_> {
         Ok(())
     }
 
-    /// Refuses or turns cells that are inverted, refuses those without extent.
+    /// Refuses or flips inverted cells, and refuses degenerate ones.
     fn upright<const D: usize>(
         &self,
         mesh: &mut Mesh<D>,
@@ -243,7 +244,7 @@ impl Assembly<'_> {
             }
         }
         let turned = |measures: &opruga_mesh::CellMeasure| measures.greatest < 0.0;
-        // What is negative at one node only is folded, and turning does not help.
+        // A cell with a negative measure at only some of its nodes is folded; flipping does not help.
         let hopeless = inverted.iter().find(|(_, measures)| !turned(measures));
         if let Some((cell, measures)) = hopeless.or(inverted.first().filter(|_| !mending.turn_inverted)) {
             let item = &self.found.items[order[*cell as usize] as usize];
@@ -275,7 +276,7 @@ impl Assembly<'_> {
             return self.topology(error);
         };
         let [a, b] = edges[0];
-        // The last cell at this face is one too many.
+        // The last cell at this face is the surplus one.
         let cell =
             mesh.cells.iter().enumerate().filter(|(_, (_, _, nodes))| nodes.contains(&a) && nodes.contains(&b)).last();
         let error = MeshFileError::Crowded { first: self.number(a), second: self.number(b), edges: edges.len() };

@@ -1,4 +1,4 @@
-//! What readers of mesh files refuse and leave out.
+//! Errors and notices of the readers of mesh files.
 
 use super::ENDINGS;
 use super::terms::{ElementName, Expected};
@@ -13,18 +13,18 @@ fn one(name: &ElementName) -> String {
     format!("{} {name}", if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
 }
 
-/// How many of the cells are like the one that is named.
+/// Says how many of the cells share the fault of the cell that is named.
 fn among(count: usize, cells: usize) -> String {
     if count == 1 { String::new() } else { format!(" ({count} of {cells} are)") }
 }
 
 terms! {
-    /// What helps where a number cannot be read.
+    /// What helps if a number cannot be read.
     pub(crate) enum NumberHint = "part.number_hint" { Comma = "write a point, not a comma" }
 }
 
 terms! {
-    /// In which order the corners of a cell stand.
+    /// The order of the corners of a cell.
     pub(crate) enum CornerOrder = "part.corner_order" {
         Plane = "a positive area: corners counter-clockwise",
         Space = "a positive volume: the last corner on the side where the others run counter-clockwise",
@@ -32,7 +32,7 @@ terms! {
 }
 
 messages! {
-    /// Which numbers an array or a word may hold.
+    /// The numbers that an array or a word may hold.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum NumberRange {
         "part.number_range" #[error("a number such as 1.5 or -2e-3")]
@@ -43,7 +43,7 @@ messages! {
         Whole { least: i128, most: i128 },
     }
 
-    /// Which nodes or entities a file has.
+    /// The nodes or entities that a file has.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum Listed {
         "part.listed" #[error("one of the {count} nodes from {first} to {last}")]
@@ -58,7 +58,7 @@ messages! {
         Entities { count: usize, first: i32, last: i32 },
     }
 
-    /// A word in quotes that should stand somewhere.
+    /// A word in quotes that is expected somewhere.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum Keyword {
         "part.keyword" #[error("`{word}`")]
@@ -67,7 +67,7 @@ messages! {
         Two { first: &'static str, second: &'static str },
     }
 
-    /// What is wrong with words and numbers of any format; the code is that of the format.
+    /// Errors in words and numbers of any format; the code is that of the format.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ScanError {
         "part.scan" #[error("the file ends where {wanted} should follow")]
@@ -100,7 +100,7 @@ messages! {
         CellValuesTwice { name: String },
     }
 
-    /// What is wrong with the nodes and elements of a file of any format.
+    /// Errors in the nodes and elements of a file of any format.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum MeshFileError {
         "mesh.empty" #[error("the file is empty")] #[value("0 bytes")] #[allowed("a mesh")]
@@ -186,7 +186,7 @@ messages! {
         LooseNodes { count: usize, first: u64, leave_out: Setting },
     }
 
-    /// What of a mesh file is left out or mended.
+    /// Parts of a mesh file that are omitted or repaired.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum MeshFileNotice {
         "mesh.left_out" #[error("the section ${section} is left out")] #[value("{section}")]
@@ -215,7 +215,7 @@ messages! {
 }
 
 messages! {
-    /// Why a file is not read as a mesh.
+    /// Reasons why a file is not read as a mesh.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum EndingError {
         "shape.format" #[error("files ending in `.{ending}` cannot be read")] #[value("{name}")] #[allowed("a file ending in {ENDINGS}")]

@@ -1,11 +1,11 @@
-//! What readers of single formats of meshes refuse.
+//! Errors of the readers of single mesh formats.
 
 use super::errors::Listed;
 use super::terms::{ElementName, Expected};
 use opruga_math::messages;
 
 messages! {
-    /// What is wrong with a file of Gmsh.
+    /// Errors in a Gmsh file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum GmshError {
         "msh.syntax" #[error("`{word}` stands between sections")] #[value("{word}")] #[allowed("a section such as $Nodes")]
@@ -66,7 +66,7 @@ messages! {
         NoEntity { entity: i32, dimension: usize, listed: Listed },
     }
 
-    /// What is wrong with a file of Medit.
+    /// Errors in a Medit file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum MeditError {
         "medit.version" #[error("version `{version}` cannot be read")] #[value("{version}")] #[allowed("1 to 4")]
@@ -93,7 +93,7 @@ messages! {
         BehindEnd { word: String },
     }
 
-    /// What is wrong with a file of MFEM.
+    /// Errors in an MFEM file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum MfemError {
         "mfem.version" #[error("version `{version}` cannot be read")] #[value("{version}")] #[allowed("v1.0, v1.2, v1.3")]
@@ -120,7 +120,7 @@ messages! {
         Coordinates { coordinates: usize, wanted: Counts },
     }
 
-    /// What is wrong with the files of TetGen.
+    /// Errors in TetGen files.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum TetgenError {
         "tetgen.syntax" #[error("nodes have {coordinates} coordinates")] #[value("{coordinates}")] #[allowed("2 or 3")]
@@ -138,7 +138,7 @@ messages! {
 }
 
 opruga_math::terms! {
-    /// The elements of MFEM of a dimension, by their numbers.
+    /// The elements of MFEM in one dimension, with their numbers.
     pub(crate) enum Geometry = "part.geometry" {
         Point = "0 (point)",
         Line = "1 (line)",
@@ -148,6 +148,6 @@ opruga_math::terms! {
 }
 
 opruga_math::terms! {
-    /// How many coordinates there may be.
+    /// The allowed numbers of coordinates.
     pub(crate) enum Counts = "part.counts" { OneToThree = "1, 2 or 3", TwoOrThree = "2 or 3", Three = "3" }
 }

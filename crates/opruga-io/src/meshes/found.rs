@@ -9,12 +9,12 @@ use opruga_mesh::NodeValues;
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Elements that Opruga knows, numbered as in [`opruga_mesh::Cells`].
+/// Element types that Opruga knows, numbered as in [`opruga_mesh::Cells`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
     Point,
     Line,
-    /// Ends, then the middle.
+    /// The ends, then the middle.
     QuadraticLine,
     Triangle,
     Quadrilateral,
@@ -25,7 +25,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// Number of dimensions that it spans.
+    /// The dimension of the element.
     pub(crate) fn dimension(self) -> usize {
         match self {
             Kind::Point => 0,
@@ -70,7 +70,7 @@ pub(crate) struct Item {
     nodes: [u32; 10],
     /// Its number in the file.
     pub(crate) number: u64,
-    /// The byte where it stands.
+    /// The byte at which it begins.
     pub(crate) offset: usize,
 }
 
@@ -80,12 +80,12 @@ impl Item {
     }
 }
 
-/// What a reader found.
+/// The contents of a file, as a reader found them.
 #[derive(Debug, Default)]
 pub(crate) struct Found {
     /// Positions of nodes in the order of the file [m]; z is 0 where the file has none.
     pub(crate) positions: Vec<[f64; 3]>,
-    /// The byte where each node stands; empty where the format lists no single nodes.
+    /// The byte at which each node begins; empty if the format does not list single nodes.
     pub(crate) node_offsets: Vec<usize>,
     /// The number that the file gives each node.
     pub(crate) node_numbers: Vec<u64>,
@@ -94,13 +94,13 @@ pub(crate) struct Found {
     pub(crate) item_groups: BTreeMap<String, Vec<u32>>,
     /// Named sets of nodes.
     pub(crate) node_groups: BTreeMap<String, Vec<u32>>,
-    /// Named numbers, one per item; NaN for items that have none.
+    /// Named numbers, one per item; NaN for items without one.
     pub(crate) item_values: BTreeMap<String, Vec<f64>>,
-    /// Named numbers and vectors of nodes; NaN for nodes that have none.
+    /// Named numbers and vectors of nodes; NaN for nodes without one.
     pub(crate) node_values: BTreeMap<String, NodeValues>,
-    /// What is left out, up to a number.
+    /// The omitted parts, up to a number.
     notices: Vec<SceneError>,
-    /// What more is left out.
+    /// The number of omitted parts that are not listed.
     more: usize,
     /// Values of items and nodes, and memberships in groups.
     given: u64,
@@ -116,14 +116,14 @@ impl Found {
         self.node_offsets.push(offset);
     }
 
-    /// Adds an element whose nodes stand in the order of Opruga.
+    /// Adds an element whose nodes are in the order of Opruga.
     pub(super) fn item(&mut self, kind: Kind, nodes: &[u32], number: u64, offset: usize) {
         let mut own = [0; 10];
         own[..nodes.len()].copy_from_slice(nodes);
         self.items.push(Item { kind, nodes: own, number, offset });
     }
 
-    /// Adds the item that was added last to a group.
+    /// Adds the last item to a group.
     pub(super) fn join(&mut self, group: String) {
         let last = self.items.len() as u32 - 1;
         let list = self.item_groups.entry(group).or_default();
@@ -132,7 +132,7 @@ impl Found {
         }
     }
 
-    /// Refuses elements with a number that another one has.
+    /// Refuses elements whose number another element already has.
     ///
     /// # Errors
     /// `mesh.duplicate_element` with the offset of the second one.
@@ -144,7 +144,7 @@ impl Found {
         Err(scanner.error(MeshFileError::ElementTwice { number }, offset))
     }
 
-    /// Adds the last items, from one on, to groups, each of them to all.
+    /// Adds all items from `first` on to each of the groups.
     ///
     /// # Errors
     /// `limit.values` for too many.
@@ -157,10 +157,10 @@ impl Found {
         Ok(())
     }
 
-    /// Adds values of the nodes from one on, as many as follow it; those before it that have none are NaN.
+    /// Adds values of consecutive nodes, beginning at a given node. Earlier nodes without a value are NaN.
     ///
     /// # Errors
-    /// `limit.values`; `mesh.components` where nodes before them have another number of components under this name.
+    /// `limit.values`; `mesh.components` if earlier nodes have another number of components under this name.
     pub(super) fn values_of_nodes(
         &mut self,
         name: &str,
@@ -194,7 +194,7 @@ impl Found {
         VALUES.check(self.given)
     }
 
-    /// Says what of the file has no place in a body at rest.
+    /// Reports a part of the file that a body at rest has no use for.
     pub(super) fn left_out(&mut self, what: MeshFileNotice) {
         if self.notices.len() < NOTICES {
             self.notices.push(SceneError::of(what));
@@ -203,11 +203,11 @@ impl Found {
         }
     }
 
-    /// All that is left out: what is not listed is counted.
+    /// All notices; those beyond the listed ones are counted.
     pub(crate) fn all_notices(&self) -> Vec<SceneError> {
         let mut all = self.notices.clone();
         if self.more > 0 {
-            // The count is one of those that are listed.
+            // The count takes the place of one notice.
             all.truncate(NOTICES - 1);
             let count = self.more + self.notices.len() - all.len();
             all.push(SceneError::of(MeshFileNotice::More { count }));
@@ -216,17 +216,17 @@ impl Found {
     }
 }
 
-/// Whether values of so many components are kept for every node: numbers, and vectors of the plane and of space. Tensors have no use here.
+/// Whether values with this number of components are kept for every node: numbers, and vectors of the plane and of space. Tensors are not used.
 pub(super) fn is_kept(components: u64) -> bool {
     (1..=3).contains(&components)
 }
 
-/// From the numbers of a file to indices in a list.
+/// The map from the numbers of a file to indices in a list.
 pub(super) struct Numbers(Vec<(u64, u32)>);
 
 impl Numbers {
     /// # Errors
-    /// `mesh.duplicate_node` for a number that comes twice.
+    /// `mesh.duplicate_node` for a number that occurs twice.
     pub(super) fn of(found: &Found, scanner: &Scanner<'_>) -> Result<Numbers, SceneError> {
         let mut pairs: Vec<(u64, u32)> =
             found.node_numbers.iter().zip(0..).map(|(number, node)| (*number, node)).collect();
@@ -238,7 +238,7 @@ impl Numbers {
         Ok(Numbers(pairs))
     }
 
-    /// The node of a number that an element, or else a value, names at a byte of the file.
+    /// Returns the node whose number an element (or a value) names at a byte of the file.
     ///
     /// # Errors
     /// `mesh.index`.

@@ -1,7 +1,8 @@
 //! Gmsh, versions 2.2 and 4.1, as text or as bytes of either order: sections, names of groups, values of elements and nodes.
 //!
-//! Physical groups become groups: those of points, curves and surfaces of nodes, those of what fills the body of nodes and of cells. A group without a
-//! name is called after its dimension and number: `curve 3`. `$ElementData` of one component becomes a value of cells, `$NodeData` of up to three a value of nodes.
+//! Physical groups become groups. Those of points, curves and surfaces become groups of nodes; those of the elements that fill the body become groups
+//! of nodes and of cells. A group without a name is named after its dimension and number, for example `curve 3`. `$ElementData` with one component
+//! becomes a value of cells; `$NodeData` with up to three components becomes a value of nodes.
 //!
 //! # Source
 //! C. Geuzaine, J.-F. Remacle, Gmsh reference manual, "MSH file format" and "Legacy formats".
@@ -32,26 +33,26 @@ impl Names {
     }
 }
 
-/// What the sections share.
+/// State that the sections share.
 #[derive(Debug, Default)]
 pub(super) struct Context {
     pub(super) found: Found,
     pub(super) names: Names,
     /// Physical groups of entities, by dimension and number (version 4.1).
     pub(super) entities: BTreeMap<(usize, i32), Vec<i64>>,
-    /// Whether the file has a section that lists entities, and one that lists those of parts.
+    /// Whether the file has a section that lists entities, and a section that lists entities of partitions.
     pub(super) listed: bool,
     pub(super) divided: bool,
-    /// How often values of a name came again, as those of later steps do.
+    /// How often values of the same name occurred again, for example those of later steps.
     later: BTreeMap<String, u64>,
-    /// The numbers of elements, ascending, with their indices in the list; made where values are first looked for.
+    /// The numbers of elements in ascending order, with their indices in the list; computed when a value is first looked up.
     order: Vec<(u64, usize)>,
 }
 
 /// Reads a file.
 ///
 /// # Errors
-/// `msh.syntax`, `msh.size`, `msh.version` with the line or byte; `mesh.…` for what the elements say.
+/// `msh.syntax`, `msh.size`, `msh.version` with the line or byte; `mesh.…` for faults of the elements.
 pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     let modern = format(scanner)?;
     let mut context = Context::default();
@@ -63,7 +64,7 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
         };
         let (section, _) = (section.to_string(), scanner.line());
         match section.as_str() {
-            // What comes behind the elements would no longer be theirs.
+            // After the elements, these sections would have no effect on them.
             "PhysicalNames" | "Entities" if elements && (modern || section == "PhysicalNames") => {
                 return Err(scanner.error(GmshError::BehindElements { section }, from));
             }
@@ -114,7 +115,7 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     Ok(context.found)
 }
 
-/// `$MeshFormat`: whether it is version 4.1; the scanner knows afterwards whether numbers are binary, and their order.
+/// Reads `$MeshFormat` and returns whether it is version 4.1. The scanner then knows whether numbers are binary, and their byte order.
 fn format(scanner: &mut Scanner<'_>) -> Result<bool, SceneError> {
     scanner.expect(SYNTAX, "$MeshFormat")?;
     let (version, from) = scanner.word(SYNTAX, Expected::Version)?;
@@ -145,7 +146,7 @@ fn format(scanner: &mut Scanner<'_>) -> Result<bool, SceneError> {
     Ok(modern)
 }
 
-/// `$PhysicalNames`: a text in all files. Names may hold blanks.
+/// Reads `$PhysicalNames`, which is text in all files. Names may contain blanks.
 fn physical_names(scanner: &mut Scanner<'_>, names: &mut Names) -> Result<(), SceneError> {
     let (count, from) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfNames)?;
     let count = scanner.fits(SIZE, count, 6, Expected::Names, from)?;
@@ -167,7 +168,7 @@ fn physical_names(scanner: &mut Scanner<'_>, names: &mut Names) -> Result<(), Sc
     Ok(())
 }
 
-/// Passes over a section that says nothing about a body at rest.
+/// Skips a section that is irrelevant for a body at rest.
 fn skip(scanner: &mut Scanner<'_>, section: &str, from: usize, found: &mut Found) -> Result<(), SceneError> {
     let end = format!("$End{section}");
     let offset = scanner.bytes[scanner.at..].windows(end.len()).position(|window| window == end.as_bytes());
@@ -181,7 +182,8 @@ fn skip(scanner: &mut Scanner<'_>, section: &str, from: usize, found: &mut Found
     Ok(())
 }
 
-/// `$ElementData`, a number for every element or for some; `$NodeData`, a number or a vector of nodes, whose numbers are given then.
+/// Reads `$ElementData`, a number for all or some elements, or `$NodeData`, a number or a vector for nodes; for the latter, the numbers of the nodes
+/// are given.
 fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers>) -> Result<(), SceneError> {
     let found = &mut context.found;
     let (section, number_of, there) = match nodes {
@@ -231,7 +233,7 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
         context.order.sort_unstable();
     }
     let order = &context.order;
-    // What has no value takes room too.
+    // Missing values take memory, too.
     found.gives(there * width).map_err(|e| scanner.at(e, from))?;
     let mut values = vec![f64::NAN; there * width];
     for _ in 0..scanner.fits(SIZE, count, 2 + 2 * components, Expected::Values, from)? {
@@ -267,7 +269,7 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
             };
         }
     }
-    // A body at rest has one number, that of the first step.
+    // A body at rest has one value, that of the first step.
     let known = match nodes {
         Some(_) => found.node_values.contains_key(&name),
         None => found.item_values.contains_key(&name),
@@ -282,7 +284,7 @@ fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers
     Ok(())
 }
 
-/// What a number of a type means.
+/// Returns the kind of element with a type number.
 ///
 /// # Errors
 /// `mesh.unsupported_element` with name and number.
@@ -324,7 +326,7 @@ pub(super) fn element_type(scanner: &Scanner<'_>, number: i64, offset: usize) ->
     Err(scanner.error(MeshFileError::UnsupportedType { element, number }, offset))
 }
 
-/// Brings the nodes of an element into the order of Opruga: Gmsh lists the middles of edges 2–3 and 1–3 the other way round.
+/// Brings the nodes of an element into the order of Opruga: Gmsh lists the midpoints of edges 2–3 and 1–3 the other way round.
 pub(super) fn reorder(kind: Kind, nodes: &mut [u32]) {
     if kind == Kind::QuadraticTetrahedron {
         nodes.swap(8, 9);

@@ -1,4 +1,4 @@
-//! Gmsh 2.2: nodes and elements one a line, or one after the other in binary.
+//! Gmsh 2.2: nodes and elements, one per line, or consecutive in binary.
 
 use super::format_errors::GmshError;
 use super::found::{Found, Numbers};

@@ -1,4 +1,4 @@
-//! Gmsh 4.1: entities, and nodes and elements in blocks of one entity.
+//! Gmsh 4.1: entities, and nodes and elements in blocks that each belong to one entity.
 
 use super::errors::Listed;
 use super::format_errors::GmshError;
@@ -9,7 +9,7 @@ use super::terms::Expected;
 use crate::problem::SceneError;
 use std::collections::BTreeSet;
 
-/// A whole number of 8 bytes in binary, or a word; with its place.
+/// A whole number, of 8 bytes in binary or as a word, with its position.
 fn long(scanner: &mut Scanner<'_>, what: Expected) -> Result<(u64, usize), SceneError> {
     if scanner.binary {
         let from = scanner.at;
@@ -18,7 +18,7 @@ fn long(scanner: &mut Scanner<'_>, what: Expected) -> Result<(u64, usize), Scene
     scanner.whole(SYNTAX, what)
 }
 
-/// A whole number of 4 bytes in binary, or a word; with its place.
+/// A whole number, of 4 bytes in binary or as a word, with its position.
 fn short(scanner: &mut Scanner<'_>, what: Expected) -> Result<(i32, usize), SceneError> {
     if scanner.binary {
         let from = scanner.at;
@@ -31,12 +31,12 @@ fn number(scanner: &mut Scanner<'_>, what: Expected) -> Result<f64, SceneError> 
     if scanner.binary { scanner.binary_f64(SIZE, what) } else { scanner.number(SYNTAX, what) }
 }
 
-/// The end of a line of a text; nothing in binary.
+/// The end of a line in a text file; nothing in binary.
 fn line_end(scanner: &mut Scanner<'_>, of: Expected) -> Result<(), SceneError> {
     if scanner.binary { Ok(()) } else { scanner.line_end(SYNTAX, of) }
 }
 
-/// The dimension of an entity, with its place.
+/// The dimension of an entity, with its position.
 fn dimension(scanner: &mut Scanner<'_>) -> Result<(usize, usize), SceneError> {
     let (dimension, at) = short(scanner, Expected::DimensionOfEntity)?;
     match usize::try_from(dimension) {
@@ -45,7 +45,8 @@ fn dimension(scanner: &mut Scanner<'_>) -> Result<(usize, usize), SceneError> {
     }
 }
 
-/// A count of things that take so many bytes in binary, and two in a text; what the count is, and what is counted.
+/// Reads a count of things that each take at least `bytes` bytes in binary, or two in a text. The last argument names the count and the counted
+/// things.
 fn count(scanner: &mut Scanner<'_>, bytes: u64, [number, what]: [Expected; 2]) -> Result<usize, SceneError> {
     let (count, from) = long(scanner, number)?;
     scanner.fits(SIZE, count, if scanner.binary { bytes } else { 2 }, what, from)
@@ -81,14 +82,14 @@ pub(super) fn entities(scanner: &mut Scanner<'_>, context: &mut Context) -> Resu
     Ok(())
 }
 
-/// The lowest and the highest number that the file promises, with the place of the first.
+/// The lowest and the highest number that the file announces, with the position of the first.
 fn bounds(scanner: &mut Scanner<'_>, [low, high]: [Expected; 2]) -> Result<([u64; 2], usize), SceneError> {
     let (lowest, from) = long(scanner, low)?;
     let (highest, _) = long(scanner, high)?;
     Ok(([lowest, highest], from))
 }
 
-/// Refuses numbers whose lowest and highest are not the promised ones. Those between may be left out.
+/// Refuses numbers if their lowest and highest are not the announced ones. Numbers between these may be missing.
 fn within(
     scanner: &Scanner<'_>,
     ([lowest, highest], from): ([u64; 2], usize),
@@ -101,7 +102,7 @@ fn within(
     Err(scanner.error(GmshError::Bounds { what, lowest, highest, low, high }, from))
 }
 
-/// `$Nodes`: blocks of numbers and then of coordinates, parametric ones behind them.
+/// `$Nodes`: blocks of numbers followed by coordinates and, if present, parametric coordinates.
 pub(super) fn nodes(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<Numbers, SceneError> {
     let blocks = count(scanner, 20, [Expected::NumberOfBlocks, Expected::Blocks])?;
     let (promised, from) = long(scanner, Expected::NumberOfNodes)?;
@@ -143,7 +144,7 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<Numb
     Ok(numbers)
 }
 
-/// `$Elements`: blocks of elements of one type and one entity, which knows its physical groups.
+/// `$Elements`: blocks of elements of one type and one entity. The entity determines their physical groups.
 pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers: &Numbers) -> Result<(), SceneError> {
     let blocks = count(scanner, 20, [Expected::NumberOfBlocks, Expected::Blocks])?;
     let (promised, from) = long(scanner, Expected::NumberOfElements)?;
@@ -159,7 +160,7 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers
             let (element, wanted) = (kind.name(), kind.dimension());
             return Err(scanner.error(GmshError::ElementOfEntity { dimension, element, wanted }, at));
         }
-        // Parts of a mesh that is divided have entities of their own, in a section that is left out.
+        // A partitioned mesh has entities of its own, in a section that is skipped.
         if context.listed && !context.divided && !context.entities.contains_key(&(dimension, tag)) {
             let tags: Vec<i32> = context.entities.keys().filter(|key| key.0 == dimension).map(|key| key.1).collect();
             let listed = match tags[..] {
@@ -176,7 +177,7 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers
         let groups: BTreeSet<String> = entity
             .into_iter()
             .flatten()
-            // The sign of a group tells the direction of its curves and surfaces.
+            // The sign of a group gives the orientation of its curves and surfaces.
             .map(|group| context.names.of(kind.dimension(), group.abs()))
             .collect();
         for _ in 0..own {

@@ -22,14 +22,14 @@ const SIZE: &str = "medit.size";
 pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     scanner.expect(SYNTAX, "MeshVersionFormatted")?;
     let (version, from) = scanner.whole::<u32>(SYNTAX, Expected::Version)?;
-    // 1 and 2 are single and double precision, 3 and 4 larger files: as text they look the same.
+    // Versions 1 and 2 are single and double precision, 3 and 4 are larger files. As text they look the same.
     if !(1..=4).contains(&version) {
         return Err(scanner.error(MeditError::Version { version }, from));
     }
     let (mut found, mut dimension, mut seen) = (Found::default(), 0, false);
     let mut kinds = Vec::new();
     loop {
-        // The keyword End is asked for: without it a file that is cut off would look whole.
+        // The keyword End is required: without it, a truncated file would look complete.
         let (word, from) = scanner.word(SYNTAX, Expected::End)?;
         let kind = match word {
             "End" => break,
@@ -58,7 +58,7 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
             "Quadrilaterals" => Kind::Quadrilateral,
             "Tetrahedra" => Kind::Tetrahedron,
             "Hexahedra" | "Hexaedra" => Kind::Hexahedron,
-            // What these say is no part of a body; each is a count and that many lines.
+            // These sections are not part of a body. Each is a count followed by that many lines.
             "Corners"
             | "RequiredVertices"
             | "Ridges"

@@ -1,6 +1,7 @@
 //! MFEM meshes, version 1: straight elements with attributes.
 //!
-//! Attributes of elements become groups of nodes and cells, `attribute 1`; those of the boundary groups of nodes, `boundary 3`.
+//! The attributes of elements become groups of nodes and cells, for example `attribute 1`; those of the boundary become groups of nodes, for example
+//! `boundary 3`.
 //!
 //! # Source
 //! MFEM project, "Mesh formats", <https://mfem.org/mesh-format-v1.0/>.
@@ -15,10 +16,10 @@ use crate::problem::{SceneError, visible};
 const SYNTAX: &str = "mfem.syntax";
 const SIZE: &str = "mfem.size";
 
-/// Sections of which a file has one.
+/// Sections that may occur only once in a file.
 const SECTIONS: [&str; 4] = ["dimension", "elements", "boundary", "vertices"];
 
-/// An element before the number of vertices is known.
+/// An element that is read before the number of vertices is known.
 struct Draft {
     kind: Kind,
     nodes: Vec<(u64, usize)>,
@@ -75,7 +76,7 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     if let Some(missing) = ["elements", "vertices"].into_iter().find(|section| !seen.contains(section)) {
         return Err(scanner.ends(SYNTAX, Keyword::One { word: missing.into() }));
     }
-    // Since version 1.2 a mark tells that the mesh is whole.
+    // Since version 1.2 a mark shows that the mesh is complete.
     if version != "v1.0" && !ended {
         return Err(scanner.ends(SYNTAX, Keyword::One { word: "mfem_mesh_end".into() }));
     }
@@ -100,7 +101,7 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     Ok(found)
 }
 
-/// `elements` fill a mesh of so many dimensions, those of its `boundary` have one less.
+/// Reads `elements`, which have the dimension of the mesh, or the `boundary`, whose elements have one dimension less.
 fn elements(
     scanner: &mut Scanner<'_>,
     drafts: &mut Vec<Draft>,

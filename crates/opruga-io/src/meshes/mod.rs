@@ -6,8 +6,8 @@
 //! .node + .ele (TetGen) ┼→ Found ─────┤
 //! .mesh (MFEM, Medit) ──┘             └→ triangles of a surface, as from OBJ
 //! ```
-//! A reader gives what its file says, in Opruga's order of nodes, each with its place. What bodies need is checked once for all formats: nothing is
-//! dropped, joined or turned unless it is asked for, and then it is counted.
+//! A reader returns the contents of its file, with nodes in Opruga's order, each with its position in the file. The requirements of bodies are
+//! checked once for all formats. Nothing is dropped, merged or flipped unless the caller asks for it; these repairs are counted.
 
 mod assemble;
 mod errors;
@@ -67,13 +67,13 @@ pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     vtk_errors::VtuError::VARIANTS,
 ];
 
-/// Gives the bytes of a file by its name.
+/// Returns the bytes of a file by its name.
 pub type Open<'o> = dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError> + 'o;
 
-/// What the files end with that can be read.
+/// The endings of the files that can be read.
 pub const ENDINGS: &str = ".msh, .vtk, .vtu, .mesh, .mfem, .node, .ele";
 
-/// A mesh file that has been read, before a body is made of it.
+/// A mesh file that has been read, but not yet made into a body.
 #[derive(Debug)]
 pub struct MeshFile<'a> {
     found: Found,
@@ -81,12 +81,12 @@ pub struct MeshFile<'a> {
     beside: Option<Beside>,
 }
 
-/// TetGen's other file, for the places in it.
+/// The second file of TetGen, for positions in it.
 #[derive(Debug)]
 struct Beside {
     name: String,
     bytes: Arc<[u8]>,
-    /// Whether it holds the nodes, and not the elements.
+    /// Whether it holds the nodes rather than the elements.
     nodes: bool,
 }
 
@@ -99,7 +99,7 @@ fn ending(name: &str) -> String {
     name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase()
 }
 
-/// Reads a file by its ending and its first words; TetGen's other file is asked of `open`.
+/// Reads a file according to its ending and its first words; `open` provides the second file of TetGen.
 ///
 /// # Errors
 /// `msh.…`, `vtk.…`, `vtu.…`, `tetgen.…`, `mfem.…`, `medit.…`, `mesh.…` with line or byte.
@@ -114,7 +114,7 @@ pub fn read<'a>(name: &'a str, bytes: &'a [u8], open: &mut Open<'_>) -> Result<M
         "vtk" => vtk::read(&mut scanner)?,
         "vtu" => {
             let found = vtu::read(name, bytes)?;
-            // Places are those of the text before appended data, which are the same in the file.
+            // Positions refer to the text before the appended data; they are the same in the file.
             scanner.binary = core::str::from_utf8(bytes).is_err();
             found
         }
@@ -162,11 +162,11 @@ impl MeshFile<'_> {
         self.found.positions.windows(2).all(|pair| pair[0][2] == pair[1][2])
     }
 
-    /// The body; nodes keep their order. Returns what was left out or mended, counted.
+    /// Makes the body; nodes keep their order. Also returns what was dropped or repaired, with counts.
     ///
     /// # Errors
     /// `mesh.empty`, `mesh.dimension`, `mesh.mixed_dimension`, `mesh.degenerate_element`, `mesh.duplicate_element`, `mesh.inverted`,
-    /// `mesh.unreferenced`, `mesh.non_manifold`, with the place of the element or node.
+    /// `mesh.unreferenced`, `mesh.non_manifold`, with the position of the element or node.
     pub fn assemble<const D: usize>(self, mending: Mending) -> Result<(Mesh<D>, Vec<SceneError>), SceneError> {
         let other = self.beside.as_ref().map(|beside| Scanner::new(&beside.name, &beside.bytes, None));
         let (nodes, items) = match (&other, &self.beside) {
@@ -177,7 +177,7 @@ impl MeshFile<'_> {
         assemble::assemble(self.found, nodes, items, mending)
     }
 
-    /// What the file says, for those that want its triangles only.
+    /// The contents of the file, for callers that need only its triangles.
     pub(crate) fn into_found(self) -> Found {
         self.found
     }

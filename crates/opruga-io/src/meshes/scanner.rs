@@ -1,4 +1,4 @@
-//! Words and binary numbers of a mesh file, one after the other, each with its place.
+//! Reads the words and binary numbers of a mesh file one after the other, each with its position.
 
 use super::errors::{Keyword, NumberHint, NumberRange, ScanError};
 use super::terms::Expected;
@@ -6,34 +6,34 @@ use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use opruga_math::message::AnyMessage;
 
-/// A file that ends with a word and not with the end of a line.
+/// The error for a file that ends with a word instead of the end of a line.
 pub(crate) fn cut_line(code: &'static str, word: &[u8]) -> SceneError {
     SceneError { code, ..SceneError::of(ScanError::CutLine { word: visible(&String::from_utf8_lossy(word)) }) }
 }
 
-/// Bytes that are read from front to back. What follows may be text or binary, in one file.
+/// Bytes that are read from front to back. Text and binary parts may alternate in one file.
 #[derive(Clone, Debug)]
 pub(super) struct Scanner<'a> {
     pub(super) file: &'a str,
     pub(super) bytes: &'a [u8],
-    /// The next byte.
+    /// The index of the next byte.
     pub(super) at: usize,
-    /// Whether the file holds binary numbers: places are bytes then, lines otherwise.
+    /// Whether the file holds binary numbers. Positions are then bytes, otherwise lines.
     pub(super) binary: bool,
-    /// Whether binary numbers begin with their highest byte.
+    /// Whether binary numbers are big-endian.
     pub(super) big_endian: bool,
-    /// The mark after which the rest of a line is a comment, if there is one.
+    /// The mark that begins a comment, which extends to the end of the line.
     pub(super) comment: Option<u8>,
 }
 
 impl<'a> Scanner<'a> {
-    /// A text file; `comment` begins comments.
+    /// Makes a scanner of a text file; `comment` begins comments.
     pub(super) fn new(file: &'a str, bytes: &'a [u8], comment: Option<u8>) -> Scanner<'a> {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Scanner { file, bytes, at, binary: false, big_endian: false, comment }
     }
 
-    /// Adds the place from one byte to another: line and column of a text, the byte of a binary file.
+    /// Adds the position, from one byte to another, to an error: line and column of a text, the byte of a binary file.
     pub(super) fn mark(&self, error: SceneError, from: usize, to: usize) -> SceneError {
         if self.binary {
             return SceneError { byte: Some(from), file: self.file.to_string(), ..error };
@@ -50,12 +50,12 @@ impl<'a> Scanner<'a> {
         self.at(SceneError::of(message), from)
     }
 
-    /// The same under the code of a format.
+    /// An error at that position with the code of a format.
     pub(super) fn error_of(&self, code: &'static str, error: ScanError, from: usize) -> SceneError {
         self.at(SceneError { code, ..SceneError::of(error) }, from)
     }
 
-    /// The same for an error that has no place yet.
+    /// Adds the position to an error that has none yet.
     pub(super) fn at(&self, error: SceneError, from: usize) -> SceneError {
         let end =
             from + self.bytes[from.min(self.bytes.len())..].iter().take_while(|b| !b.is_ascii_whitespace()).count();
@@ -88,8 +88,8 @@ impl<'a> Scanner<'a> {
         self.at == self.bytes.len()
     }
 
-    /// Refuses a text of a format without a mark at its end whose last line has no end: of a number that is cut off, such as the
-    /// `1` of `1.75`, what is left looks whole. Behind a comment nothing is missing.
+    /// Refuses a file without an end mark whose last line has no line end: a truncated number, such as the `1` of `1.75`, would look complete. A last
+    /// line that ends in a comment is accepted.
     pub(super) fn last_line_ends(&self, code: &'static str) -> Result<(), SceneError> {
         let from = self.bytes.iter().rposition(|b| *b == b'\n').map_or(0, |at| at + 1);
         let last = &self.bytes[from..];
@@ -101,17 +101,17 @@ impl<'a> Scanner<'a> {
         Err(self.at(cut_line(code, &self.bytes[from..]), from))
     }
 
-    /// The next word and where it begins, without taking it; none at the end of the file.
+    /// The next word and the byte at which it begins, without consuming it; none at the end of the file.
     pub(super) fn peek(&mut self) -> Option<(&'a str, usize)> {
         self.skip(true);
         let from = self.at;
         let end = |b: &&u8| !b.is_ascii_whitespace() && Some(**b) != self.comment;
         let length = self.bytes[from..].iter().take_while(end).count();
-        // What is no UTF-8 is no word that any format knows.
+        // Bytes that are not UTF-8 are not a word of any format.
         (length > 0).then(|| (core::str::from_utf8(&self.bytes[from..from + length]).unwrap_or("\u{fffd}"), from))
     }
 
-    /// The next word and where it begins.
+    /// Consumes the next word; returns it and the byte at which it begins.
     pub(super) fn word(&mut self, code: &'static str, wanted: Expected) -> Result<(&'a str, usize), SceneError> {
         let Some((word, from)) = self.peek() else { return Err(self.ends(code, wanted)) };
         self.at = from
@@ -119,7 +119,7 @@ impl<'a> Scanner<'a> {
         Ok((word, from))
     }
 
-    /// The next word if it is on the same line.
+    /// Consumes the next word if it is on the same line.
     pub(super) fn word_of_line(&mut self) -> Option<(&'a str, usize)> {
         self.skip(false);
         if matches!(self.bytes.get(self.at), None | Some(b'\n')) {
@@ -128,7 +128,7 @@ impl<'a> Scanner<'a> {
         self.word("", Expected::Nothing).ok()
     }
 
-    /// The rest of the line without blanks around it, and where it begins; the end of the line is taken.
+    /// Consumes the rest of the line with its end; returns it without surrounding blanks, and the byte at which it begins.
     pub(super) fn line(&mut self) -> (String, usize) {
         self.skip(false);
         let from = self.at;
@@ -137,7 +137,7 @@ impl<'a> Scanner<'a> {
         (String::from_utf8_lossy(&self.bytes[from..from + length]).trim().to_string(), from)
     }
 
-    /// Refuses anything else on the line; takes its end.
+    /// Consumes the end of the line; refuses anything before it.
     pub(super) fn line_end(&mut self, code: &'static str, of: Expected) -> Result<(), SceneError> {
         self.skip(false);
         match self.bytes.get(self.at) {
@@ -154,7 +154,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// A word that must be a certain one; upper and lower case are the same.
+    /// Consumes a word that must be `wanted` in upper or lower case.
     pub(super) fn expect(&mut self, code: &'static str, wanted: &str) -> Result<(), SceneError> {
         let Some((word, from)) = self.peek() else { return Err(self.ends(code, Keyword::One { word: wanted.into() })) };
         if !word.eq_ignore_ascii_case(wanted) {
@@ -186,7 +186,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Refuses a word that is no number of a range.
+    /// The error for a word that is not a number of a range.
     pub(super) fn no_number(
         &self,
         code: &'static str,
@@ -204,7 +204,7 @@ impl<'a> Scanner<'a> {
         if x.is_finite() { Ok(x) } else { Err(self.error(ScanError::NotFiniteNumber { what, number: x }, from)) }
     }
 
-    /// A count that the rest of the file can hold, where each thing takes `least` bytes or more.
+    /// Reads a count and refuses it if the rest of the file cannot hold that many things of at least `least` bytes each.
     pub(super) fn fits(
         &self,
         code: &'static str,

@@ -51,7 +51,7 @@ terms! {
 }
 
 terms! {
-    /// What stands at a place in a mesh file, or should stand there.
+    /// What a mesh file contains at a position, or should contain.
     pub(crate) enum Expected = "part.expected" {
         Nothing = "",
         Dimension = "a dimension",

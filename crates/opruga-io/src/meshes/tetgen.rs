@@ -1,6 +1,7 @@
-//! TetGen: nodes in `.node`, tetrahedra in `.ele`, of one name.
+//! TetGen: nodes in `.node` and tetrahedra in `.ele`, two files with the same name.
 //!
-//! Boundary markers other than 0 become groups of nodes, `marker 3`; attributes of tetrahedra become values of cells, `attribute`, `attribute 2` …
+//! Boundary markers other than 0 become groups of nodes, for example `marker 3`; attributes of tetrahedra become values of cells, `attribute`,
+//! `attribute 2` …
 //!
 //! # Source
 //! Hang Si, TetGen manual 1.5, "File formats".
@@ -58,7 +59,7 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     Ok(found)
 }
 
-/// Reads the tetrahedra; of plane meshes (the program Triangle) the triangles.
+/// Reads the tetrahedra or, for plane meshes (of the program Triangle), the triangles.
 ///
 /// # Errors
 /// `tetgen.syntax`, `tetgen.size`, `mesh.index`, `mesh.unsupported_element` with the line.
@@ -77,7 +78,7 @@ pub(super) fn elements(scanner: &mut Scanner<'_>, found: &mut Found, numbers: &N
     let mut next: Option<u64> = None;
     for k in 0..count {
         let (number, offset) = scanner.whole::<u64>(SYNTAX, Expected::NumberOfElement)?;
-        // Elements are counted: another number says that lines are missing, twice there or out of order.
+        // Elements are numbered consecutively. Another number means that lines are missing, repeated or out of order.
         if let Some(wanted) = next.filter(|next| number != *next) {
             return Err(scanner.error(TetgenError::Order { element: number, wanted }, offset));
         }

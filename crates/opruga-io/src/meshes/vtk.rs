@@ -14,7 +14,7 @@ use crate::problem::{SceneError, visible};
 const SYNTAX: &str = "vtk.syntax";
 const SIZE: &str = "vtk.size";
 
-/// What a type of cell in VTK is here, and in which order its nodes stand: pixels and voxels run row by row.
+/// The kind of element for a cell type of VTK, and the order of its nodes: those of pixels and voxels are listed row by row.
 pub(super) fn kind(number: u64) -> Option<(Kind, &'static [usize])> {
     Some(match number {
         1 => (Kind::Point, &[0]),
@@ -32,7 +32,7 @@ pub(super) fn kind(number: u64) -> Option<(Kind, &'static [usize])> {
     })
 }
 
-/// Adds a cell of VTK whose nodes are counted from `first` on, or says why that cannot be.
+/// Adds a VTK cell whose nodes are counted from `first`, or returns why it cannot be added.
 pub(super) fn add(
     found: &mut Found,
     number: i128,
@@ -78,17 +78,17 @@ pub(super) fn add(
 
 struct Reader<'s, 'a> {
     scanner: &'s mut Scanner<'a>,
-    /// Whether numbers of arrays are binary; keywords are words in any case.
+    /// Whether the numbers of arrays are binary. Keywords are always text.
     binary: bool,
     found: Found,
-    /// Nodes of the cells, before their types are known: their offset in the file and their nodes.
+    /// The cells before their types are known: their offset in the file and their nodes.
     cells: Vec<(usize, Vec<i128>)>,
 }
 
 /// Reads a file.
 ///
 /// # Errors
-/// `vtk.syntax`, `vtk.size` with line or byte; `mesh.…` for what the cells say.
+/// `vtk.syntax`, `vtk.size` with line or byte; `mesh.…` for faults of the cells.
 pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     let (head, from) = scanner.line();
     if !head.starts_with("# vtk DataFile Version") {
@@ -115,9 +115,9 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
 
 impl Reader<'_, '_> {
     fn sections(&mut self) -> Result<(), SceneError> {
-        // Sections of which there is one.
+        // Sections that may occur only once.
         let mut seen: Vec<&str> = Vec::new();
-        // Whether arrays belong to cells, and how many there are of what they belong to.
+        // Whether arrays belong to cells, and the number of cells or points that they belong to.
         let mut of: Option<(bool, usize)> = None;
         while let Some((word, from)) = self.scanner.peek() {
             let word = word.to_ascii_uppercase();
@@ -167,7 +167,7 @@ impl Reader<'_, '_> {
             };
             return Err(self.scanner.ends(SYNTAX, wanted));
         }
-        // Binary numbers have their length.
+        // The length of binary numbers is known.
         if self.binary { Ok(()) } else { self.scanner.last_line_ends(SYNTAX) }
     }
 
@@ -181,7 +181,7 @@ impl Reader<'_, '_> {
         self.scanner.error_of(SYNTAX, error, from)
     }
 
-    /// What is made of the numbers of an array. In binary they begin behind the end of the line.
+    /// Reads the numbers of an array and converts them. Binary numbers begin after the end of the line.
     fn array<T>(
         &mut self,
         (count, from): (u64, usize),
@@ -204,7 +204,7 @@ impl Reader<'_, '_> {
         Ok(out)
     }
 
-    /// Numbers of an array, which may be real ones.
+    /// Numbers of an array, not necessarily whole.
     fn values(
         &mut self,
         count: u64,
@@ -254,7 +254,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// `CELLS n size`, each with the count of its nodes; since version 5.1 `CELLS n+1 size` with `OFFSETS` and `CONNECTIVITY`.
+    /// `CELLS n size`, where each cell begins with the count of its nodes; since version 5.1 `CELLS n+1 size` with `OFFSETS` and `CONNECTIVITY`.
     fn connectivity(&mut self) -> Result<(), SceneError> {
         let (count, from) = self.scanner.whole::<u64>(SYNTAX, Expected::NumberOfCells)?;
         let (size, size_from) = self.scanner.whole::<u64>(SYNTAX, Expected::SizeOfCells)?;
@@ -266,7 +266,7 @@ impl Reader<'_, '_> {
             self.scanner.expect(SYNTAX, "CONNECTIVITY")?;
             let kind = self.number_type()?;
             let nodes = self.wholes(size, kind, Expected::NodesOfCells, size_from)?;
-            // What no cell names would be lost.
+            // Nodes that no cell names would be lost.
             let there = nodes.len() as i128;
             if let Some(&(offset, byte_offset)) = offsets.first().filter(|(offset, _)| *offset != 0) {
                 return Err(self.scanner.error(VtkError::FirstOffset { offset, wanted: 0 }, byte_offset));
@@ -323,7 +323,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Keeps values of cells of one component and those of nodes of up to three, and counts others.
+    /// Keeps values of cells with one component and values of nodes with up to three, and counts others.
     fn keep(
         &mut self,
         (name, at): (&str, usize),
@@ -346,7 +346,7 @@ impl Reader<'_, '_> {
                 let kept = self.found.values_of_nodes(name, 0, components as usize, numbers);
                 kept.map_err(|error| self.scanner.at(error, at))?;
             }
-            // Data of the whole file is no part of the body: time, cycle and the like.
+            // Data of the whole file, such as time and cycle, are not part of the body.
             None => {}
             Some(_) => self.found.left_out(MeshFileNotice::Values { name: visible(name) }),
         }
@@ -385,7 +385,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Passes over a block that ends with an empty line.
+    /// Skips a block that ends with an empty line.
     fn metadata(&mut self) {
         self.scanner.line();
         while self.scanner.at < self.scanner.bytes.len() && !self.scanner.line().0.is_empty() {}
@@ -438,7 +438,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What is wrong where cells or points have values of one name twice.
+/// The error for two values of cells or points with the same name.
 pub(super) fn values_twice(of_points: bool, name: &str) -> ScanError {
     let name = visible(name);
     if of_points { ScanError::PointValuesTwice { name } } else { ScanError::CellValuesTwice { name } }

@@ -1,4 +1,4 @@
-//! What readers of files of VTK refuse.
+//! Errors of the readers of VTK files.
 
 use super::terms::ElementName;
 use opruga_math::message::if_any;
@@ -12,7 +12,7 @@ messages! {
         Named { name: String },
     }
 
-    /// What of an XML file stands there twice.
+    /// A part of an XML file that occurs twice.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum Doubled {
         "part.doubled" #[error("<{tag}>")]
@@ -21,7 +21,7 @@ messages! {
         Array { name: Option<ArrayName>, tag: String },
     }
 
-    /// What is wrong with a legacy file of VTK.
+    /// Errors in a legacy VTK file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum VtkError {
         "vtk.size" #[error("cell {cell}, a {element}, has {nodes} nodes")] #[value("{nodes}")] #[allowed("{wanted}")]
@@ -65,7 +65,7 @@ messages! {
         Components { word: String },
     }
 
-    /// What is wrong with an XML file of VTK.
+    /// Errors in a VTK XML file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum VtuError {
         "vtu.syntax" #[error("the file is not a text in UTF-8")] #[value("byte {byte}")] #[hint("it is cut off, or no VTU")]

@@ -1,16 +1,16 @@
-//! Numbers of arrays in files of VTK: each is of a type, which says what it may be.
+//! Numbers of arrays in VTK files. The type of an array determines the range of its numbers.
 
 use super::errors::NumberRange;
 
 /// The type of the numbers of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Number {
-    /// Bytes, and whether there are negative ones.
+    /// A whole number: its bytes, and whether it is signed.
     Whole(usize, bool),
     Real(usize),
 }
 
-/// A number as the file has it: whole ones keep all their digits.
+/// A number as the file gives it: whole numbers keep all their digits.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Value {
     Whole(i128),
@@ -25,11 +25,11 @@ impl Value {
         }
     }
 
-    /// The number where it is a whole one, or what it is instead.
+    /// Returns the number if it is whole, otherwise its real value.
     pub(super) fn whole(self) -> Result<i128, f64> {
         match self {
             Value::Whole(x) => Ok(x),
-            // Above 2⁵³ not every whole number has a place of its own.
+            // Above 2⁵³ not every whole number can be represented.
             Value::Real(x) if x.fract() == 0.0 && x.abs() <= 9_007_199_254_740_992.0 => Ok(x as i128),
             Value::Real(x) => Err(x),
         }
@@ -37,7 +37,7 @@ impl Value {
 }
 
 impl Number {
-    /// The type of a name in legacy files.
+    /// The type with this name in legacy files.
     pub(super) fn named(name: &str) -> Option<Number> {
         Some(match name.to_ascii_lowercase().as_str() {
             "char" | "vtktypeint8" => Number::Whole(1, true),
@@ -54,7 +54,7 @@ impl Number {
         })
     }
 
-    /// The type of a name in XML files.
+    /// The type with this name in XML files.
     pub(super) fn of_xml(name: &str) -> Option<Number> {
         Some(match name {
             "Int8" => Number::Whole(1, true),
@@ -71,14 +71,14 @@ impl Number {
         })
     }
 
-    /// Bytes of one number.
+    /// The number of bytes of one number.
     pub(super) fn size(self) -> usize {
         match self {
             Number::Whole(size, _) | Number::Real(size) => size,
         }
     }
 
-    /// A number from its bytes, the lowest or the highest first.
+    /// Reads a number from its bytes.
     pub(super) fn of_bytes(self, bytes: &[u8], big_endian: bool) -> Value {
         let add = |x: u64, byte: &u8| x << 8 | u64::from(*byte);
         let bits = if big_endian { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) };
@@ -93,7 +93,7 @@ impl Number {
         }
     }
 
-    /// A number from its word, or what the word should be instead.
+    /// Reads a number from a word, or returns what the word should be.
     pub(super) fn of_word(self, word: &str) -> Result<Value, NumberRange> {
         match self {
             Number::Real(size) => match word.parse::<f64>() {

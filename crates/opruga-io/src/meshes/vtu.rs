@@ -1,4 +1,4 @@
-//! VTK XML unstructured grids (`.vtu`): text, base64 or raw bytes at the end, of either order, zlib or not compressed.
+//! VTK XML unstructured grids (`.vtu`): text, base64 or raw appended bytes, of either byte order, uncompressed or compressed by zlib.
 //!
 //! # Source
 //! Kitware, "VTK XML Formats", <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
@@ -19,19 +19,19 @@ use std::io::Read;
 
 const SYNTAX: &str = "vtu.syntax";
 
-/// No compression of zlib makes data more than about so many times smaller.
+/// The largest ratio, approximately, by which zlib can compress data.
 const MOST_COMPRESSED: u64 = 1100;
 
-/// What the head of the file says about its arrays.
+/// The properties of arrays that the head of the file gives.
 struct Reader<'a> {
     scanner: &'a Scanner<'a>,
     big_endian: bool,
-    /// Bytes of the numbers in front of binary arrays.
+    /// Size of the numbers in front of binary arrays [bytes].
     header: usize,
     compressed: bool,
-    /// Appended data behind its underscore: raw, or letters.
+    /// Appended data after the underscore, and whether they are raw or letters.
     appended: Option<(&'a [u8], bool)>,
-    /// How many numbers binary arrays hold.
+    /// Count of the numbers in binary arrays.
     numbers: Cell<u64>,
 }
 
@@ -40,26 +40,26 @@ fn at(scanner: &Scanner<'_>, node: Node<'_, '_>, message: VtuError) -> SceneErro
     marked(scanner, node, SceneError::of(message))
 }
 
-/// The same for what files of other formats say too.
+/// The same for an error that files of other formats can have, too.
 fn common(scanner: &Scanner<'_>, node: Node<'_, '_>, message: ScanError) -> SceneError {
     marked(scanner, node, SceneError { code: SYNTAX, ..SceneError::of(message) })
 }
 
-/// The same for an error that has no place yet.
+/// Adds the position of an element to an error that has none yet.
 fn marked(scanner: &Scanner<'_>, node: Node<'_, '_>, error: SceneError) -> SceneError {
     let range = node.range();
     let end = scanner.bytes[range.start..].iter().position(|b| *b == b'>').map_or(range.end, |k| range.start + k + 1);
     scanner.mark(error, range.start, end)
 }
 
-/// The text of the file without appended data, and that data.
+/// Splits a file into its text without appended data, and those data.
 fn split(bytes: &[u8]) -> (Vec<u8>, Option<(&[u8], bool)>) {
     let find = |from: usize, what: &[u8]| bytes[from..].windows(what.len()).position(|w| w == what).map(|k| from + k);
     let Some(start) = find(0, b"<AppendedData") else { return (bytes.to_vec(), None) };
     let Some(tag) = find(start, b">") else { return (bytes.to_vec(), None) };
     let raw = find(start, b"\"raw\"").is_some_and(|k| k < tag) || find(start, b"'raw'").is_some_and(|k| k < tag);
     let Some(mark) = find(tag, b"_") else { return (bytes.to_vec(), None) };
-    // Raw bytes may hold anything, so the end is looked for from behind.
+    // Raw bytes may hold anything, so the closing tag is searched from the end.
     let close = b"</AppendedData>";
     let end = bytes.windows(close.len()).rposition(|w| w == close).filter(|end| *end > mark);
     let Some(end) = end else { return (bytes.to_vec(), None) };
@@ -70,7 +70,7 @@ fn split(bytes: &[u8]) -> (Vec<u8>, Option<(&[u8], bool)>) {
 /// Reads a file.
 ///
 /// # Errors
-/// `vtu.syntax`, `vtu.size`, `vtu.compressor` with the line of the array; `mesh.…` for what the cells say.
+/// `vtu.syntax`, `vtu.size`, `vtu.compressor` with the line of the array; `mesh.…` for faults of the cells.
 pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Found, SceneError> {
     let (head, appended) = split(bytes);
     let scanner = Scanner::new(file, &head, None);
@@ -119,7 +119,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Found, SceneError> {
         any = true;
         reader.piece(piece, &mut found)?;
     }
-    // Cells and nodes that have no value take room too.
+    // Cells and nodes without a value take memory, too.
     let items = found.items.len();
     let nodes = found.positions.len();
     let of_nodes = found.node_values.values().map(|field| nodes * field.components - field.values.len());
@@ -142,7 +142,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The only element of a name in another one.
+    /// Returns the only element of a name within another one.
     fn only<'a>(
         &self,
         parent: Node<'a, 'a>,
@@ -157,7 +157,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The array of a name below an element of a piece.
+    /// Returns the array of a name within an element of a piece.
     fn array<'a>(&self, piece: Node<'a, 'a>, of: &str, name: Option<&str>) -> Result<Node<'a, 'a>, SceneError> {
         let tag = || of.to_string();
         let parent =
@@ -218,7 +218,7 @@ impl Reader<'_> {
         self.data(piece, (cells, first_cell), (points, first as usize), found)
     }
 
-    /// Values of cells of one component, and those of points of up to three; others are counted.
+    /// Reads values of cells with one component, and values of points with up to three; others are counted.
     fn data(
         &self,
         piece: Node<'_, '_>,
@@ -239,7 +239,7 @@ impl Reader<'_> {
                 None | Some("1" | "0") => 1,
                 Some(text) => text.trim().parse().unwrap_or(0),
             };
-            // Arrays of texts have a type of their own.
+            // Arrays of strings have a type of their own.
             let numbers = node.attribute("type").and_then(Number::of_xml).is_some();
             let second = || common(self.scanner, node, vtk::values_twice(of == "PointData", name));
             match of {
@@ -271,12 +271,12 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The numbers of an array, exactly so many.
+    /// Reads an array of exactly `count` numbers.
     fn values(&self, array: Node<'_, '_>, count: u64) -> Result<Vec<f64>, SceneError> {
         self.numbers(array, count, |value| Ok(value.real()))
     }
 
-    /// The same where only whole numbers say something, whatever their type.
+    /// Reads an array of exactly `count` whole numbers, whatever its type.
     fn wholes(&self, array: Node<'_, '_>, count: u64) -> Result<Vec<i128>, SceneError> {
         self.numbers(array, count, |value| {
             value.whole().map_err(|number| at(self.scanner, array, VtuError::NotWhole { number }))
@@ -318,7 +318,7 @@ impl Reader<'_> {
         bytes.chunks_exact(size).map(|word| made(kind.of_bytes(word, self.big_endian))).collect()
     }
 
-    /// Counts numbers of binary arrays: compressed ones are few bytes, and those at the end of the file may be named again and again.
+    /// Counts numbers of binary arrays: compressed arrays take few bytes, and appended data may be referenced repeatedly.
     fn counted(&self, array: Node<'_, '_>, count: u64) -> Result<(), SceneError> {
         self.numbers.set(self.numbers.get().saturating_add(count));
         let available = (self.scanner.bytes.len() + self.appended.map_or(0, |(data, _)| data.len())) as u64;
@@ -346,7 +346,7 @@ impl Reader<'_> {
         if out.len() as u64 == count { Ok(out) } else { Err(self.wrong_count(array, out.len() as u64, count)) }
     }
 
-    /// The bytes of a binary array: a header with sizes, then the data, as raw bytes or as letters.
+    /// Returns the bytes of a binary array: a header with sizes, then the data, both as raw bytes or as letters.
     fn unpack(
         &self,
         array: Node<'_, '_>,
@@ -358,7 +358,7 @@ impl Reader<'_> {
         let wanted = count * size as u64;
         let cut = || at(self.scanner, array, VtuError::Cut { there: data.len(), wanted });
         let letters = || at(self.scanner, array, VtuError::Base64 {});
-        // Bytes from the beginning on, at least so many.
+        // At least `least` bytes from the beginning.
         let take = |least: u64| -> Result<Vec<u8>, SceneError> {
             let least = usize::try_from(least).map_err(|_| cut())?;
             let bytes = if raw {
@@ -423,7 +423,7 @@ impl Reader<'_> {
     }
 }
 
-/// Letters without blanks at their end; appended data may be followed by a line end.
+/// The letters without blanks at the end; appended data may be followed by a line end.
 fn letters_of(data: &[u8]) -> &[u8] {
     data.trim_ascii()
 }

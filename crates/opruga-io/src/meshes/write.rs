@@ -1,4 +1,4 @@
-//! Meshes to files of other programs.
+//! Writes meshes to files of other programs.
 
 use super::found::Kind;
 use crate::problem::{SceneError, visible};
@@ -16,12 +16,12 @@ pub const WRITTEN: &str = ".msh (Gmsh 4.1), .vtk, .vtu, .mesh (Medit), .mfem (MF
 pub struct Written {
     /// Endings, without the dot, and contents.
     pub files: Vec<(&'static str, Vec<u8>)>,
-    /// What the format has no place for.
+    /// What the format cannot represent.
     pub left_out: Vec<LeftOut>,
 }
 
 opruga_math::messages! {
-    /// What a format of meshes has no place for.
+    /// Parts of a mesh that a format cannot represent.
     #[derive(Clone, Debug, PartialEq)]
     pub enum LeftOut {
         "part.left_out" #[error("`{name}`, which not all cells have")]
@@ -45,7 +45,7 @@ opruga_math::messages! {
         "part.left_out" #[error("{}", counted(*count as u64, "value of nodes", "values of nodes"))]
         ValuesOfNodes { count: usize },
     }
-    /// That something is left out.
+    /// The notice that a part is omitted.
     #[derive(Clone, Debug, PartialEq)]
     pub enum NotInFormat {
         "mesh.left_out" #[error("left out, since the format has no place for it: {what}")]
@@ -54,7 +54,7 @@ opruga_math::messages! {
 }
 
 opruga_math::messages! {
-    /// Why a mesh cannot be written.
+    /// Errors of writing a mesh.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum MeshWriteError {
         "mesh.write" #[error("the mesh has no cells")] #[value("0")] #[allowed("at least one cell")]
@@ -121,7 +121,7 @@ fn three<const D: usize>(x: &[f64; D]) -> String {
     format!("{:e} {:e} {:e}", x[0], x[1], x.get(2).copied().unwrap_or(0.0))
 }
 
-/// A name that may stand between quotes on a line.
+/// Makes a name safe to be written in quotes on one line.
 fn word(name: &str) -> String {
     name.chars().map(|c| if c == '"' || c.is_control() { '_' } else { c }).collect()
 }
@@ -130,7 +130,7 @@ fn listed(nodes: &[u32], shift: u32) -> String {
     nodes.iter().map(|node| (node + shift).to_string()).collect::<Vec<_>>().join(" ")
 }
 
-/// Files that hold values of cells and no groups.
+/// Files that hold values of cells but no groups.
 fn named_values<const D: usize>(ending: &'static str, bytes: Vec<u8>, mesh: &Mesh<D>) -> Written {
     let mut left_out = Vec::new();
     if !mesh.groups.is_empty() || !mesh.cell_groups.is_empty() {
@@ -139,7 +139,7 @@ fn named_values<const D: usize>(ending: &'static str, bytes: Vec<u8>, mesh: &Mes
     Written { files: vec![(ending, bytes)], left_out }
 }
 
-/// Gmsh 4.1 as text. Cells of the same groups are an entity; every group of nodes is an entity of points.
+/// Gmsh 4.1 as text. Cells with the same groups form an entity; every group of nodes is an entity of points.
 fn gmsh<const D: usize>(mesh: &Mesh<D>) -> String {
     let point_groups = own_groups_of_nodes(mesh);
     let mut sets: Vec<Vec<usize>> = vec![Vec::new(); mesh.cells.len()];
@@ -156,7 +156,7 @@ fn gmsh<const D: usize>(mesh: &Mesh<D>) -> String {
     let mut out = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n".to_string();
     gmsh_names(&mut out, mesh, &point_groups);
     gmsh_entities::<D>(&mut out, point_groups.len(), &entities);
-    // Nodes in one block.
+    // All nodes in one block.
     let n = mesh.nodes();
     let _ = writeln!(out, "$Nodes\n1 {n} 1 {n}\n{D} 1 0 {n}");
     out.extend((1..=n).map(|node| format!("{node}\n")));
@@ -167,7 +167,7 @@ fn gmsh<const D: usize>(mesh: &Mesh<D>) -> String {
     out
 }
 
-/// Names of the groups of nodes that are not just those of a group of cells: these come back with it.
+/// Names of the groups of nodes, without those that a group of cells implies.
 fn own_groups_of_nodes<const D: usize>(mesh: &Mesh<D>) -> Vec<&String> {
     let all: Vec<&[u32]> = mesh.cells.iter().map(|(_, _, nodes)| nodes).collect();
     let of_cells = |name: &String| {
@@ -196,7 +196,7 @@ fn gmsh_names<const D: usize>(out: &mut String, mesh: &Mesh<D>, point_groups: &[
     out.push_str("$EndPhysicalNames\n");
 }
 
-/// Entities: points, and cells by the groups that they are in.
+/// Entities: one for points, and one for each combination of groups of cells.
 fn gmsh_entities<const D: usize>(out: &mut String, points: usize, entities: &BTreeMap<&[usize], usize>) {
     let mut counts = [0; 4];
     counts[0] = points;
@@ -253,7 +253,7 @@ fn gmsh_elements<const D: usize>(out: &mut String, mesh: &Mesh<D>, point_groups:
     out.push_str("$EndElements\n");
 }
 
-/// Values of cells and of nodes, without those that are no numbers.
+/// Values of cells and of nodes, without those that are NaN.
 fn gmsh_values<const D: usize>(out: &mut String, mesh: &Mesh<D>) {
     for (name, values) in &mesh.cell_values {
         let given: Vec<(usize, &f64)> = values.iter().enumerate().filter(|(_, x)| x.is_finite()).collect();
@@ -262,7 +262,7 @@ fn gmsh_values<const D: usize>(out: &mut String, mesh: &Mesh<D>) {
         out.push_str("$EndElementData\n");
     }
     for (name, field) in &mesh.node_values {
-        // Vectors of Gmsh have three components.
+        // Vectors in Gmsh have three components.
         let width = if field.components == 1 { 1 } else { 3 };
         let rows = field.values.chunks_exact(field.components).enumerate();
         let given: Vec<(usize, &[f64])> = rows.filter(|(_, row)| is_whole(row)).collect();
@@ -280,7 +280,7 @@ fn is_whole(values: &[f64]) -> bool {
     values.iter().all(|x| x.is_finite())
 }
 
-/// The number that VTK gives a kind of cell.
+/// The cell type of VTK for an element.
 fn vtk_type(element: Element) -> u8 {
     match kind(element) {
         Kind::Triangle => 5,
@@ -352,12 +352,12 @@ fn vtu_file<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
         std::io::Write::write_all(&mut out, b"</CellData>\n")?;
         vtu::foot(&mut out)
     };
-    // Memory does not fail.
+    // Writing to memory cannot fail.
     let _ = write();
     out
 }
 
-/// Refuses cells of second order, which are written to other formats.
+/// Refuses cells of second order, which only other formats support.
 fn linear<const D: usize>(mesh: &Mesh<D>, format: &'static str) -> Result<(), SceneError> {
     let quadratic = mesh.cells.quadratic_triangles.len() + mesh.cells.quadratic_tetrahedra.len();
     if quadratic == 0 {
@@ -366,7 +366,7 @@ fn linear<const D: usize>(mesh: &Mesh<D>, format: &'static str) -> Result<(), Sc
     Err(SceneError::of(MeshWriteError::SecondOrder { format, cells: quadratic }))
 }
 
-/// One number per cell: the place of its group, from 1; 0 without one. Cells of several groups have that of the first by name.
+/// One number per cell: the number of its group, from 1; 0 without one. For a cell in several groups it is the first group by name.
 fn references<const D: usize>(mesh: &Mesh<D>, left_out: &mut Vec<LeftOut>) -> Vec<usize> {
     let mut out = vec![0; mesh.cells.len()];
     for (k, cells) in mesh.cell_groups.values().enumerate().rev() {
@@ -385,7 +385,7 @@ fn references<const D: usize>(mesh: &Mesh<D>, left_out: &mut Vec<LeftOut>) -> Ve
     out
 }
 
-/// What is said of values of nodes by formats that have no place for them.
+/// The notice of formats that cannot represent values of nodes.
 fn of_nodes<const D: usize>(mesh: &Mesh<D>) -> Option<LeftOut> {
     let count = mesh.node_values.len();
     (count > 0).then_some(LeftOut::ValuesOfNodes { count })
@@ -433,11 +433,11 @@ fn mfem<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
             Kind::Tetrahedron => 4,
             _ => 5,
         };
-        // Attributes count from 1: cells without a group have the one behind the last.
+        // Attributes count from 1: cells without a group get the number after the last group.
         let attribute = if reference == 0 { mesh.cell_groups.len() + 1 } else { reference };
         let _ = writeln!(out, "{attribute} {geometry} {}", listed(nodes, 0));
     }
-    // Faces of hexahedra are quadrilaterals, which facets do not tell: MFEM finds a boundary that is not given.
+    // The faces of hexahedra are quadrilaterals, which the facets do not give. MFEM finds the boundary if it is not given.
     let _ = writeln!(out, "\nboundary\n0\n\nvertices\n{}\n{D}", mesh.nodes());
     for x in &mesh.positions {
         let words: Vec<String> = x.iter().map(|x| format!("{x:e}")).collect();
@@ -461,7 +461,7 @@ fn tetgen<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
         let words: Vec<String> = x.iter().map(|x| format!("{x:e}")).collect();
         let _ = writeln!(nodes, "{node} {}", words.join(" "));
     }
-    // Attributes have no names, and no gaps.
+    // Attributes have no names and no gaps.
     let values: Vec<&Vec<f64>> = mesh.cell_values.values().filter(|values| is_whole(values)).collect();
     if !mesh.cell_values.is_empty() {
         left_out.push(LeftOut::NamesOfCellValues { count: mesh.cell_values.len() });

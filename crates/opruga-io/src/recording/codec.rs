@@ -1,10 +1,10 @@
-//! States as differences from the one before: of every eight bytes, taken as a whole number, only the part that differs.
+//! Encodes states as differences from the previous state: of every eight bytes, taken as a whole number, only the part that differs is kept.
 //!
-//! Neighbouring frames differ little, so the upper bytes of a difference are mostly zero and are left out; the lower ones
-//! are as good as random, and a general compressor gains nothing on them for ten times the time.
+//! Neighbouring frames differ little, so the upper bytes of a difference are mostly zero and are omitted. The lower bytes are as good as random: a
+//! general compressor would gain nothing on them and would take ten times as long.
 
-/// Appends the code of a state: for every word how many bytes of its difference follow (four bits each), those bytes, then
-/// the bytes behind the last whole word. `before` has the same length, or is empty: then the words stand for themselves.
+/// Appends the code of a state: for every word, the number of bytes of its difference (four bits each); those bytes; then the bytes after the last
+/// whole word. `before` has the same length or is empty; if it is empty, the words themselves are encoded.
 pub(super) fn encode(state: &[u8], before: &[u8], out: &mut Vec<u8>) {
     let (words, rest) = state.as_chunks::<8>();
     let (old, _) = before.as_chunks::<8>();
@@ -14,7 +14,7 @@ pub(super) fn encode(state: &[u8], before: &[u8], out: &mut Vec<u8>) {
     for (number, word) in words.iter().enumerate() {
         let old = old.get(number).map_or(0, |old| u64::from_le_bytes(*old));
         let difference = u64::from_le_bytes(*word).wrapping_sub(old) as i64;
-        // The sign goes to the lowest bit: small differences have zeros above, downwards too.
+        // The sign moves to the lowest bit, so that small differences of both signs have zeros in the upper bits.
         let folded = ((difference << 1) ^ (difference >> 63)) as u64;
         let count = 8 - folded.leading_zeros() as usize / 8;
         out[counts] |= (count as u8) << (4 * (number % 2));
@@ -26,7 +26,7 @@ pub(super) fn encode(state: &[u8], before: &[u8], out: &mut Vec<u8>) {
     out.extend_from_slice(rest);
 }
 
-/// The state of so many bytes whose code this is; none where it is no such code.
+/// Decodes a state of `bytes` bytes; none if the code is not valid for that length.
 pub(super) fn decode(code: &[u8], bytes: usize, before: &[u8]) -> Option<Vec<u8>> {
     let words = bytes / 8;
     let (counts, mut code) = code.split_at_checked(words.div_ceil(2))?;
@@ -62,7 +62,7 @@ mod tests {
             let mut code = vec![7];
             encode(&state, &before, &mut code);
             prop_assert_eq!(decode(&code[1..], state.len(), &before), Some(state.clone()));
-            // Neither more nor less.
+            // One byte less or one byte more is refused.
             prop_assert_eq!(decode(&[&code[1..], &[0]].concat(), state.len(), &before), None);
             if !state.is_empty() {
                 prop_assert_eq!(decode(&code[1..code.len() - 1], state.len(), &before), None);

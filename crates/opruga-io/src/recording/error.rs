@@ -7,7 +7,7 @@ opruga_math::messages! {
     /// Why a recording, or a frame of it, was refused.
     #[derive(Clone, Debug, PartialEq)]
     pub enum RecordingError {
-        /// It does not begin as a recording.
+        /// It does not begin like a recording.
         "recording.not_one" #[error("this is not a recording of Opruga")] #[allowed("a recording of version {VERSION}")]
         #[hint("opruga run SCENE --record FILE writes one")]
         NotOne {},
@@ -15,11 +15,11 @@ opruga_math::messages! {
         "recording.version" #[error("the recording has version {found}; this program reads version {VERSION}")] #[value("{found}")]
         #[allowed("a recording of version {VERSION}")] #[hint("the version of the program that wrote it can read it")]
         Version { found: u32 },
-        /// It ends within its head: the run that wrote it did not begin.
+        /// It ends within its header: the run that wrote it did not begin.
         "recording.cut_off" #[error("the recording is cut off in its head: it has {found} bytes of {expected}")]
         #[allowed("a recording of version {VERSION}")]
         CutOff { found: u64, expected: u64 },
-        /// A checksum does not fit, or the parts do not fit together.
+        /// A checksum does not match, or the parts are inconsistent.
         "recording.damaged" #[error("the recording is damaged between bytes {from} and {to}")] #[value("bytes {from} to {to}")]
         #[allowed("whole chunks")]
         Damaged { from: u64, to: u64 },
@@ -29,7 +29,7 @@ opruga_math::messages! {
         /// It has no frames.
         "recording.no_frame" #[error("the recording has no frame {frame}")] #[value("{frame}")] #[allowed("none: it has no frames")]
         NoFrames { frame: u64 },
-        /// The state of that frame is not in it: it is computed from one before.
+        /// It does not contain the state of that frame, which must be computed from an earlier one.
         "recording.not_kept" #[error("the recording keeps one state in {every} frames, and not that of frame {frame}")] #[value("{frame}")]
         #[allowed("every {every}th frame, and the last")]
         NotKept { frame: u64, every: u64 },
@@ -44,7 +44,7 @@ impl RecordingError {
     pub fn code(&self) -> &'static str {
         opruga_math::message::Message::code(self)
     }
-    /// There is no such frame among these.
+    /// The error for a frame that is not in this range.
     pub fn no_frame(frame: u64, frames: &core::ops::Range<u64>) -> RecordingError {
         match frames.is_empty() {
             true => RecordingError::NoFrames { frame },

@@ -1,4 +1,4 @@
-//! The file of a recording, written by the run itself: what has been given to the system outlives the process.
+//! The file of a recording, written by the run itself: data that were given to the system outlive the process.
 
 use super::format::Header;
 use super::writer::Writer;
@@ -12,20 +12,20 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// What a loss of power may cost.
+/// The time that a power failure may cost.
 const SYNCED: Duration = Duration::from_secs(5);
 
-/// A recording that is being written. Chunks go to the system one by one, each before the next is begun: a frame whose state is kept, something that a
-/// program did, or frames without their states up to the moment when their owner says so. A process that is killed loses the last chunk at most, which was
-/// not whole yet or was just going. A loss of power costs the last five seconds.
+/// A recording that is being written. Each chunk goes to the system before the next one begins. A chunk is a frame whose state is kept, an action of
+/// a program, or the frames without states up to a call of the owner. A process that is killed loses at most the last chunk, which was incomplete or
+/// was just being passed on. A power failure costs the last five seconds.
 pub struct RecordingFile {
     path: PathBuf,
     folder: PathBuf,
     writer: Writer<Box<dyn Target + Send>>,
-    /// Room for the bytes of a state.
+    /// Buffer for the bytes of a state.
     state: Vec<u8>,
     syncing: Option<Syncing>,
-    /// Whether there is no more to be written: all is, or nothing can be.
+    /// Whether nothing more will be written, because everything has been written or because writing failed.
     ended: bool,
 }
 
@@ -36,20 +36,19 @@ impl core::fmt::Debug for RecordingFile {
 }
 
 impl RecordingFile {
-    /// Makes the file with its header, and the folders around it. With `force` an earlier file is replaced as soon as the
-    /// header is written.
+    /// Creates the file with its header, and its parent folders. With `force`, an earlier file is replaced as soon as the header is written.
     ///
     /// # Errors
-    /// `write.exists` where the file is there and `force` is not given, `write.locked` where another process writes it,
-    /// `write.failed` where it cannot be written or is no regular file. In all cases the earlier file is whole.
+    /// `write.exists` if the file exists and `force` is not given, `write.locked` if another process writes it, `write.failed` if it cannot be
+    /// written or is not a regular file. In all cases the earlier file stays intact.
     pub fn create(path: &Path, force: bool, header: &Header) -> Result<RecordingFile, WriteError> {
         RecordingFile::create_through(path, force, header, |file| file)
     }
 
-    /// [`RecordingFile::create`] through a target of the caller's making: for tests that let the disk fail.
+    /// [`RecordingFile::create`] with a target made by the caller, for tests in which the disk fails.
     ///
     /// # Errors
-    /// As [`RecordingFile::create`].
+    /// Those of [`RecordingFile::create`].
     pub fn create_through<W: Target + Send + 'static>(
         path: &Path,
         force: bool,
@@ -73,7 +72,7 @@ impl RecordingFile {
             lock(&locked)?;
             let target: Box<dyn Target + Send> = Box::new(wrap(file));
             let writer = Writer::new(target, header)?;
-            // Only what takes the place of another file must be on the disk before it does.
+            // Only a file that replaces another one must be on the disk before it does.
             if replaces {
                 writer.sync()?;
             }
@@ -96,31 +95,31 @@ impl RecordingFile {
         })
     }
 
-    /// Adds the next frame, whose state is not kept, with its hash; it goes to the system with [`RecordingFile::flush`], or
-    /// with the next frame whose state is kept.
+    /// Adds the next frame, whose state is not kept, with its hash. It goes to the system with [`RecordingFile::flush`], or with the next frame whose
+    /// state is kept.
     ///
     /// # Errors
-    /// [`WriteError`] once the file could not be written, or if a frame is out of its order; the frames before are whole.
+    /// [`WriteError`] if the file could not be written, now or earlier, or if a frame is out of order; the earlier frames are intact.
     pub fn push(&mut self, frame: u64, hash: u64) -> Result<(), WriteError> {
         self.write(|file| file.writer.push(frame, hash))
     }
 
-    /// Gives all frames so far to the system: from then on they outlive the process.
+    /// Gives all frames so far to the system. From then on they outlive the process.
     ///
     /// # Errors
-    /// [`WriteError`] once the file could not be written.
+    /// [`WriteError`] if the file could not be written, now or earlier.
     pub fn flush(&mut self) -> Result<(), WriteError> {
         self.write(|file| file.writer.flush())
     }
 
-    /// Adds the next frame with its hash and its state, whose bytes `state` appends; or the state of the last frame, which
-    /// ends the recording.
+    /// Adds the next frame with its hash and its state, whose bytes `state` appends. If the frame is the one that was added last, its state ends the
+    /// recording.
     ///
     /// # Errors
-    /// As [`RecordingFile::push`].
+    /// Those of [`RecordingFile::push`].
     pub fn keep(&mut self, frame: u64, hash: u64, state: impl FnOnce(&mut Vec<u8>)) -> Result<(), WriteError> {
         self.write(|file| {
-            // The chunk before it goes first.
+            // The previous chunk goes first.
             file.writer.flush()?;
             file.state.clear();
             state(&mut file.state);
@@ -129,10 +128,10 @@ impl RecordingFile {
         })
     }
 
-    /// Adds something that a program did before the step that leads to the next frame.
+    /// Adds an action of a program that precedes the step to the next frame.
     ///
     /// # Errors
-    /// As [`RecordingFile::push`].
+    /// Those of [`RecordingFile::push`].
     pub fn input(&mut self, frame: u64, bytes: &[u8]) -> Result<(), WriteError> {
         self.write(|file| {
             file.writer.flush()?;
@@ -141,15 +140,15 @@ impl RecordingFile {
         })
     }
 
-    /// Writes what is left, the index and the end; returns the bytes of the file.
+    /// Writes the remaining data, the index and the end; returns the size of the file [bytes].
     ///
     /// # Errors
-    /// [`WriteError`] where the file could not be written; the frames before that are whole.
+    /// [`WriteError`] if the file could not be written; the earlier frames are intact.
     pub fn finish(mut self) -> Result<u64, WriteError> {
         self.end()
     }
 
-    /// Does a piece of work unless one before has failed: what stands behind a gap would be damage.
+    /// Does a piece of work unless an earlier one has failed: anything after a gap would be read as damage.
     fn write(&mut self, work: impl FnOnce(&mut RecordingFile) -> io::Result<()>) -> Result<(), WriteError> {
         if self.ended {
             return Err(WriteError::of(&self.path, WriteFault::RecordingEnded {}));
@@ -177,28 +176,28 @@ impl RecordingFile {
 
 impl Drop for RecordingFile {
     fn drop(&mut self) {
-        // Whoever leaves early has said why; the file is closed with what it has.
+        // If the run ended early, its error says why; the file is closed with the data that it has.
         if !self.ended {
             let _ = self.end();
         }
     }
 }
 
-/// Makes a file last every five seconds, beside the run: disks may take long for it.
+/// Syncs a file to the disk every five seconds, on a thread of its own, because disks may take long for it.
 struct Syncing {
     stop: Sender<()>,
     thread: JoinHandle<io::Result<()>>,
 }
 
 impl Syncing {
-    /// The file is held, with its lock, until the end.
+    /// Keeps the file, with its lock, until the end.
     fn begin(file: File, folder: &Path) -> io::Result<Syncing> {
         let (stop, stopped) = channel::<()>();
         let mut folder = Some(folder.to_path_buf());
         let run = move || {
             while let Err(RecvTimeoutError::Timeout) = stopped.recv_timeout(SYNCED) {
                 file.sync_data()?;
-                // Its name too, once.
+                // Its name is synced as well, once.
                 folder.take().map_or(Ok(()), |folder| sync_folder(&folder))?;
             }
             Ok(())
@@ -207,7 +206,7 @@ impl Syncing {
         Ok(Syncing { stop, thread })
     }
 
-    /// Whether it has ended by itself: the file cannot be made to last.
+    /// Whether the thread has ended by itself, because the file cannot be synced.
     fn has_ended(&self) -> bool {
         self.thread.is_finished()
     }
@@ -218,14 +217,14 @@ impl Syncing {
     }
 }
 
-/// Looks at what has the name now, and locks it.
+/// Inspects the file that has the name now, and locks it.
 fn earlier(path: &Path, force: bool) -> Result<Option<File>, WriteError> {
     let refuse = |fault: WriteFault| Err(WriteError::of(path, fault));
     match fs::metadata(path) {
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(e) => return Err(WriteError::failed(path, 0, &e)),
         Ok(about) if about.is_dir() => return refuse(WriteFault::IsFolder {}),
-        // Above all no device, which would be replaced by a file.
+        // A device in particular must not be replaced by a file.
         Ok(about) if !about.is_file() => return refuse(WriteFault::NoRegularFile {}),
         Ok(_) if !force => return refuse(WriteFault::FileExists {}),
         Ok(_) => {}
@@ -238,7 +237,7 @@ fn earlier(path: &Path, force: bool) -> Result<Option<File>, WriteError> {
     }
 }
 
-/// Locks a file against other processes; where the file system knows no locks, does nothing.
+/// Locks a file against other processes; does nothing if the file system has no locks.
 fn lock(file: &File) -> std::io::Result<()> {
     match file.try_lock() {
         Ok(()) => Ok(()),

@@ -13,23 +13,23 @@ pub(super) const CHUNK: usize = 48;
 /// Bytes of the end.
 pub(super) const TRAILER: usize = 20;
 
-/// What a recording says of its run, before the first frame.
+/// The description of a run in a recording, before the first frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
     /// The program that wrote it, with its version.
     pub program: String,
     /// The name of the scene.
     pub name: String,
-    /// Where the scene was read from, as it was called.
+    /// Where the scene was read from, as given by the user.
     pub file: String,
     /// The scene as it was read.
     pub scene: Vec<u8>,
     /// The length of a frame [s].
     pub frame: f64,
-    /// From one frame whose state is kept to the next; those between are computed again. The first frame and the last
-    /// are kept whatever their number. At least 1: every frame.
+    /// The number of frames from one kept state to the next; the frames between are computed again. The states of the first and the last frame are
+    /// always kept. At least 1: every frame.
     pub every: u64,
-    /// What was set in the scene by the call, each a path and a value.
+    /// The overrides of the call, each a path and a value.
     pub overrides: Vec<(String, String)>,
     /// Whether unknown fields are warnings.
     pub lenient: bool,
@@ -92,7 +92,7 @@ impl Header {
         out
     }
 
-    /// Reads what [`Header::to_bytes`] has written; none if it is something else.
+    /// Reads what [`Header::to_bytes`] wrote; none if it is something else.
     fn read(mut bytes: &[u8]) -> Option<Header> {
         let mut part = || {
             let (length, rest) = bytes.split_first_chunk::<8>()?;
@@ -124,7 +124,7 @@ impl Header {
     }
 }
 
-/// The beginning of the file, and the checksum that tells this recording from others.
+/// The beginning of the file, and the checksum that identifies this recording.
 pub(super) fn beginning(header: &Header) -> (Vec<u8>, u32) {
     let header = header.to_bytes();
     let mut out = MAGIC.to_vec();
@@ -137,7 +137,7 @@ pub(super) fn beginning(header: &Header) -> (Vec<u8>, u32) {
     (out, identity)
 }
 
-/// The bytes of the header, from the bytes before it.
+/// The size of the header, from the bytes before it.
 pub(super) fn header_bytes(head: &[u8], file: u64) -> Result<u64, RecordingError> {
     if head.is_empty() || !head.starts_with(&MAGIC[..head.len().min(8)]) {
         return Err(RecordingError::NotOne {});
@@ -148,7 +148,7 @@ pub(super) fn header_bytes(head: &[u8], file: u64) -> Result<u64, RecordingError
     if crc32fast::hash(&head[..20]) != u32_at(head, 20) {
         return Err(RecordingError::Damaged { from: 0, to: HEAD as u64 });
     }
-    // After the checksum: a flipped byte is damage, and no other version.
+    // After the checksum: a flipped byte is damage, not another version.
     match u32_at(head, 8) {
         VERSION | BEFORE => {}
         found => return Err(RecordingError::Version { found }),
@@ -161,7 +161,7 @@ pub(super) fn header_bytes(head: &[u8], file: u64) -> Result<u64, RecordingError
     Ok(bytes)
 }
 
-/// The header and the checksum that tells this recording from others, from the header's bytes and the checksum behind.
+/// The header and the checksum that identifies this recording, from the bytes of the header and the checksum after it.
 pub(super) fn header(bytes: &[u8]) -> Result<(Header, u32), RecordingError> {
     let damaged = || RecordingError::Damaged { from: HEAD as u64, to: (HEAD + bytes.len()) as u64 };
     let (header, sum) = bytes.split_last_chunk::<4>().ok_or_else(damaged)?;
@@ -172,18 +172,18 @@ pub(super) fn header(bytes: &[u8]) -> Result<(Header, u32), RecordingError> {
     Ok((Header::read(header).ok_or_else(damaged)?, identity))
 }
 
-/// What a chunk holds.
+/// The contents of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// A state by itself.
+    /// A complete state.
     Whole,
-    /// The difference of a state from the one kept before.
+    /// The difference of a state from the previous kept one.
     Difference,
     /// Frames whose states are not kept: the first in the head, the hashes of the others in the payload.
     Passed,
-    /// What the program did before the step that led to a frame.
+    /// An action of the program before the step to a frame.
     Input,
-    /// The last frame whose state is kept, how many chunks are whole, their frames and offsets, then those of the inputs.
+    /// The last frame whose state is kept, the number of chunks with complete states, their frames and offsets, then those of the inputs.
     Index,
 }
 
@@ -191,12 +191,12 @@ pub(super) enum Kind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ChunkHead {
     pub(super) kind: Kind,
-    /// The frame, or the first of them; of an input, the one that comes after it; of an index, one past the last.
+    /// The frame, or the first of several. For an input, the frame that follows it; for an index, the frame after the last.
     pub(super) frame: u64,
-    /// Bytes of what the payload stands for.
+    /// Size of the decoded payload [bytes].
     pub(super) state: u64,
     pub(super) payload: u64,
-    /// The hash of the frame; of others than frames 0.
+    /// The hash of the frame; 0 if the chunk is not a frame.
     pub(super) hash: u64,
     pub(super) payload_sum: u32,
 }
@@ -223,7 +223,7 @@ impl ChunkHead {
         out
     }
 
-    /// None where this is no head of a chunk of this recording.
+    /// Reads the head; none if the bytes are not the head of a chunk of this recording.
     pub(super) fn read(bytes: &[u8; CHUNK], identity: u32) -> Option<ChunkHead> {
         let kind = match (&bytes[..4], u32_at(bytes, 4)) {
             (b"FRAM", 0) => Kind::Whole,
@@ -244,7 +244,7 @@ impl ChunkHead {
     }
 }
 
-/// The end of the file, which tells where the index is.
+/// The end of the file, which gives the offset of the index.
 pub(super) fn trailer(index: u64, identity: u32) -> Vec<u8> {
     let mut out = index.to_le_bytes().to_vec();
     out.extend(sum_of(identity, &out).to_le_bytes());
@@ -252,7 +252,7 @@ pub(super) fn trailer(index: u64, identity: u32) -> Vec<u8> {
     out
 }
 
-/// The offset of the index; none if this is not the end of this recording.
+/// The offset of the index; none if these bytes are not the end of this recording.
 pub(super) fn index_offset(trailer: &[u8; TRAILER], identity: u32) -> Option<u64> {
     let whole = trailer[12..] == *END && sum_of(identity, &trailer[..8]) == u32_at(trailer, 8);
     whole.then(|| u64_at(trailer, 0))

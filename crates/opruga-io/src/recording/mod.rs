@@ -1,5 +1,4 @@
-//! Recordings: every frame of a run in one file that needs no other, survives a kill at any moment, and is checked byte
-//! by byte.
+//! Recordings: one file with every frame of a run, which needs no other file, survives a kill at any moment, and is checked byte by byte.
 //!
 //! ```text
 //! 0    8  "OPRREC\x1a\n"        refuses texts and files that a transfer has changed
@@ -28,11 +27,10 @@
 //! 8    4  CRC-32 of the header's CRC-32 and of bytes 0 … 7
 //! 12   8  "OPREND\x1a\n"
 //! ```
-//! All places are of 64 bits. A file without the end, of a run that was killed, is read chunk by chunk, and the index made
-//! again; a chunk that was not written to its end is left out, and said to be. Every chunk goes to the system as soon as it is whole, before anything of the
-//! next is: a process that is killed at any moment loses the last chunk at most. What the bytes of a state mean is the matter
-//! of the world that wrote them, as that of a hash: what is computed again is compared with it. The same run gives the same
-//! bytes.
+//! All offsets have 64 bits. The file of a killed run, which has no end, is read chunk by chunk, and the index is made again. A chunk that was not
+//! written completely is omitted and reported. Every chunk goes to the system as soon as it is complete, before the next one begins, so a process
+//! that is killed loses at most the last chunk. The bytes of a state and the hash of a frame have a meaning only for the world that wrote them; the
+//! hash is compared with that of a frame computed again. The same run gives the same bytes.
 
 mod codec;
 mod error;

@@ -1,11 +1,11 @@
-//! Which frames may follow which: one rule for those who write recordings and those who read them.
+//! Which frames may follow which: one rule for writing and for reading recordings.
 
 use core::ops::Range;
 
-/// The frames of a recording so far, and the states among them.
+/// The frames of a recording so far, and which of their states are kept.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Order {
-    /// From one frame whose state is kept to the next.
+    /// The number of frames from one kept state to the next.
     every: u64,
     /// None before the first frame.
     span: Option<Span>,
@@ -24,14 +24,14 @@ impl Order {
         Order { every, span: None }
     }
 
-    /// Of a recording that has ended: the frames, and the last whose state is kept. None where that cannot be.
+    /// The order of a recording that has ended, from its first and last frame and the last frame whose state is kept. None if these are inconsistent.
     pub(super) fn ended(every: u64, first: u64, last: u64, kept: u64) -> Option<Order> {
         let order = Order { every, span: Some(Span { first, last, kept }) };
         let apart = last.checked_sub(kept).is_some_and(|apart| apart < every) && kept >= first;
         (apart && (order.due(kept) || kept == last) && last < u64::MAX).then_some(order)
     }
 
-    /// The first frame, and one past the last.
+    /// The range from the first frame to the last.
     pub(super) fn frames(&self) -> Range<u64> {
         self.span.map_or(0..0, |span| span.first..span.last + 1)
     }
@@ -41,17 +41,17 @@ impl Order {
         self.span.map(|span| span.kept)
     }
 
-    /// Whether the state of a frame has to be kept, whatever comes behind it.
+    /// Whether the state of a frame must be kept, whatever follows it.
     fn due(&self, frame: u64) -> bool {
         self.span.is_none_or(|span| (frame - span.first).is_multiple_of(self.every))
     }
 
-    /// Whether this is the frame that comes next; an earlier state than is due has ended the recording.
+    /// Whether this is the next frame. There is none after a state that was kept before it was due: such a state ends the recording.
     pub(super) fn follows(&self, frame: u64) -> bool {
         self.span.is_some_and(|span| frame == span.last + 1 && self.due(span.kept)) && frame < u64::MAX
     }
 
-    /// Takes a frame whose state is not kept; says whether it may come now.
+    /// Adds a frame whose state is not kept; returns whether it is allowed now.
     pub(super) fn pass(&mut self, frame: u64) -> bool {
         let may = self.follows(frame) && !self.due(frame);
         if let Some(span) = self.span.as_mut().filter(|_| may) {
@@ -60,7 +60,7 @@ impl Order {
         may
     }
 
-    /// Takes the frames of a chunk with the hashes of the others in its payload: all of them or none.
+    /// Adds the frames of a chunk without states, whose payload has the hashes of all but the first: either all of them or none.
     pub(super) fn pass_all(&mut self, frame: u64, payload: u64) -> bool {
         let before = *self;
         let others = payload / 8;
@@ -72,7 +72,7 @@ impl Order {
         all
     }
 
-    /// Takes a frame with its state, or the state of the last frame, which ends the recording; says whether it may come now.
+    /// Adds a frame with its state, or the state of the last frame, which ends the recording; returns whether it is allowed now.
     pub(super) fn keep(&mut self, frame: u64) -> bool {
         let begins = self.span.is_none() && frame < u64::MAX;
         let ends = self.span.is_some_and(|span| frame == span.last && frame > span.kept);
@@ -90,7 +90,7 @@ impl Order {
         Some(if frame >= span.kept { span.kept } else { span.first + (frame - span.first) / self.every * self.every })
     }
 
-    /// The frame of the next state behind one that is kept.
+    /// The next frame whose state is kept, after one whose state is kept.
     pub(super) fn next_kept(&self, frame: u64) -> u64 {
         let last = self.span.map_or(0, |span| span.kept);
         if last.saturating_sub(frame) < self.every { last } else { frame + self.every }

@@ -1,4 +1,4 @@
-//! Reads a recording from anything that can be searched.
+//! Reads a recording from any seekable source.
 
 use super::codec;
 use super::error::RecordingError;
@@ -10,14 +10,14 @@ use std::io::{ErrorKind, Read, Seek, SeekFrom};
 /// How the file of a recording ends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ending {
-    /// As the run that wrote it has meant it to.
+    /// Properly: the run that wrote it ended it.
     Closed,
-    /// Without its end: the run was killed, or is still running. All frames are whole.
+    /// Without its end: the run was killed, or is still running. All frames are intact.
     Open {
-        /// The bytes of a chunk that was not written to its end.
+        /// Size of a chunk that was not written completely [bytes].
         lost: u64,
     },
-    /// With something else; frames behind it cannot be found.
+    /// With something else; frames after that cannot be found.
     Damaged(RecordingError),
 }
 
@@ -27,28 +27,28 @@ pub struct Recording<R> {
     source: R,
     header: Header,
     identity: u32,
-    /// Frame and offset of the chunks that stand for themselves.
+    /// Frame and offset of each chunk with a complete state.
     index: Vec<[u64; 2]>,
-    /// Frame and offset of what a program did.
+    /// Frame and offset of each action of a program.
     inputs: Vec<[u64; 2]>,
     order: Order,
     ending: Ending,
-    /// Where the chunks of frames end.
+    /// The offset at which the chunks of frames end.
     end: u64,
-    /// The last frame whose hash was read, and the offset of the chunk behind it.
+    /// The last frame whose hash was read, and the offset of the next chunk.
     hashed: Option<(u64, u64)>,
-    /// The last chunk of frames without states whose hashes were read: its first frame, and they.
+    /// The last chunk of frames without states whose hashes were read: its first frame and the hashes.
     passed: (u64, Vec<u64>),
-    /// The last frame whose state was read, and the offset of the chunk behind it.
+    /// The last frame whose state was read, and the offset of the next chunk.
     read: Option<(u64, u64)>,
     state: Vec<u8>,
 }
 
 impl<R: Read + Seek> Recording<R> {
-    /// Reads the header and the index; where there is no index, makes it anew from the heads of all chunks.
+    /// Reads the header and the index. If there is no index, makes it from the heads of all chunks.
     ///
     /// # Errors
-    /// [`RecordingError`] where the head is not that of a whole recording; damage behind it is [`Recording::ending`].
+    /// [`RecordingError`] if the header is not that of a complete recording. Damage after it is reported by [`Recording::ending`].
     pub fn open(mut source: R) -> Result<Recording<R>, RecordingError> {
         let length = source.seek(SeekFrom::End(0))?;
         source.rewind()?;
@@ -79,17 +79,17 @@ impl<R: Read + Seek> Recording<R> {
         Ok(recording)
     }
 
-    /// What it says of its run.
+    /// The description of the run.
     pub fn header(&self) -> &Header {
         &self.header
     }
 
-    /// The first frame, and one past the last.
+    /// The range from the first frame to the last.
     pub fn frames(&self) -> Range<u64> {
         self.order.frames()
     }
 
-    /// The last frame up to a given one whose state is kept: those behind it are to be computed from that.
+    /// The last frame up to a given one whose state is kept; the frames after it must be computed from that state.
     ///
     /// # Errors
     /// [`RecordingError::NoFrame`].
@@ -97,11 +97,10 @@ impl<R: Read + Seek> Recording<R> {
         self.order.kept(frame).ok_or_else(|| RecordingError::no_frame(frame, &self.frames()))
     }
 
-    /// The hash of a frame, as the program that computed it has given it: every frame has one. Frames one after the other
-    /// are read once each.
+    /// The hash of a frame, as given by the program that computed it. Every frame has one. If frames are read in order, each is read once.
     ///
     /// # Errors
-    /// [`RecordingError`] if there is no such frame, or if a chunk on the way to it is damaged.
+    /// [`RecordingError`] if the frame does not exist, or if a chunk before it that must be read is damaged.
     pub fn hash(&mut self, frame: u64) -> Result<u64, RecordingError> {
         self.kept(frame)?;
         let known = frame.checked_sub(self.passed.0).and_then(|k| self.passed.1.get(usize::try_from(k).ok()?));
@@ -120,7 +119,7 @@ impl<R: Read + Seek> Recording<R> {
                 self.hashed = Some((head.frame.saturating_add(head.payload / 8), behind));
                 return Ok(self.passed.1[(frame - head.frame) as usize]);
             }
-            // The state of the last frame may stand behind its hash.
+            // The state of the last frame may follow its hash.
             if !matches!(head.kind, Kind::Input | Kind::Passed) && head.frame == frame {
                 self.hashed = Some((frame, behind));
                 return Ok(head.hash);
@@ -134,12 +133,12 @@ impl<R: Read + Seek> Recording<R> {
         &self.ending
     }
 
-    /// What a program did during the run: for each the frame that followed it, in order.
+    /// The actions of a program during the run: for each, the frame that followed it, in order.
     pub fn inputs(&self) -> impl Iterator<Item = u64> + '_ {
         self.inputs.iter().map(|[frame, _]| *frame)
     }
 
-    /// The bytes of what a program did, by its number.
+    /// The bytes of an action of a program, by its number.
     ///
     /// # Errors
     /// [`RecordingError`] if there is no such input, or if its chunk is damaged.
@@ -157,7 +156,7 @@ impl<R: Read + Seek> Recording<R> {
         self.payload(&head)?.ok_or(damaged(behind))
     }
 
-    /// The payload of the chunk whose head was just read; none where it is damaged.
+    /// The payload of the chunk whose head was just read; none if it is damaged.
     fn payload(&mut self, head: &ChunkHead) -> Result<Option<Vec<u8>>, RecordingError> {
         let mut payload = Vec::new();
         self.source.by_ref().take(head.payload).read_to_end(&mut payload)?;
@@ -165,11 +164,11 @@ impl<R: Read + Seek> Recording<R> {
         Ok(fits.then_some(payload))
     }
 
-    /// The state of a frame that is kept ([`Recording::kept`]). Frames one after the other are read once each, others from
-    /// the last that stands for itself.
+    /// The state of a frame that is kept ([`Recording::kept`]). If frames are read in order, each is read once; otherwise, reading starts at the last
+    /// complete state.
     ///
     /// # Errors
-    /// [`RecordingError`] if there is no state of that frame, or if a chunk on the way to it is damaged.
+    /// [`RecordingError`] if the state of that frame is not kept, or if a chunk before it that must be read is damaged.
     pub fn read(&mut self, frame: u64) -> Result<&[u8], RecordingError> {
         if self.kept(frame)? != frame {
             return Err(RecordingError::NotKept { frame, every: self.header.every });
@@ -191,7 +190,7 @@ impl<R: Read + Seek> Recording<R> {
         }
     }
 
-    /// The head of the chunk of a frame or input at an offset, up to a given frame; and the offset behind it.
+    /// The head of the chunk of a frame or input at an offset, up to a given frame, and the offset after the chunk.
     fn frame_chunk(&mut self, offset: u64, until: u64) -> Result<(ChunkHead, u64), RecordingError> {
         let damaged = RecordingError::Damaged { from: offset, to: offset + CHUNK as u64 };
         let head = self.chunk_head(offset)?.ok_or_else(|| damaged.clone())?;
@@ -202,11 +201,11 @@ impl<R: Read + Seek> Recording<R> {
         Ok((head, behind))
     }
 
-    /// Goes to the state of a frame by the first chunk of a state from an offset on; returns the offset behind it.
+    /// Decodes the state of a frame from the first chunk with a state at or after an offset; returns the offset after the chunk.
     fn apply(&mut self, frame: u64, mut offset: u64, whole: bool) -> Result<u64, RecordingError> {
         let (head, behind) = loop {
             let (head, behind) = self.frame_chunk(offset, frame)?;
-            // What came before the frame is read by those who do it again.
+            // Inputs before the frame are read by callers that compute it again.
             if !matches!(head.kind, Kind::Input | Kind::Passed) {
                 break (head, behind);
             }
@@ -227,7 +226,7 @@ impl<R: Read + Seek> Recording<R> {
         Ok(behind)
     }
 
-    /// The head of the chunk at an offset; none where there is no whole one.
+    /// The head of the chunk at an offset; none if there is no intact one.
     fn chunk_head(&mut self, offset: u64) -> Result<Option<ChunkHead>, RecordingError> {
         let mut bytes = [0; CHUNK];
         self.source.seek(SeekFrom::Start(offset))?;
@@ -238,7 +237,7 @@ impl<R: Read + Seek> Recording<R> {
         }
     }
 
-    /// Takes the index of a file that was written to its end; says whether there was one.
+    /// Reads the index of a file that was written completely; returns whether there was one.
     fn follow_index(&mut self, first: u64, length: u64) -> Result<bool, RecordingError> {
         let Some(end) = length.checked_sub(TRAILER as u64).filter(|end| *end >= first) else { return Ok(false) };
         self.source.seek(SeekFrom::Start(end))?;
@@ -258,7 +257,7 @@ impl<R: Read + Seek> Recording<R> {
         let mut index: Vec<[u64; 2]> = pairs.iter().map(|pair| [u64_at(pair, 0), u64_at(pair, 8)]).collect();
         let Some(whole) = usize::try_from(whole).ok().filter(|n| *n <= index.len()) else { return Ok(false) };
         let inputs = index.split_off(whole);
-        // An input may come after the last frame: the run has ended before its step.
+        // An input may follow the last frame, if the run ended before its step.
         let ordered = index.is_sorted_by(|a, b| a[0] < b[0] && a[1] < b[1])
             && inputs.is_sorted_by(|a, b| a[0] <= b[0] && a[1] < b[1])
             && index.iter().all(|[frame, at]| *frame <= kept && (first..offset).contains(at))
@@ -273,7 +272,7 @@ impl<R: Read + Seek> Recording<R> {
         Ok(true)
     }
 
-    /// Goes from chunk to chunk, up to the end or to what is no chunk.
+    /// Goes from chunk to chunk, until the end or until something that is not a chunk.
     fn scan(&mut self, first: u64, length: u64) -> Result<(), RecordingError> {
         let mut offset = first;
         self.ending = loop {
@@ -288,7 +287,7 @@ impl<R: Read + Seek> Recording<R> {
             }
             let behind = offset + CHUNK as u64 + head.payload;
             let fits = match head.kind {
-                // Its end is missing, or is not one, else there would have been no need to come here.
+                // The end of the file is missing or damaged; otherwise the index would have been used.
                 Kind::Index if length - behind < TRAILER as u64 => break Ending::Open { lost: left },
                 Kind::Index => break damaged(length),
                 Kind::Input => self.order.follows(head.frame),

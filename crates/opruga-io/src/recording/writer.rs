@@ -1,4 +1,4 @@
-//! Writes a recording, frame by frame, into anything that takes bytes.
+//! Writes a recording frame by frame to anything that takes bytes.
 
 use super::codec;
 use super::format::{self, ChunkHead, Header, Kind};
@@ -6,26 +6,27 @@ use super::order::Order;
 use crate::safe_write::{Counted, Target};
 use std::io::{self, Write as _};
 
-/// States from one that stands for itself to the next: as many are read, at most, to see one of them.
+/// The number of states from one complete state to the next, and thus the largest number of states that must be read to obtain one.
 const GROUP: u64 = 64;
 
-/// Writes a recording. What [`Writer::flush`] has returned from is whole in the file, whatever happens afterwards.
+/// Writes a recording. Everything written before a successful [`Writer::flush`] is intact in the file, whatever happens afterwards.
 #[derive(Debug)]
 pub struct Writer<W> {
     out: Counted<W>,
     identity: u32,
-    /// What was not given to the file yet.
+    /// Bytes that have not been given to the file yet.
     pending: Vec<u8>,
-    /// The chunk of frames without states that others may still join: where it begins in that, its first frame and the hash of that.
+    /// The chunk of frames without states to which more frames may be added: where it begins in `pending`, its first frame and the hash of that
+    /// frame.
     passed: Option<(usize, u64, u64)>,
-    /// The bytes of the file, with those not given to it yet.
+    /// Size of the file, including bytes not given to it yet.
     offset: u64,
     /// The last state that was kept.
     previous: Vec<u8>,
     order: Order,
-    /// States from the last that stands for itself on.
+    /// The number of states since the last complete one, including it.
     group: u64,
-    /// Frame and offset of the chunks that stand for themselves.
+    /// Frame and offset of each chunk with a complete state.
     index: Vec<[u64; 2]>,
     /// Frame and offset of the inputs.
     inputs: Vec<[u64; 2]>,
@@ -54,11 +55,11 @@ impl<W: Target> Writer<W> {
         Ok(writer)
     }
 
-    /// Adds a frame whose state is not kept: the next one, of which no state is due by the header. Those that go to the file together, with nothing
-    /// between them, are one chunk.
+    /// Adds the next frame without its state, if the header does not require the state. Frames that go to the file together, with nothing between
+    /// them, form one chunk.
     ///
     /// # Errors
-    /// A frame out of its order; it is left out. The file is not written to before [`Writer::flush`].
+    /// A frame out of order; it is not added. The file is not written before [`Writer::flush`].
     pub fn push(&mut self, frame: u64, hash: u64) -> io::Result<()> {
         if !self.order.pass(frame) {
             return Err(out_of_order(frame));
@@ -70,19 +71,18 @@ impl<W: Target> Writer<W> {
         Ok(())
     }
 
-    /// Ends the chunk of frames without states, if one is begun.
+    /// Ends the chunk of frames without states, if there is one.
     fn end_passed(&mut self) {
         if let Some((from, frame, hash)) = self.passed.take() {
             self.end(from, Kind::Passed, frame, 0, hash);
         }
     }
 
-    /// Adds a frame with its state: the first, which may have any number, or the next one. That of a frame to which none is
-    /// due ends the recording, as does that of the frame that was pushed last. The state is exchanged for other bytes
-    /// instead of copied.
+    /// Adds a frame with its state: the first frame, which may have any number, or the next one. A state that is not due at its frame ends the
+    /// recording, and so does the state of the frame that was pushed last. The state is exchanged for other bytes instead of being copied.
     ///
     /// # Errors
-    /// A frame out of its order; it is left out, and the state stays with its owner.
+    /// A frame out of order; it is not added, and the state stays with its owner.
     pub fn keep(&mut self, frame: u64, hash: u64, state: &mut Vec<u8>) -> io::Result<()> {
         if !self.order.keep(frame) {
             return Err(out_of_order(frame));
@@ -103,10 +103,10 @@ impl<W: Target> Writer<W> {
         Ok(())
     }
 
-    /// Adds something that a program did before the step to the next frame.
+    /// Adds an action of a program that precedes the step to the next frame.
     ///
     /// # Errors
-    /// A frame out of its order; it is left out.
+    /// A frame out of order; it is not added.
     pub fn input(&mut self, frame: u64, bytes: &[u8]) -> io::Result<()> {
         if !self.order.follows(frame) {
             return Err(out_of_order(frame));
@@ -119,14 +119,14 @@ impl<W: Target> Writer<W> {
         Ok(())
     }
 
-    /// Leaves room for the head of a chunk, whose payload follows; returns where it begins.
+    /// Reserves space for the head of a chunk, whose payload follows; returns where it begins.
     fn begin(&mut self) -> usize {
         let from = self.pending.len();
         self.pending.resize(from + format::CHUNK, 0);
         from
     }
 
-    /// Writes the head of a chunk, once its payload is there.
+    /// Writes the head of a chunk once its payload is there.
     fn end(&mut self, from: usize, kind: Kind, frame: u64, state: u64, hash: u64) {
         let (head, payload) = self.pending[from..].split_at_mut(format::CHUNK);
         let payload_sum = crc32fast::hash(payload);
@@ -135,10 +135,10 @@ impl<W: Target> Writer<W> {
         self.offset += (self.pending.len() - from) as u64;
     }
 
-    /// Gives all frames so far to the system: from then on they outlive the process.
+    /// Gives all frames so far to the system. From then on they outlive the process.
     ///
     /// # Errors
-    /// Those of the target; [`Writer::bytes`] tells how many bytes it has taken.
+    /// Those of the target; [`Writer::bytes`] is the number of bytes that it has taken.
     pub fn flush(&mut self) -> io::Result<()> {
         self.end_passed();
         if self.pending.is_empty() {
@@ -149,7 +149,7 @@ impl<W: Target> Writer<W> {
         self.out.flush()
     }
 
-    /// Makes what was flushed outlive a loss of power.
+    /// Makes everything that was flushed survive a power failure.
     ///
     /// # Errors
     /// Those of the target.
@@ -157,12 +157,12 @@ impl<W: Target> Writer<W> {
         self.out.inner.sync()
     }
 
-    /// Bytes that the target has taken.
+    /// The number of bytes that the target has taken.
     pub fn bytes(&self) -> u64 {
         self.out.bytes
     }
 
-    /// Writes what is left, the index and the end, and makes all of it last.
+    /// Writes the remaining data, the index and the end, and syncs all of it.
     ///
     /// # Errors
     /// Those of the target.

@@ -13,7 +13,7 @@ use opruga_core::spec::{Values, nearest};
 use opruga_world::blueprint::{Action, ColliderBlueprint, CommandBlueprint, LoadBlueprint, LoadKind, Selector};
 use opruga_world::schema::{self, Section};
 
-/// The section that the tag of a table names, and its plain fields.
+/// The section that the tag of a table selects, and its plain fields.
 fn tagged(
     reader: &mut Reader<'_>,
     node: &Node,
@@ -28,7 +28,7 @@ fn tagged(
     Some(reader.fields(node, path, section, Some(tag)))
 }
 
-/// Forces from outside.
+/// Reads external forces.
 pub(crate) fn loads<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies<D>) -> Vec<LoadBlueprint<D>> {
     let mut loads = Vec::new();
     for (node, path) in reader.list(root, "", "load") {
@@ -63,7 +63,7 @@ pub(crate) fn loads<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies
     loads
 }
 
-/// What is done to the bodies while they move, in the order of time.
+/// Reads the commands, in the order of time.
 pub(crate) fn commands<const D: usize>(
     reader: &mut Reader<'_>,
     list: &[(&Node, String)],
@@ -72,7 +72,7 @@ pub(crate) fn commands<const D: usize>(
     colliders: &[ColliderBlueprint],
     frames: Option<&Frames>,
 ) -> Vec<CommandBlueprint<D>> {
-    // Bodies that come later may be taken away or changed too.
+    // Bodies that are added later may also be removed or changed.
     let added: Vec<&str> = list.iter().filter_map(|(node, _)| node.get("body")?.get("name")?.text()).collect();
     let known = parameters::Known { bodies, added: &added, integrator, colliders };
     let (mut commands, mut sets, mut lifetimes) = (Vec::new(), Vec::new(), Lifetimes::default());
@@ -116,7 +116,7 @@ pub(crate) fn commands<const D: usize>(
     commands
 }
 
-/// What a command does: one action, or one for each copy of its body.
+/// The actions of a command: one, or one for each copy of its body.
 fn actions<const D: usize>(
     reader: &mut Reader<'_>,
     number: usize,
@@ -192,7 +192,7 @@ fn actions<const D: usize>(
         }
         _ => {
             let name = values.text("body")?;
-            // Copies go one by one: their common name is that of no body.
+            // Copies are handled one by one: no body has their common name.
             if !bodies.names.contains_key(name) && !known.added.contains(&name) {
                 bodies.unknown(reader, location_of(node, "body"), join(path, "body"), name, known.added);
                 return None;

@@ -28,7 +28,7 @@ struct Draft<'n, const D: usize> {
     name: String,
     values: Values,
     shape: Option<Values>,
-    /// What the file of the shape holds, if it has one.
+    /// The contents of the shape's file, if it has one.
     loaded: Option<Loaded>,
     rotation: Vec<f64>,
     velocities: Velocities<D>,
@@ -38,20 +38,20 @@ struct Draft<'n, const D: usize> {
     pins: Vec<pins::Located<D>>,
     contact: Option<Values>,
     copies: Option<Copies<D>>,
-    /// Whether nothing is wrong with its nodes: what selects them can be checked.
+    /// Whether its nodes have no errors, so that selectors of nodes can be checked.
     shaped: bool,
-    /// Whether nothing is wrong with it at all.
+    /// Whether it has no errors at all.
     sound: bool,
 }
 
 impl<const D: usize> Draft<'_, D> {
-    /// Whether a model of it owns its cells.
+    /// Whether one of its models owns its cells.
     fn owns_cells(&self) -> bool {
         self.models.iter().any(|model| model.spec().has_role(Role::OwnsCells))
     }
 }
 
-/// Reads all bodies, checks what they cost, and then makes their meshes.
+/// Reads all bodies, checks their cost, and then makes their meshes.
 pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u64) -> Bodies<D> {
     let mut drafts: Vec<Draft<'_, D>> = Vec::new();
     for (node, path) in reader.list(root, "", "body") {
@@ -92,7 +92,7 @@ pub(crate) fn all<const D: usize>(reader: &mut Reader<'_>, root: &Node, seed: u6
     bodies
 }
 
-/// The bodies that `add` commands bring: other commands, loads and probes may name them.
+/// Reads the bodies of `add` commands; other commands, loads and probes may name them.
 pub(crate) fn later<const D: usize>(reader: &mut Reader<'_>, commands: &[(&Node, String)], bodies: &mut Bodies<D>) {
     let mut added: Vec<(f64, usize, BodyBlueprint<D>)> = Vec::new();
     let mut names = Names::of(What::Bodies);
@@ -114,7 +114,7 @@ pub(crate) fn later<const D: usize>(reader: &mut Reader<'_>, commands: &[(&Node,
         };
         added.push((time, number, body));
     }
-    // The world numbers them as they come.
+    // The world numbers them in the order of their times.
     added.sort_by(|a, b| a.0.total_cmp(&b.0));
     for (time, number, body) in added {
         bodies.later.insert(number, (bodies.list.len(), time));
@@ -123,7 +123,7 @@ pub(crate) fn later<const D: usize>(reader: &mut Reader<'_>, commands: &[(&Node,
     }
 }
 
-/// A body of an `add` command.
+/// Reads the body of an `add` command.
 fn single<const D: usize>(
     reader: &mut Reader<'_>,
     node: &Node,
@@ -186,7 +186,7 @@ fn draft<'n, const D: usize>(
         None => None,
     };
     let sound = reader.count() == before;
-    // Its nodes are where the scene wants them if these are right; so are its names.
+    // If these fields are right, the nodes have the positions that the scene asks for, and the names are right, too.
     const SHAPING: [&str; 6] = ["name", "shape", "position", "rotation", "scale", "copies"];
     let shaped =
         node.get("name").is_some() && SHAPING.iter().all(|field| reader.sound_since(before, &join(&path, field)));
@@ -210,13 +210,13 @@ fn draft<'n, const D: usize>(
     })
 }
 
-/// Names stand in paths and in the heads of tables: they keep clear of what separates those.
+/// Names occur in paths and in the heads of tables, so they must not contain the characters that separate those.
 pub(crate) fn check_name(reader: &mut Reader<'_>, node: &Node, path: &str, name: &str) {
     let Some(fault) = validity::name_fault(name) else { return };
     reader.report(node.location, SceneError::of(fault).path(path).value(visible(name)));
 }
 
-/// The densities of the cells of a mesh by their name in its file.
+/// The densities of the cells of a mesh, by their name in its file.
 fn densities<const D: usize>(mesh: &Mesh<D>, name: &str) -> Result<Arc<[f64]>, SceneError> {
     let Some(numbers) = mesh.cell_values.get(name) else {
         let known: Vec<String> = mesh.cell_values.keys().map(|known| format!("`{}`", visible(known))).collect();
@@ -232,12 +232,12 @@ fn densities<const D: usize>(mesh: &Mesh<D>, name: &str) -> Result<Arc<[f64]>, S
     }
 }
 
-/// Exactly one of mass, density, density_of_cells and node_mass.
+/// Reads the mass: exactly one of mass, density, density_of_cells and node_mass.
 fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Option<Mass> {
     const WORDS: [&str; 4] = ["mass", "density", "density_of_cells", "node_mass"];
     let given: Vec<&str> = WORDS.into_iter().filter(|w| node.get(w).is_some()).collect();
     match given.as_slice() {
-        // The numbers come with the mesh.
+        // The densities come with the mesh.
         ["density_of_cells"] => Some(Mass::DensityOfCells(Arc::from([]))),
         [word] => {
             let x = values.number(word)?;
@@ -261,7 +261,7 @@ fn mass(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> Op
     }
 }
 
-/// The same name twice, or two that print alike: both places are named.
+/// Reports names that occur twice or that look the same in print; both locations are named.
 fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>]) {
     let mut names = Names::of(What::Bodies);
     for draft in drafts.iter().filter(|draft| !draft.name.is_empty()) {
@@ -278,7 +278,7 @@ fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, 
     }
 }
 
-/// Adds what bodies would cost to that of those before them; whether that is within the limits.
+/// Adds the cost of bodies to that of the earlier ones; returns whether it is within the limits.
 fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>], cost: &mut Cost) -> bool {
     for draft in drafts {
         let nodes = match (&draft.loaded, &draft.shape) {
@@ -286,7 +286,7 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
             (None, Some(shape)) => shapes::node_count(shape, D),
             (None, None) => 0.0,
         };
-        // At most one node for every point of a grid of half the spacing.
+        // At most one node for every point of a grid with half the spacing.
         let filling = draft.shape.as_ref().and_then(|shape| shape.text("filling"));
         let of_mesh = draft.shape.as_ref().is_some_and(|shape| shape.spec().has_role(Role::CellsFromFile));
         let filled = matches!(filling, Some("triangles" | "tetrahedra")) || (D == 3 && filling == Some("lattice"));
@@ -303,7 +303,7 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
     true
 }
 
-/// Cuts boxes into simplices and gives these nodes in the middle of their edges, where the body says so.
+/// Divides boxes into simplices and adds nodes at the midpoints of edges, if the body asks for it.
 fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>, mesh: Mesh<D>) -> Option<Mesh<D>> {
     let (simplices, order) = (draft.values.flag("simplices"), draft.values.integer("order"));
     let key = if order == Some(2) { "order" } else { "simplices" };
@@ -319,7 +319,7 @@ fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>
     let wanted = |mesh: Mesh<D>| {
         let boxes = mesh.cells.quadrilaterals.len() + mesh.cells.hexahedra.len();
         let linear = mesh.cells.triangles.len() + mesh.cells.tetrahedra.len();
-        // What does not lock is what a body of finite elements is made of, unless the scene says otherwise.
+        // A body of finite elements consists of elements that do not lock, unless the scene says otherwise.
         let quadratic = order.map_or(draft.owns_cells() && boxes == 0 && linear > 0, |order| order == 2);
         if quadratic { mesh.into_quadratic() } else { Ok(mesh) }
     };
@@ -332,10 +332,10 @@ fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>
     }
 }
 
-/// The smallest scale: powers of lengths up to the fourth are not zero then.
+/// The smallest scale; powers of lengths up to the fourth are then not zero.
 const SHORTEST: f64 = 1e-70;
 
-/// Whether a number of a value is longer than any length may be.
+/// Whether a number of a value exceeds the largest length allowed.
 fn is_vast(node: &Node) -> bool {
     match &node.data {
         Data::Number(x, _) => x.abs() > LONGEST,
@@ -344,7 +344,7 @@ fn is_vast(node: &Node) -> bool {
     }
 }
 
-/// Makes the mesh of a body, whatever else may be wrong with it, and checks its pins.
+/// Makes the mesh of a body, whatever other errors it has, and checks its pins.
 fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Option<BodyBlueprint<D>> {
     if !draft.shaped {
         return None;
@@ -375,7 +375,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     }
     let mesh: Mesh<D> = shape::mesh(reader, shape, draft.loaded.as_ref(), &transform, &shape_location)?;
     if mesh.positions.iter().flatten().any(|x| x.abs() > LONGEST) {
-        // Its own lengths are fair.
+        // Its own lengths are allowed.
         let key = if draft.node.get("scale").is_some() { "scale" } else { "shape" };
         let node = draft.node.get(key).unwrap_or(draft.node);
         let error = SceneError::of(BodyError::MadeVast { field: key, value: node.shown() });
@@ -383,7 +383,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         return None;
     }
     let mut mesh = of_wanted_cells(reader, draft, mesh)?;
-    // Nothing but the start needs them, so the body does not carry them on.
+    // Only the start needs them, so the body does not keep them.
     let values = std::mem::take(&mut mesh.node_values);
     let node_velocities = match draft.velocities.of_nodes(&values, shape.spec(), &draft.rotation) {
         Ok(velocities) => velocities,
@@ -394,7 +394,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
             return None;
         }
     };
-    // One metre is a fair depth of the plane, but no thickness of a cloth, and no width of a wire.
+    // One metre is a sensible depth for the plane, but not for the thickness of a cloth or the width of a wire.
     let thin = match mesh.measure() {
         Ok(Measure::Length(_)) => Some(BodyError::WireWidth {}),
         Ok(Measure::Area(_)) if D == 3 => Some(BodyError::SheetThickness {}),
@@ -414,7 +414,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
                 return None;
             }
         },
-        // A body without a mass has an error, and weighs something only to be looked at further.
+        // A body without a mass is an error; it gets some mass only so that the search for errors can continue.
         (mass, _) => mass.clone().unwrap_or(Mass::Node(1.0)),
     };
     let body = BodyBlueprint {

@@ -1,24 +1,24 @@
-//! The bodies of a scene, as all that names them finds them.
+//! The list in which names of bodies in a scene are looked up.
 
 use super::Cost;
 use opruga_world::blueprint::BodyBlueprint;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The bodies of a scene, copies written out; behind them those that commands add, in the order of time.
+/// The bodies of a scene with all copies, followed by those that commands add, in the order of time.
 pub(crate) struct Bodies<const D: usize> {
     pub(crate) list: Vec<BodyBlueprint<D>>,
-    /// How many are there at the start.
+    /// The number of bodies at the start.
     pub(crate) initial: usize,
-    /// Number of an `add` command → place of its body in the list, and when it is added.
+    /// Number of an `add` command → index of its body in the list, and when it is added.
     pub(crate) later: BTreeMap<usize, (usize, f64)>,
-    /// Name → place in the list.
+    /// Name → index in the list.
     pub(super) names: BTreeMap<String, usize>,
-    /// Name of a body with copies → the place of the first, and how far each is from where the body would lie.
+    /// Name of a body with copies → index of the first copy, and the offset of each copy from the position that the body would have.
     pub(super) copied: BTreeMap<String, (usize, Vec<[f64; D]>)>,
-    /// What all of them would cost.
+    /// The cost of all of them.
     pub(super) cost: Cost,
-    /// Names of bodies that could not be made: a reference to them is no further error.
+    /// Names of bodies that could not be made: a reference to one of them is not a further error.
     pub(super) broken: Vec<String>,
-    /// Places of bodies that were made, but have errors in their fields.
+    /// Indices of bodies that were made, but have errors in their fields.
     pub(crate) unsound: BTreeSet<usize>,
 }

@@ -52,7 +52,7 @@ pub(super) fn copies<const D: usize>(reader: &mut Reader<'_>, node: &Node, path:
     sound.then(|| Copies { count: number, spacing: values.vector("spacing"), first: values.vector("first"), jitter })
 }
 
-/// Adds the copies of a body to the list. Places in selectors move along with every copy.
+/// Adds the copies of a body to the list. Positions in selectors move along with every copy.
 pub(super) fn write_out<const D: usize>(
     bodies: &mut Bodies<D>,
     copies: Copies<D>,
@@ -88,11 +88,11 @@ pub(super) fn write_out<const D: usize>(
     bodies.copied.insert(body.name, (first, offsets));
 }
 
-/// SplitMix64 (Steele, Lea and Flood 2014): a small generator with the same numbers everywhere.
+/// SplitMix64 (Steele, Lea and Flood 2014): a small generator with the same numbers on every machine.
 struct SplitMix(u64);
 
 impl SplitMix {
-    /// A number in [0, 1), evenly spread.
+    /// A uniformly distributed number in [0, 1).
     fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

@@ -1,9 +1,9 @@
-//! What the bodies of a scene would cost, compared with the limits before any mesh is made.
+//! The cost of the bodies of a scene, compared with the limits before any mesh is made.
 
 use crate::limits::Limits;
 
 opruga_math::messages! {
-    /// What a scene has too much of.
+    /// The quantity of which a scene has too much.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CostError {
         "limit.bodies" #[error("the scene has {count} bodies or more")] #[value("{count}")] #[allowed("at most {most} bodies")]
@@ -20,7 +20,7 @@ opruga_math::messages! {
 }
 
 impl CostError {
-    /// The same of a mesh outside of any scene.
+    /// The same error for a mesh that does not belong to a scene.
     pub(crate) fn of_mesh(self) -> CostError {
         match self {
             CostError::Nodes { count, most } => CostError::MeshNodes { count, most },
@@ -30,7 +30,7 @@ impl CostError {
     }
 }
 
-/// How much there is of what is limited. Bodies that commands take away count too: the world remembers them.
+/// The quantities that are limited. Bodies that commands remove count, too, because the world remembers them.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Cost {
     bodies: f64,
@@ -39,7 +39,7 @@ pub(crate) struct Cost {
 }
 
 impl Cost {
-    /// Adds a body of so many nodes and models, and its copies.
+    /// Adds a body with this number of nodes and models, and its copies.
     ///
     /// # Errors
     /// `limit.bodies`, `limit.nodes` or `limit.memory`.
@@ -52,11 +52,11 @@ impl Cost {
     ) -> Result<(), CostError> {
         self.bodies += copies;
         self.nodes += nodes * copies;
-        // A mesh once, and state, models and description for every copy.
+        // The mesh counts once; state, models and description count for every copy.
         let each = nodes * (120.0 + 60.0 * D as f64 * models) + 1000.0 + 600.0 * models;
         self.bytes += nodes * 250.0 * D as f64 + each * copies;
         let Cost { bodies, nodes: all, bytes } = *self;
-        // What is no number is above every limit.
+        // NaN exceeds every limit.
         let within = |count: f64, most: u64| count <= most as f64;
         if !within(bodies, limits.bodies) {
             return Err(CostError::Bodies { count: shown(bodies), most: limits.bodies });
@@ -71,7 +71,7 @@ impl Cost {
     }
 }
 
-/// A count as a whole number; beyond those of 64 bits by its power of ten.
+/// A count as a whole number, or as a power of ten if it exceeds 64 bits.
 pub(crate) fn shown(count: f64) -> String {
     if count < u64::MAX as f64 { format!("{count:.0}") } else { format!("{count:.0e}") }
 }

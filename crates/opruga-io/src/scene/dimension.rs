@@ -1,4 +1,4 @@
-//! How many dimensions a scene has; and what else is wrong with one that does not say it.
+//! The dimension of a scene, and the other errors of a scene that does not give it.
 
 use super::errors::{FieldError, SceneHint};
 use super::reader::Reader;
@@ -9,15 +9,15 @@ use opruga_core::spec::nearest;
 use opruga_world::blueprint::AnyBlueprint;
 use opruga_world::schema;
 
-/// What `dimension` says, once what is wrong with it is reported.
+/// The result of reading `dimension`, after its errors have been reported.
 enum Dimension {
     /// 2 or 3.
     Known(usize),
-    /// Neither: the key that stands for it, empty where there is none, and what is likely meant.
+    /// Neither: the key that was written instead, empty if there is none, and the value that was probably meant.
     Wrong(String, Option<usize>),
 }
 
-/// Everything below the format of a scene. Where its dimension is not known, what is wrong with the rest in either.
+/// Reads everything below the format of a scene. If the dimension is not known, reports those errors of the rest that occur in both dimensions.
 pub(super) fn read(reader: &mut Reader<'_>, root: &Node) -> Option<AnyBlueprint> {
     match dimension_of(reader, root) {
         Dimension::Known(dimension) => within(reader, root, dimension),
@@ -63,7 +63,7 @@ fn dimension_of(reader: &mut Reader<'_>, root: &Node) -> Dimension {
     }
 }
 
-/// The dimension that a value most likely means.
+/// The dimension that a value probably means.
 fn likely(node: &Node) -> Option<usize> {
     let number = match &node.data {
         Data::Integer(Some(x), _) => *x as f64,
@@ -74,7 +74,7 @@ fn likely(node: &Node) -> Option<usize> {
     [2, 3].into_iter().find(|dimension| *dimension as f64 == number)
 }
 
-/// The same scene with a dimension instead of what a key says.
+/// The same scene with a key replaced by a dimension.
 fn as_if(root: &Node, key: &str, dimension: usize) -> Node {
     let mut root = root.clone();
     let value = Node { location: root.location, data: Data::Integer(Some(dimension as i64), dimension.to_string()) };
@@ -85,7 +85,7 @@ fn as_if(root: &Node, key: &str, dimension: usize) -> Node {
     root
 }
 
-/// Reports what is wrong with a scene in the plane and in space alike: what is wrong in one of them alone may be right.
+/// Reports the errors that a scene has both in the plane and in space: an error in only one of them may not be an error.
 fn wrong_in_both(reader: &mut Reader<'_>, root: &Node, key: &str) {
     let [plane, space] = [2, 3].map(|dimension| {
         let mut trial = Reader::new(reader.source, reader.catalogue, reader.options, Vec::new());
@@ -101,12 +101,12 @@ fn wrong_in_both(reader: &mut Reader<'_>, root: &Node, key: &str) {
     let about = |error: &SceneError| (error.code, error.line, error.column, error.path.clone(), error.message.clone());
     for error in plane {
         let Some(other) = space.iter().find(|other| about(other) == about(&error)) else { continue };
-        // What would be right may be another thing in each.
+        // What is allowed may differ between the two.
         let (allowed, hint) = (error.allowed == other.allowed, error.hint == other.hint);
         let mut error = error;
         error.allowed = error.allowed.filter(|_| allowed);
         error.hint = error.hint.filter(|_| hint);
-        // It has its location already.
+        // It already has its location.
         reader.report(Location::Bytes(0, 0), error);
     }
 }

@@ -1,4 +1,4 @@
-//! What the reader of scenes refuses and warns of, by what it is about.
+//! Errors and warnings of the scene reader, by subject.
 
 use opruga_core::spec::{self, ConditionText};
 use opruga_math::message::{Field, IntoField};
@@ -11,16 +11,16 @@ fn are(count: usize) -> &'static str {
     if count == 1 { "is" } else { "are" }
 }
 
-/// In which line something stands.
+/// Names the line of something.
 fn in_line(line: &Option<usize>) -> String {
     line.map_or_else(String::new, |line| format!(" in line {line}"))
 }
 
-/// The masses of a body, of which exactly one is given.
+/// The fields for the mass of a body, of which exactly one is given.
 const MASSES: &str = "mass, density, density_of_cells, node_mass";
 
 terms! {
-    /// What kind of value stands in a scene.
+    /// The type of a value in a scene.
     pub(crate) enum ValueKind = "part.value_kind" {
         Table = "a table",
         List = "a list",
@@ -33,7 +33,7 @@ terms! {
 }
 
 terms! {
-    /// What should stand at a place of a scene.
+    /// What is expected at some point of a scene.
     pub(crate) enum Wanted = "part.wanted" {
         Table = "a table",
         Tables = "a list of tables",
@@ -59,10 +59,10 @@ terms! {
     }
 }
 
-/// A field of a kind or of a section. A translation has a line about it among its names of kinds.
+/// A field of a kind or of a section. A translation has a line for it among its names of kinds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FieldOf {
-    /// What the kind is a kind of; none for a section of the format.
+    /// What the kind belongs to; none for a section of the format.
     pub part: Option<Part>,
     pub kind: &'static str,
     pub about: &'static spec::Field,
@@ -82,7 +82,7 @@ impl IntoField for FieldOf {
 }
 
 messages! {
-    /// What is allowed where the message does not say it.
+    /// What is allowed, if the message does not say it.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum SceneAllowed {
         "part.scene_allowed" #[error("whole numbers between -9007199254740992 and 9007199254740992 (2^53)")]
@@ -115,7 +115,7 @@ messages! {
         HolesInside {},
     }
 
-    /// What helps where the message does not say it.
+    /// What helps, if the message does not say it.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum SceneHint {
         "part.scene_hint" #[error("{}", field.about.documentation)]
@@ -166,7 +166,7 @@ messages! {
         Frames { frame: f64 },
     }
 
-    /// What is wrong with a field of any table.
+    /// Errors in a field of any table.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum FieldError {
         "scene.range" #[error("`{field}` is {value}")] #[value("{value}")]
@@ -218,7 +218,7 @@ messages! {
         More { count: usize },
     }
 
-    /// What is wrong with a body, its shape or its motion at the start.
+    /// Errors in a body, its shape or its initial motion.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum BodyError {
         "scene.not_here" #[error("a body that a command adds has no copies")] #[hint("write one command for every body")]
@@ -289,7 +289,7 @@ messages! {
         Axes { letters: String },
     }
 
-    /// What is wrong with a command.
+    /// Errors in a command.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CommandError {
         "scene.missing" #[error("`until` is missing: a path of one point does not say when the drag ends")]
@@ -336,7 +336,7 @@ messages! {
         NotAParameter { parameter: String },
     }
 
-    /// What is wrong with what a load, a probe or a selector names, or with a picture.
+    /// Errors in the references of a load, a probe or a selector, or in a picture.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ReferenceError {
         "scene.unknown_name" #[error("there is no body `{body}`")] #[value("{body}")]
@@ -390,7 +390,7 @@ messages! {
     }
 }
 
-/// All messages of the reader of scenes.
+/// All messages of the scene reader.
 pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     ValueKind::VARIANTS,
     Wanted::VARIANTS,
@@ -404,7 +404,7 @@ pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[
 ];
 
 impl Wanted {
-    /// Whether a number would do.
+    /// Whether a number would be accepted.
     pub(crate) fn takes_numbers(self) -> bool {
         matches!(self, Wanted::Node | Wanted::Counts | Wanted::Body)
     }

@@ -1,4 +1,4 @@
-//! Commands on bodies that are not there when they begin: before a command adds them, or after one has taken them away.
+//! Commands on bodies that do not exist when the commands begin: before another command adds them, or after one has removed them.
 
 use super::body_list::Bodies;
 use super::errors::CommandError;
@@ -9,19 +9,19 @@ use crate::problem::{SceneError, visible};
 use opruga_world::blueprint::Action;
 use std::collections::BTreeMap;
 
-/// What a command asks of bodies, by their places in the list.
+/// What a command needs of bodies, by their indices in the list.
 enum Asks {
-    /// This one is added.
+    /// It adds this one.
     Adds(usize),
-    /// This one is taken away.
+    /// It removes this one.
     Removes(usize),
-    /// This one must be there.
+    /// This one must exist.
     Needs(usize),
-    /// One of these at least must be there: the copies of a body.
+    /// At least one of these must exist: the copies of a body.
     NeedsOneOf(Vec<usize>),
 }
 
-/// Commands with what they ask of bodies, as they stand in the file.
+/// Commands with what they need of bodies, in the order of the file.
 #[derive(Default)]
 pub(super) struct Lifetimes<'n> {
     asked: Vec<Asked<'n>>,
@@ -53,9 +53,9 @@ impl<'n> Lifetimes<'n> {
         self.asked.push(Asked { at, node, path: path.to_string(), asks: asks.collect() });
     }
 
-    /// Reports every command that begins while its body is not there.
+    /// Reports every command that begins while its body does not exist.
     pub(super) fn report<const D: usize>(mut self, reader: &mut Reader<'_>, bodies: &Bodies<D>) {
-        // In the order in which the world runs them: of the same time as they stand in the file.
+        // In the order in which the world runs them: commands with the same time run in the order of the file.
         self.asked.sort_by(|a, b| a.at.total_cmp(&b.at));
         let mut coming: BTreeMap<usize, f64> = bodies.later.values().copied().collect();
         let mut gone: BTreeMap<usize, f64> = BTreeMap::new();
@@ -92,7 +92,7 @@ impl<'n> Lifetimes<'n> {
     }
 }
 
-/// The bodies that the path of a parameter names: one, or all copies; none where it is about something else.
+/// The bodies that the path of a parameter names: one, or all copies; none if it is about something else.
 fn named<const D: usize>(path: &str, bodies: &Bodies<D>) -> Option<Vec<usize>> {
     let name = path.strip_prefix("body.")?.split('.').next()?;
     if let Some(k) = bodies.names.get(name) {

@@ -1,8 +1,7 @@
-//! Scene files: text → checked [`Blueprint`], or every error at once.
+//! Scene files: text → checked [`Blueprint`], or all errors at once.
 //!
-//! Bytes → encoding, size and depth are checked → TOML with places → overrides → sections, by the constants of
-//! [`opruga_world::schema`] and the caller's [`Catalogue`] → meshes, once the estimate of memory is within its limit →
-//! references and selectors.
+//! Bytes → checks of encoding, size and depth → TOML with locations → overrides → sections, by the constants of [`opruga_world::schema`] and the
+//! caller's [`Catalogue`] → meshes, once the estimate of memory is within its limit → references and selectors.
 
 mod actions;
 mod bodies;
@@ -55,43 +54,42 @@ use std::sync::Arc;
 /// How a scene is read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
-    /// What it may cost.
+    /// The limits of its cost.
     pub limits: Limits,
-    /// Unknown fields are noticed instead of refused.
+    /// Whether unknown fields are notices instead of errors.
     pub lenient: bool,
-    /// Notices are errors.
+    /// Whether notices are errors.
     pub strict: bool,
     /// Overrides of parameters, each a path and a value, as `--set PATH=VALUE` gives them.
     pub overrides: Vec<(String, String)>,
-    /// Where the files are that the scene names; none unless said.
+    /// Where the files are that the scene names. The default is that there are none.
     pub files: Files,
 }
 
 /// What the reader made of a scene.
 #[derive(Debug)]
 pub struct Reading {
-    /// The whole scene where there are no errors. Where there are some, what is left of it without the bodies, obstacles,
-    /// loads and pins that have errors of their own, and without commands and probes: enough to find what else is wrong with
-    /// the rest. None where errors leave nothing to build on.
+    /// The complete scene if there are no errors. If there are errors, the rest of the scene, without the bodies, obstacles, loads and pins that have
+    /// errors of their own, and without commands and probes; this is enough to find further errors in the rest. None if the errors leave nothing to
+    /// build on.
     pub blueprint: Option<AnyBlueprint>,
-    /// All errors that can be found at once, in the order of their places.
+    /// All errors that can be found at once, in the order of their locations.
     pub errors: Vec<SceneError>,
-    /// What is odd.
+    /// Unusual things in the scene.
     pub notices: Vec<Notice>,
-    /// The files that it names, by those names: what else is needed to read it again.
+    /// The files that the scene names, by name. They are needed to read the scene again.
     pub files: BTreeMap<String, Arc<[u8]>>,
-    /// Files that it names and that could not be read, by those names.
+    /// The names of files that the scene names but that could not be read.
     pub unread: Vec<String>,
 }
 
 impl Reading {
-    /// Whether all is known of what holds bodies in statics: no error hides a pin, a load or an obstacle from the blueprint.
+    /// Whether everything that holds bodies in statics is known: no error removes a pin, a load or an obstacle from the blueprint.
     pub fn knows_what_holds(&self) -> bool {
         self.errors.iter().all(|error| {
             let parts: Vec<&str> = error.path.split('.').collect();
             let holds = matches!(parts[0], "load" | "collider" | "world") || parts.contains(&"pin");
-            // A section that is unknown may have been meant for one of them; and where errors are counted only, nobody knows of
-            // what they are.
+            // An unknown section may have been meant as one of them. If errors are only counted, their subjects are unknown.
             let unknown = error.code == "scene.unknown_field" && parts.len() == 1;
             !holds && !unknown && error.code != "scene.more"
         })
@@ -101,7 +99,7 @@ impl Reading {
 /// Reads a scene from bytes.
 ///
 /// # Errors
-/// All errors that can be found at once, in the order of their places.
+/// All errors that can be found at once, in the order of their locations.
 pub fn read(
     bytes: &[u8],
     file: &str,
@@ -114,8 +112,7 @@ pub fn read(
     }
 }
 
-/// Reads as much of a scene as its errors leave, for those who want to go on looking for errors: [`read`] is for all
-/// others.
+/// Reads as much of a scene as its errors allow, for callers that look for further errors; all others use [`read`].
 pub fn survey(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options) -> Reading {
     let nothing = |errors| {
         let (notices, files, unread) = Default::default();
@@ -137,11 +134,11 @@ pub fn survey(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options
     Reading { blueprint, errors, notices, files, unread }
 }
 
-/// Reads a scene from a file, and the files that it names from beside it, or from where `options` say. What is no
-/// regular file or larger than the limit is refused before it is read.
+/// Reads a scene from a file. The files that it names are read from the same folder, or from where `options` say. A file that is not regular, or
+/// larger than the limit, is refused before it is read.
 ///
 /// # Errors
-/// As [`read`], and `read.failed` where the file cannot be read.
+/// Those of [`read`], and `read.failed` if the file cannot be read.
 pub fn read_file(
     path: &Path,
     catalogue: &Catalogue,
@@ -156,17 +153,16 @@ pub fn read_file(
     read(&bytes, &file, catalogue, &options)
 }
 
-/// What another parser of TOML says of bytes of a scene that it refuses, as an error at their location.
+/// Converts an error of another TOML parser about a scene to an error at its location.
 pub fn not_toml(text: &str, file: &str, reason: &str, bytes: core::ops::Range<usize>) -> SceneError {
     let error = SceneError::of(TextError::Syntax { reason: reason.into() });
     Source { file, text }.mark(error, bytes.start, bytes.end)
 }
 
-/// The bytes of a regular file no larger than the limit.
+/// Returns the bytes of a regular file that is not larger than the limit.
 ///
 /// # Errors
-/// `read.failed`, `read.not_regular_file`, `read.changed` where somebody writes into the file meanwhile, or
-/// `scene.too_large`.
+/// `read.failed`, `read.not_regular_file`, `read.changed` if the file is written at the same time, or `scene.too_large`.
 pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
     let bytes = regular_file(path, limits.file_bytes, "scene.too_large", Measured::Scene);
     bytes.map(|bytes| bytes.to_vec()).map_err(|error| match error.code {
@@ -175,12 +171,12 @@ pub fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, SceneError> {
     })
 }
 
-/// Everything below the head of a scene; parts with errors are left out.
+/// Reads everything below the head of a scene; parts with errors are left out.
 fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Blueprint<D>> {
     let top = reader.fields(root, "", &schema::SCENE, None);
     let before = reader.count();
     let time = time(reader, root);
-    // Without them nothing is known of what begins when.
+    // Without these fields it is not known when commands begin.
     let timed = reader.count() == before && root.get("time").is_some();
     let frames = timed.then(|| Frames::of(root, &time));
     let surroundings = surroundings(reader, root);
@@ -224,7 +220,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     if reader.count() == 0 {
         return Some(whole);
     }
-    // What has no errors of its own; loads go by the index of their body.
+    // Keeps the parts without errors of their own; loads refer to the index of their body.
     let mut sound_count = 0;
     let sound_indices: Vec<Option<usize>> = (0..whole.bodies.len())
         .map(|k| {
@@ -236,7 +232,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let loads =
         whole.loads.into_iter().filter_map(|load| Some(LoadBlueprint { body: sound_indices[load.body]?, ..load }));
     founded.then(|| Blueprint {
-        // Their pins stay: without them statics would miss what holds a body. One that selects what is not there holds nothing.
+        // Their pins stay, because statics would otherwise miss what holds a body. A pin that selects nonexistent nodes holds nothing.
         bodies: whole.bodies.into_iter().zip(&sound_indices).filter_map(|(body, index)| index.map(|_| body)).collect(),
         colliders: sound_colliders,
         loads: loads.collect(),
@@ -246,7 +242,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     })
 }
 
-/// The name of the file without folder and ending.
+/// The name of the file without its folder and ending.
 fn scene_name(file: &str) -> String {
     Path::new(file).file_stem().map_or_else(|| "scene".to_string(), |s| s.to_string_lossy().into_owned())
 }
@@ -290,7 +286,7 @@ fn contact<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies
     let mut pairs = Vec::new();
     for (item, path) in reader.list(node, "contact", "pair") {
         let pair = reader.fields(item, &path, &schema::CONTACT_PAIR, None);
-        // A body with an error may have been meant.
+        // The name may mean a body that has an error.
         for field in ["first", "second"].into_iter().filter(|_| bodies.broken.is_empty()) {
             let groups = || bodies.list.iter().map(|body| body.contact_group());
             if let Some(group) = pair.text(field).filter(|group| groups().all(|known| known != *group)) {

@@ -1,4 +1,4 @@
-//! When commands begin and end: with a frame, the first that begins at their time or later. What never comes about by that is told of.
+//! When commands begin and end: with the first frame that begins at their time or later. Commands that therefore never act are reported.
 
 use super::errors::{CommandError, SceneHint};
 use super::location_of;
@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 
 /// The frames of a run.
 pub(crate) struct Frames {
-    /// How long each is [s].
+    /// The length of each frame [s].
     length: f64,
-    /// When the run ends [s], where the scene itself says so: an end that an override has set is not that of the scene.
+    /// The end of the run [s], if the scene itself gives it. An end set by an override does not count.
     end: Option<f64>,
 }
 
@@ -25,12 +25,12 @@ impl Frames {
         Frames { length: time.frame, end: end.map(|_| time.seconds) }
     }
 
-    /// The number of the first frame that begins at a time or later, rounded as the world does.
+    /// The number of the first frame that begins at a time or later, rounded as in the world.
     fn first_from(&self, time: f64) -> f64 {
         (time / self.length - 1e-9).ceil()
     }
 
-    /// Tells of a command that never acts; `until` is the end of one that lasts. Whether it does.
+    /// Reports a command that never acts, and returns whether it does act; `until` is the end of a command that lasts.
     pub(super) fn command(
         &self,
         reader: &mut Reader<'_>,
@@ -55,7 +55,7 @@ impl Frames {
         false
     }
 
-    /// Tells of parameters that are set again before a frame begins with what they were set to.
+    /// Reports parameters that are set again before a frame begins with the first value.
     pub(super) fn sets(&self, reader: &mut Reader<'_>, mut sets: Vec<Set>) {
         // In the order in which the world runs them.
         sets.sort_by(|a, b| a.at.total_cmp(&b.at));
@@ -80,7 +80,7 @@ impl Frames {
 pub(super) struct Set {
     pub(super) at: f64,
     pub(super) parameter: String,
-    /// Where its time stands.
+    /// The location of its time.
     pub(super) location: Location,
     /// The path of the command.
     pub(super) path: String,

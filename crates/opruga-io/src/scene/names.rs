@@ -1,21 +1,21 @@
-//! Names that are the same, or print alike.
+//! Names that are the same, or look the same in print.
 
 use crate::problem::{SceneError, visible};
 use opruga_world::validity::NameFault;
 use std::collections::BTreeMap;
 
-/// What bears the names.
+/// The things that have the names.
 #[derive(Clone, Copy)]
 pub(super) enum What {
     Bodies,
     Probes,
 }
 
-/// The names of a kind of thing so far. `é` is one character (U+00E9) or two (U+0065 U+0301), which print alike: nobody could tell
-/// two bodies apart that differ by that alone, so both are one name here.
+/// The names of one type of thing so far. `é` is one character (U+00E9) or two (U+0065 U+0301), which look the same in print. Nobody could tell apart
+/// two bodies whose names differ only in that, so both are the same name here.
 pub(super) struct Names<P> {
     what: What,
-    /// The decomposed form (NFD) of a name → the name as it was written first, and its location.
+    /// The decomposed form (NFD) of a name → the first name with that form as it was written, and its location.
     seen: BTreeMap<String, (String, P)>,
 }
 
@@ -25,8 +25,8 @@ impl<P> Names<P> {
         Names { what, seen: BTreeMap::new() }
     }
 
-    /// Takes a name up; one that is there already, or prints like one that is, gives an error with its value. `line` gives
-    /// the line of the first one, where it has one.
+    /// Adds a name. If it exists already, or looks like an existing one in print, returns an error with its value. `line` returns the line of the
+    /// first one, if it has one.
     pub(super) fn take(
         &mut self,
         name: &str,
@@ -50,7 +50,8 @@ impl<P> Names<P> {
     }
 }
 
-/// The characters of a name from the first to the last that another one does not share, as code points, if there are any.
+/// The part of a name in which it differs from another one, from the first differing character to the last, as code points; none if there is no such
+/// part.
 fn code_points(name: &str, other: &str) -> Option<String> {
     let (own, others): (Vec<char>, Vec<char>) = (name.chars().collect(), other.chars().collect());
     let before = own.iter().zip(&others).take_while(|(a, b)| a == b).count();

@@ -1,4 +1,4 @@
-//! The parameter that a `set` command changes while the scene runs: its path is resolved when the scene is read.
+//! The parameter that a `set` command changes while the scene runs. Its path is resolved when the scene is read.
 
 use super::body_list::Bodies;
 use super::errors::{CommandError, SceneAllowed, SceneHint};
@@ -12,7 +12,7 @@ use opruga_core::spec::{Allowed, Field, Spec, Value, Values, nearest};
 use opruga_world::blueprint::ColliderBlueprint;
 use opruga_world::schema;
 
-/// What paths may name.
+/// The things that paths may name.
 pub(crate) struct Known<'a, const D: usize> {
     pub(crate) bodies: &'a Bodies<D>,
     /// Names of bodies that commands add.
@@ -21,13 +21,13 @@ pub(crate) struct Known<'a, const D: usize> {
     pub(crate) colliders: &'a [ColliderBlueprint],
 }
 
-/// Why a path leads nowhere.
+/// Why a path does not name a parameter.
 struct Lost {
     about: CommandError,
-    /// The words that it may name; none where the message says what is allowed.
+    /// The words that would be allowed; none if the message says it.
     allowed: Option<String>,
     nearest: Option<String>,
-    /// Whether it wants to change the kind of a part, which a command does.
+    /// Whether the path is that of the kind of a part, which a command cannot change.
     is_kind: bool,
 }
 
@@ -35,7 +35,7 @@ fn lost<'w>(about: CommandError, word: &str, words: impl Iterator<Item = &'w str
     Lost { about, allowed: Some(listed(words.clone())), nearest: nearest(word, words), is_kind: false }
 }
 
-/// The value, fit for the parameter that the path names; or a report.
+/// Returns the value, converted for the parameter that the path names, or reports an error.
 pub(crate) fn check<const D: usize>(
     reader: &mut Reader<'_>,
     node: &Node,
@@ -53,7 +53,7 @@ pub(crate) fn check<const D: usize>(
                 None
             }
         },
-        // A parameter of a body that is not there yet: checked when the command acts.
+        // A parameter of a body that does not exist yet is checked when the command acts.
         Ok(None) => Some(value),
         Err(lost) => {
             let error = SceneError::of(lost.about).path(join(path, "path")).value(visible(parameter));
@@ -72,7 +72,7 @@ pub(crate) fn check<const D: usize>(
     }
 }
 
-/// A list of whole numbers is read as numbers at first.
+/// A list of whole numbers is at first read as a list of numbers.
 fn suited(value: Value, range: &Allowed) -> Value {
     match (range, &value) {
         (Allowed::Integers, Value::Numbers(x))
@@ -92,7 +92,7 @@ fn field<const D: usize>(
     let parts: Vec<&str> = parameter.split('.').collect();
     let catalogue = reader.catalogue;
     let found = resolve(&parts, parameter, catalogue, known);
-    // Which models and which integrator a body has is no parameter of them.
+    // The kinds of the models and of the integrator of a body are not parameters.
     let is_kind = matches!(
         parts.as_slice(),
         ["integrator"]
@@ -180,7 +180,7 @@ fn resolve<const D: usize>(
     }
 }
 
-/// The body of a name; none where a command is yet to add it.
+/// The body with a name; none if a command adds it later.
 fn body<'a, const D: usize>(
     name: &str,
     known: &'a Known<'_, D>,

@@ -8,7 +8,7 @@ use crate::document::Node;
 use crate::problem::{SceneError, visible};
 use opruga_world::blueprint::Selector;
 
-/// Refuses a load on sides of the boundary whose nodes hold none of them; copies have one mesh, and the same nodes of it.
+/// Refuses a load on sides of the boundary if no side has all of its nodes selected. Copies have the same mesh and the same selected nodes.
 pub(super) fn hold_sides<const D: usize>(
     reader: &mut Reader<'_>,
     node: &Node,
@@ -31,7 +31,7 @@ pub(super) fn hold_sides<const D: usize>(
     false
 }
 
-/// Refuses a load on cells of a body whose nodes hold none of them.
+/// Refuses a load on cells of a body if no cell has all of its nodes selected.
 pub(super) fn hold_cells<const D: usize>(
     reader: &mut Reader<'_>,
     node: &Node,
@@ -55,7 +55,7 @@ pub(super) fn hold_cells<const D: usize>(
     false
 }
 
-/// Reports what a selector of a load holds none of.
+/// Reports that the selector of a load selects no side or cell.
 fn report(reader: &mut Reader<'_>, node: &Node, path: &str, about: ReferenceError) {
     let mut error = SceneError::of(about).path(join(path, "select"));
     if let Some(select) = node.get("select") {

@@ -1,4 +1,4 @@
-//! `pin` of a body: nodes that are held, and pins that want the same node in two places.
+//! `pin` of a body: pinned nodes, and pins that prescribe different positions for the same node.
 
 use super::errors::BodyError;
 use super::reader::{Reader, join};
@@ -12,10 +12,10 @@ use opruga_world::schema;
 use opruga_world::selection::longest_side;
 use std::collections::BTreeMap;
 
-/// A pin with the location of its selector in the file and its path.
+/// A pin with the location of its selector in the file, and its path.
 pub(crate) type Located<const D: usize> = (PinBlueprint<D>, Location, String);
 
-/// Which axes the letters name; all where there are none.
+/// The axes that the letters name; all axes if there are none.
 pub(crate) fn axes<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str, values: &Values) -> [bool; D] {
     let Some(letters) = values.text("axes") else { return [true; D] };
     if D == 2 && letters.contains('z') {
@@ -35,9 +35,9 @@ pub(super) fn pin<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &s
     Some((PinBlueprint { select, axes, motion }, location_of(node, "select"), join(path, "select")))
 }
 
-/// Reports pins that hold a node along the same axis and lead it to different places: both are named, once for each pair.
+/// Reports pins that prescribe different positions of a node along the same axis. Both pins are named, once for each pair.
 pub(super) fn conflicts<const D: usize>(reader: &mut Reader<'_>, pins: &[Located<D>], body: &BodyBlueprint<D>) {
-    // Pins that all stand still hold a node where it is, however many they are.
+    // Any number of pins at rest hold a node where it is.
     if pins.iter().all(|(pin, ..)| pin.motion.is_empty()) {
         return;
     }
@@ -67,15 +67,14 @@ pub(super) fn conflicts<const D: usize>(reader: &mut Reader<'_>, pins: &[Located
     }
 }
 
-/// The first time [s] at which two pins want a node of a body of a size [m] in different places along an axis that both hold, and the
-/// axis.
+/// The first time [s] at which two pins prescribe different positions along a common axis, and that axis, for a body of a given size [m].
 fn parted<const D: usize>(a: &PinBlueprint<D>, b: &PinBlueprint<D>, size: f64) -> Option<(f64, usize)> {
     let mut times: Vec<f64> = a.motion.iter().chain(&b.motion).map(|row| row[0]).collect();
     times.sort_by(f64::total_cmp);
     let shared = |axis: &usize| a.axes[*axis] && b.axes[*axis];
     times.into_iter().find_map(|time| {
         let (p, q) = (along_path::<D>(&a.motion, time).0, along_path::<D>(&b.motion, time).0);
-        // The same motion in other rows, and what is zero by symmetry, differ by rounding.
+        // The same motion in other rows, and components that vanish by symmetry, differ by rounding.
         let apart =
             |axis: &usize| (p[*axis] - q[*axis]).abs() > 1e-9 * (p[*axis].abs() + q[*axis].abs()) + 1e-12 * size;
         (0..D).filter(shared).find(apart).map(|axis| (time, axis))

@@ -1,4 +1,4 @@
-//! Values of plain fields: types are never converted, numbers are finite, rows have the length that they need.
+//! Values of plain fields: types are never converted, numbers are finite, and rows have the required length.
 
 use super::errors::{FieldError, SceneAllowed, SceneHint};
 use super::reader::{Reader, join};
@@ -13,11 +13,11 @@ fn name_of(path: &str) -> String {
     visible(path.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or(path))
 }
 
-/// Angles beyond this are rounded by more than 1e-10 [rad].
+/// Larger angles are rounded by more than 1e-10 [rad].
 const LARGEST_ANGLE: f64 = 1e6;
 
 impl Reader<'_> {
-    /// The value of a field, or a report of what is wrong with it.
+    /// Reads the value of a field, or reports its errors.
     pub(crate) fn plain(&mut self, node: &Node, path: &str, name: &str, range: &Allowed) -> Option<Value> {
         let value = match range {
             Allowed::Number { .. } => Value::Number(self.number(node, path, range)?),
@@ -86,7 +86,7 @@ impl Reader<'_> {
         None
     }
 
-    /// A finite number; −0 becomes 0.
+    /// Reads a finite number; −0 becomes 0.
     pub(crate) fn number(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<f64> {
         match &node.data {
             Data::Number(x, text) if !x.is_finite() => {
@@ -108,18 +108,18 @@ impl Reader<'_> {
     fn integer(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<i64> {
         match &node.data {
             Data::Integer(Some(x), _) if x.abs() <= LARGEST_WHOLE => Some(*x),
-            // A decimal point would make it another type, and no number of the range.
+            // A decimal point would change the type, but would not bring the number into the range.
             Data::Integer(..) => self.whole(node, path, range.describe(self.dimension).into(), None),
             _ => self.refuse_type(node, path, range),
         }
     }
 
-    /// A whole number where any number may stand.
+    /// Reads a whole number in a field that accepts any number.
     fn whole_for_real(&mut self, node: &Node, path: &str) -> Option<i64> {
         self.whole(node, path, SceneAllowed::Wholes {}.into(), Some(SceneHint::DecimalPoint {}))
     }
 
-    /// A whole number that a 64-bit float holds exactly.
+    /// Reads a whole number that a 64-bit float can represent exactly.
     fn whole(&mut self, node: &Node, path: &str, allowed: AnyMessage, hint: Option<SceneHint>) -> Option<i64> {
         match &node.data {
             Data::Integer(Some(x), _) if x.unsigned_abs() <= LARGEST_WHOLE as u64 => Some(*x),
@@ -132,7 +132,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A list of exactly so many finite numbers.
+    /// Reads a list of exactly `length` finite numbers.
     pub(crate) fn row(&mut self, node: &Node, path: &str, length: usize, range: &Allowed) -> Option<Vec<f64>> {
         let Data::Array(items) = &node.data else { return self.refuse_type(node, path, range) };
         if items.len() != length {
@@ -150,7 +150,7 @@ impl Reader<'_> {
         (self.count() == before).then_some(numbers)
     }
 
-    /// Rows of equal length; in a curve or path the first number of each row is a time that rises.
+    /// Reads rows of equal length. In a curve or path, the first number of each row is an increasing time.
     pub(crate) fn rows(
         &mut self,
         node: &Node,
@@ -178,11 +178,11 @@ impl Reader<'_> {
         (self.count() == before).then_some(rows)
     }
 
-    /// A list of whole numbers not below zero.
+    /// Reads a list of non-negative whole numbers.
     pub(crate) fn naturals(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<Vec<u32>> {
         let Data::Array(items) = &node.data else { return self.refuse_type(node, path, range) };
         if items.len() > 1 && items.iter().all(|item| matches!(item.data, Data::Array(_))) {
-            // One slip, and not as many as there are triangles.
+            // One error instead of one per triangle.
             let name = path.rsplit('.').next().unwrap_or(path);
             let about = FieldError::Lists { field: visible(name), value: node.shown() };
             let error = SceneError::of(about).path(path).allows(range.describe(self.dimension));
@@ -195,7 +195,7 @@ impl Reader<'_> {
         (self.count() == before).then_some(numbers)
     }
 
-    /// A whole number not below zero.
+    /// Reads a non-negative whole number.
     pub(crate) fn natural(&mut self, node: &Node, path: &str) -> Option<u32> {
         let range = Allowed::Integer { least: 0, greatest: i64::from(u32::MAX) };
         match self.plain(node, path, &name_of(path), &range)? {
@@ -204,7 +204,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A rotation: one number in 2D, three in 3D.
+    /// Reads a rotation: one number in 2D, three in 3D.
     pub(crate) fn turn(&mut self, node: Option<&Node>, path: &str) -> Vec<f64> {
         let parts = if self.dimension == 2 { 1 } else { 3 };
         let zero = vec![0.0; parts];
@@ -232,7 +232,7 @@ impl Reader<'_> {
         read.unwrap_or(zero)
     }
 
-    /// The value of a `set` command: any plain value, to be checked against the parameter that it is for.
+    /// Reads the value of a `set` command: any plain value, to be checked against its parameter later.
     pub(crate) fn any_value(&mut self, node: &Node, path: &str) -> Option<Value> {
         match &node.data {
             Data::Integer(..) => self.whole_for_real(node, path).map(Value::Integer),

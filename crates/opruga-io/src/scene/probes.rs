@@ -40,7 +40,7 @@ pub(crate) fn probes<const D: usize>(
     probes
 }
 
-/// The words of `record`, each once and at least one.
+/// The words of `record`: at least one, and none twice.
 fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
     let words = || Recorded::ALL.iter().map(|(w, _)| *w);
     let here = join(path, "record");
@@ -71,7 +71,7 @@ fn recorded(reader: &mut Reader<'_>, node: &Node, path: &str) -> Vec<Recorded> {
     out
 }
 
-/// Refuses to record the stress of a body none of whose models knows one, now or after a command.
+/// Refuses to record the stress of a body if none of its models computes one, now or after a command.
 fn refuse_without_cells<const D: usize>(
     reader: &mut Reader<'_>,
     root: &Node,

@@ -1,4 +1,4 @@
-//! The reader's common ground: reports, tables by specification, words and their nearest neighbours.
+//! Common functions of the scene reader: reports, tables by specification, words and their nearest neighbours.
 
 use super::Options;
 use super::errors::{FieldError, FieldOf, Part, SceneAllowed, SceneHint, Wanted};
@@ -18,18 +18,18 @@ pub(crate) struct Reader<'a> {
     pub(crate) options: &'a Options,
     pub(crate) dimension: usize,
     pub(crate) errors: Vec<SceneError>,
-    /// Errors that were counted only.
+    /// The number of errors that were only counted.
     more: usize,
     notices: Vec<Notice>,
-    /// Notices that were counted only.
+    /// The number of notices that were only counted.
     more_notices: usize,
     /// The files that shapes have named so far.
     pub(crate) files: BTreeMap<String, Arc<[u8]>>,
-    /// Those that could not be read.
+    /// The names of files that could not be read.
     pub(crate) unread: Vec<String>,
 }
 
-/// `a.b`, or `b` at the top.
+/// Joins the parts of a path: `a.b`, or `b` at the top level.
 pub(crate) fn join(path: &str, name: &str) -> String {
     if path.is_empty() { name.to_string() } else { format!("{path}.{name}") }
 }
@@ -65,7 +65,7 @@ impl<'a> Reader<'a> {
         self.errors.push(error);
     }
 
-    /// Adds an error that is made only if it will be listed: words that are near to another one take time to find.
+    /// Adds an error, which is made only if it will be listed, because finding similar words takes time.
     fn report_lazily(&mut self, location: Location, error: impl FnOnce() -> SceneError) {
         if self.errors.len() >= MOST_SHOWN {
             self.more += 1;
@@ -74,7 +74,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The bytes of a file that the scene names.
+    /// Returns the bytes of a file that the scene names.
     pub(crate) fn file(&mut self, name: &str) -> Result<Arc<[u8]>, SceneError> {
         if let Some(bytes) = self.files.get(name) {
             return Ok(Arc::clone(bytes));
@@ -91,12 +91,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// How many errors there are so far.
+    /// The number of errors so far.
     pub(crate) fn count(&self) -> usize {
         self.errors.len() + self.more
     }
 
-    /// Whether nothing was reported about a field, or anything in it, since there were `before` errors.
+    /// Whether no error about a field, or anything in it, was reported after the first `before` errors.
     pub(crate) fn sound_since(&self, before: usize, path: &str) -> bool {
         let about =
             |e: &SceneError| e.path.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
@@ -104,12 +104,12 @@ impl<'a> Reader<'a> {
         self.more == 0 && !self.errors.iter().skip(before).any(about)
     }
 
-    /// Adds a notice with its location; with `strict` an error, unless it tells of what the scene asks for.
+    /// Adds a notice with its location. With `strict` it becomes an error, unless it reports what the scene asks for.
     pub(crate) fn notice(&mut self, location: Location, about: SceneError) {
         if self.options.strict && !Notice::is_asked_for(about.code) {
             return self.report(location, about);
         }
-        // The first of each kind carries the location, the others are counted.
+        // The first of each type carries the location, the others are counted.
         if let Some(first) =
             self.notices.iter_mut().find(|n| n.about.code == about.code && n.about.message == about.message)
         {
@@ -135,7 +135,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Errors in the order of their locations, and notices.
+    /// Returns the errors in the order of their locations, and the notices.
     pub(crate) fn finish(mut self) -> (Vec<SceneError>, Vec<Notice>) {
         self.errors.sort_by_key(|e| (e.line.unwrap_or(0), e.column.unwrap_or(0)));
         let of_file = |count| SceneError { file: self.source.file.to_string(), ..SceneError::and_more(count) };
@@ -148,7 +148,7 @@ impl<'a> Reader<'a> {
         (crate::problem::shown(self.errors), self.notices)
     }
 
-    /// Whether the format is the one that is read here: without it nothing else can be understood.
+    /// Checks that the format is the supported one; otherwise nothing else could be understood.
     pub(crate) fn format(&mut self, root: &Node) -> bool {
         let readable = format!("\"{}\"", schema::FORMAT);
         match root.get("format") {
@@ -172,13 +172,13 @@ impl<'a> Reader<'a> {
         true
     }
 
-    /// The plain fields of a table, checked; errors and missing fields are reported and leave the default. Structured
-    /// fields are left to the caller, who reads them by their names.
+    /// Reads and checks the plain fields of a table. Errors and missing fields are reported, and these fields keep their defaults. Structured fields
+    /// are left to the caller, who reads them by name.
     pub(crate) fn fields(&mut self, node: &Node, path: &str, section: &Section, tag: Option<&'static str>) -> Values {
         self.fields_of(None, node, path, section, tag)
     }
 
-    /// The same for a table that describes a kind of a part, or for a section of the format.
+    /// Does the same for a table that describes the kind of a part, or for a section of the format.
     fn fields_of(
         &mut self,
         part: Option<Part>,
@@ -223,11 +223,11 @@ impl<'a> Reader<'a> {
             };
             let mut error = SceneError::of(about).path(visible(here)).nearest(nearest(&entry.key, names()));
             error.allowed = Some(listed(names()));
-            // The field was one of the kind that an override has put another in the place of.
+            // The field belongs to the kind that an override has replaced.
             if let Some(Location::Override(_)) = tag.and_then(|tag| node.get(tag)).map(|kind| kind.location)
                 && let (Location::Bytes(..), Some((table, _))) = (entry.location, here.rsplit_once('.'))
             {
-                // An integrator may be a word alone; others are tables with all that has no default.
+                // An integrator may be a single word; other parts are tables with all fields that have no default.
                 let table = table.to_string();
                 error = error.advice(if table == "integrator" {
                     SceneHint::KindSet { table, kind }
@@ -240,25 +240,25 @@ impl<'a> Reader<'a> {
             error
         };
         match self.options.lenient {
-            // Each has a message of its own: behind the last that is listed there is nothing to look for.
+            // Each has a message of its own, so it is not compared with the listed ones.
             true if self.notices.len() >= MOST_SHOWN => self.more_notices += 1,
             true => self.notice(entry.location, error()),
             false => self.report_lazily(entry.location, error),
         }
     }
 
-    /// The fields that are there under a misspelt name: one slip is one error. Where unknown fields pass with a warning, what
-    /// they may have meant is missing all the same.
+    /// The names that misspelt fields probably mean, so that one slip gives one error. If unknown fields are only warnings, the fields that they may
+    /// have meant are still reported as missing.
     pub(crate) fn misspelt(&self, node: &Node, section: &Section, tag: Option<&str>) -> Vec<String> {
         if self.options.lenient {
             return Vec::new();
         }
         let unknown = node.entries().iter().filter(|entry| !names(section, tag).any(|name| name == entry.key));
-        // Those that are listed; of the others nobody reads what they may have meant.
+        // Only for errors that are listed: nobody sees the suggestions of the others.
         unknown.take(MOST_SHOWN).filter_map(|entry| nearest(&entry.key, names(section, tag))).collect()
     }
 
-    /// Tells of fields that are written and have no say among the others.
+    /// Reports fields that are given but have no effect together with the others.
     fn without_effect(&mut self, node: &Node, path: &str, spec: &'static Spec, values: &Values) {
         for entry in node.entries() {
             let Some(field) = spec.fields.iter().find(|field| field.name == entry.key) else { continue };
@@ -270,7 +270,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reports all missing fields of a table at once, but for those that are meant by a misspelt name.
+    /// Reports all missing fields of a table at once, except those that a misspelt name probably means.
     fn missing(&mut self, part: Option<Part>, node: &Node, path: &str, section: &Section, meant: &[String]) {
         let plain = section.spec.fields.iter().filter(|f| f.default == Default::Required).map(|f| f.name);
         let structured = section.children.iter().filter(|c: &&Child| c.required).map(|c| c.name);
@@ -294,7 +294,7 @@ impl<'a> Reader<'a> {
         self.report(node.location, error);
     }
 
-    /// Reports choices between fields of which none or several are given, but for those that a misspelt name means.
+    /// Reports choices between fields if none or several are given, except those that a misspelt name probably means.
     fn choices(&mut self, node: &Node, path: &str, spec: &'static Spec, meant: &[String]) {
         for set in spec.choices().filter(|set| !set.iter().any(|name| meant.iter().any(|m| m == name))) {
             let given: Vec<&&str> = set.iter().filter(|name| node.get(name).is_some()).collect();
@@ -333,7 +333,7 @@ impl<'a> Reader<'a> {
         Some(self.fields_of(Some(what), node, path, &Section { spec, children: &[] }, Some("kind")))
     }
 
-    /// `integrator`: a table, or the word alone where its defaults will do.
+    /// Reads `integrator`: a table, or the word alone if its defaults are sufficient.
     pub(crate) fn integrator(&mut self, node: &Node, path: &str) -> Option<Values> {
         let value = node.get("integrator")?;
         let list = self.catalogue.integrators.clone();
@@ -344,7 +344,7 @@ impl<'a> Reader<'a> {
         self.kind_table(&table, &here, Part::Integrator, &list)
     }
 
-    /// The word that says what a table is.
+    /// The word that selects the type of a table.
     pub(crate) fn tag(&mut self, node: &Node, path: &str, tag: &str, what: Part, words: &[&str]) -> Option<String> {
         if !matches!(node.data, Data::Table(_)) {
             self.wrong_type(node, path, Wanted::Table);
@@ -371,7 +371,7 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// The tables of a list, with their paths. A single table is no list.
+    /// The tables of a list, with their paths. A single table is not a list.
     pub(crate) fn list<'n>(&mut self, node: &'n Node, path: &str, name: &str) -> Vec<(&'n Node, String)> {
         let Some(value) = node.get(name) else { return Vec::new() };
         let here = join(path, name);
@@ -393,7 +393,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reports a value of another type than wanted.
+    /// Reports a value of the wrong type.
     pub(crate) fn wrong_type(&mut self, node: &Node, path: &str, wanted: Wanted) {
         let field = visible(if path.is_empty() { "the scene" } else { path });
         let about = FieldError::Type { field, kind: node.kind(), value: node.shown() };
@@ -408,13 +408,13 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Words as a list in a sentence, each once.
+/// Joins words to a list in a sentence, each once.
 pub(crate) fn listed<'w>(words: impl Iterator<Item = &'w str>) -> String {
     let mut seen = BTreeSet::new();
     words.filter(|word| seen.insert(*word)).collect::<Vec<_>>().join(", ")
 }
 
-/// The names of all that a table may hold.
+/// The names of all fields that a table may contain.
 fn names<'s>(section: &'s Section, tag: Option<&'s str>) -> impl Iterator<Item = &'s str> {
     let fields = section.spec.fields.iter().map(|f| f.name);
     fields.chain(section.children.iter().map(|c| c.name)).chain(tag)

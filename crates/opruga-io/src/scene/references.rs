@@ -1,4 +1,4 @@
-//! Names of bodies in other tables: which body is meant, and what is said where none is.
+//! Names of bodies in other tables: which body is meant, and the error if there is none.
 
 use super::body_list::Bodies;
 use super::errors::{ReferenceError, SceneAllowed, SceneHint, Wanted};
@@ -9,7 +9,7 @@ use opruga_core::spec::nearest;
 use opruga_world::blueprint::BodyBlueprint;
 
 impl<const D: usize> Bodies<D> {
-    /// The bodies that `body = …` of a table names, and how far selectors move along: all copies by their common name.
+    /// The bodies that `body = …` of a table names, and the offset of selectors for each. The common name of copies means all of them.
     pub(crate) fn targets(&self, reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<Vec<(usize, [f64; D])>> {
         if let Some((first, offsets)) = table.get("body").and_then(Node::text).and_then(|name| self.copied.get(name)) {
             return Some(offsets.iter().enumerate().map(|(k, offset)| (first + k, *offset)).collect());
@@ -47,7 +47,7 @@ impl<const D: usize> Bodies<D> {
             }
         }
     }
-    /// The first body that a name means, copies by their common name too.
+    /// The first body that a name means; the name may also be the common one of copies.
     pub(crate) fn first(&self, name: &str) -> Option<&BodyBlueprint<D>> {
         let k = self.names.get(name).or_else(|| self.names.get(&format!("{name}[0]")));
         k.and_then(|k| self.list.get(*k)).or_else(|| name.parse::<usize>().ok().and_then(|k| self.list.get(k)))
@@ -81,7 +81,7 @@ impl<const D: usize> Bodies<D> {
         reader.report(location, error);
     }
 
-    /// The error with the bodies that there are.
+    /// Adds the existing bodies to an error.
     fn with_allowed(&self, error: SceneError) -> SceneError {
         match self.list.len() {
             0 if !self.broken.is_empty() => error.allowed(listed(self.broken.iter().map(String::as_str))),

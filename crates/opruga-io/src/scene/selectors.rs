@@ -1,4 +1,4 @@
-//! Sets of nodes: reading them, and refusing those that select nothing.
+//! Sets of nodes: reads them, and refuses those that select nothing.
 
 use super::body_list::Bodies;
 use super::errors::{ReferenceError, SceneHint, Wanted};
@@ -11,7 +11,7 @@ use opruga_world::schema::{SELECTORS, Section};
 use opruga_world::selection;
 use opruga_world::validity::SelectorFault;
 
-/// A set of nodes of a table: `select = { … }`; all nodes where the table has none.
+/// Reads the set of nodes of a table: `select = { … }`; all nodes if the table has none.
 pub(crate) fn of<const D: usize>(reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<Selector<D>> {
     match table.get("select") {
         Some(node) => one(reader, node, &join(path, "select")),
@@ -19,7 +19,7 @@ pub(crate) fn of<const D: usize>(reader: &mut Reader<'_>, table: &Node, path: &s
     }
 }
 
-/// One selector: a table with exactly one key.
+/// Reads one selector: a table with exactly one key.
 fn one<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<Selector<D>> {
     let words = || SELECTORS.iter().map(|s| s.kind);
     let entries = match &node.data {
@@ -121,7 +121,7 @@ fn fixed<const D: usize>(row: &[f64]) -> [f64; D] {
     core::array::from_fn(|a| row.get(a).copied().unwrap_or(0.0))
 }
 
-/// Refuses a selector that names nodes or groups that are not there, or that selects nothing.
+/// Refuses a selector that names nonexistent nodes or groups, or that selects nothing.
 pub(crate) fn check<const D: usize>(
     reader: &mut Reader<'_>,
     location: Location,

@@ -14,7 +14,7 @@ use opruga_mesh::outline::OutlineError;
 use opruga_mesh::{Mesh, MeshError};
 use opruga_world::shapes;
 
-/// Where a shape stands in the scene.
+/// The location of a shape in the scene.
 pub(super) struct ShapeLocation<'a> {
     /// The name of its body.
     pub(super) name: &'a str,
@@ -22,7 +22,7 @@ pub(super) struct ShapeLocation<'a> {
     pub(super) path: String,
 }
 
-/// Reads the file of a shape that has one. The file is looked at only where its own fields have no errors.
+/// Reads the file of a shape that has one. The file is read only if its own fields have no errors.
 pub(super) fn loaded<const D: usize>(
     reader: &mut Reader<'_>,
     node: &Node,
@@ -59,7 +59,7 @@ pub(super) fn mesh<const D: usize>(
 ) -> Option<Mesh<D>> {
     let made = match loaded {
         Some(loaded) => loaded.mesh::<D>(transform),
-        // Why there is no file was told.
+        // The reason for the missing file has been reported.
         None if shapes::is_from_file(shape.kind()) => return None,
         None => generated::<D>(shape, transform, at.name),
     };
@@ -73,7 +73,7 @@ pub(super) fn mesh<const D: usize>(
     for notice in notices {
         reader.notice(at.location, notice.path(&at.path));
     }
-    // Large factors may leave the range of numbers.
+    // Large factors may cause an overflow.
     if let Some(x) = mesh.positions.iter().flatten().find(|x| !x.is_finite()) {
         reader.report(at.location, SceneError::of(BodyError::NotFiniteShape { value: *x }).path(&at.path));
         return None;
@@ -81,7 +81,7 @@ pub(super) fn mesh<const D: usize>(
     Some(mesh)
 }
 
-/// A shape without a file, and what is odd about it.
+/// Makes a shape without a file, with its notices.
 fn generated<const D: usize>(
     shape: &Values,
     transform: &shapes::Transform<'_>,
@@ -107,10 +107,10 @@ fn generated<const D: usize>(
     Ok((made.mesh, notices))
 }
 
-/// A shape by its fields alone, each a name and a value as `--set NAME=VALUE` gives them; later ones replace earlier ones.
+/// Makes a shape from its fields alone, each a name and a value as in `--set NAME=VALUE`; later ones replace earlier ones.
 ///
 /// # Errors
-/// All that scenes are refused for, each with the field that it is about.
+/// All errors that scenes can have, each with the field that it is about.
 pub fn of_fields(
     kind: &str,
     dimension: usize,

@@ -1,4 +1,4 @@
-//! The velocity of a body at the start: one vector, or a field.
+//! The initial velocity of a body: one vector, or a field.
 
 use super::errors::{BodyError, SceneAllowed, SceneHint};
 use super::location_of;
@@ -11,7 +11,7 @@ use opruga_world::{schema, shapes};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How a body moves at the start.
+/// The initial motion of a body.
 pub(super) struct Velocities<const D: usize> {
     /// Of the centre of mass [m/s].
     pub(super) linear: [f64; D],
@@ -19,7 +19,7 @@ pub(super) struct Velocities<const D: usize> {
     pub(super) angular: Vec<f64>,
     /// ∂v/∂x, row by row [1/s].
     pub(super) gradient: [[f64; D]; D],
-    /// The name of vectors of the mesh file [m/s], if nodes have each their own.
+    /// The name of vectors in the mesh file [m/s], if each node has its own velocity.
     of_nodes: Option<String>,
 }
 
@@ -62,10 +62,10 @@ pub(super) fn at_the_start<const D: usize>(reader: &mut Reader<'_>, node: &Node,
 }
 
 impl<const D: usize> Velocities<D> {
-    /// The path of the field that names vectors of nodes, in a body.
+    /// The path, within a body, of the field that names the vectors of nodes.
     pub(super) const OF_NODES: [&str; 2] = ["velocity", "of_nodes"];
 
-    /// What every node has by itself, from the values that the mesh file has for its nodes; they turn as the body does.
+    /// The velocities of single nodes, from the values of nodes in the mesh file; they are rotated like the body.
     ///
     /// # Errors
     /// `scene.no_values`, `scene.length`, `scene.not_finite`, `scene.dimension`, `scene.range`.
@@ -107,7 +107,7 @@ impl<const D: usize> Velocities<D> {
             }
             rows.push(core::array::from_fn(|d| row[d]));
         }
-        // They turn as positions do, about zero.
+        // They are rotated like positions, about zero.
         let mut turned = Mesh::<D> { positions: rows, ..Mesh::default() };
         let refused = |problem| SceneError::of(BodyError::Rotation { problem });
         shapes::apply_transform(&mut turned, &shapes::Transform { scale: 1.0, rotation }).map_err(refused)?;

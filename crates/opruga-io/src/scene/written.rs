@@ -1,4 +1,4 @@
-//! Commands, models and integrators as a scene writes them: the other direction of `actions`.
+//! Writes commands, models and integrators as a scene does: the inverse of `actions`.
 
 use opruga_core::spec::{Value, Values};
 use opruga_world::blueprint::{Action, CommandBlueprint, Selector};
@@ -22,8 +22,8 @@ pub fn toml(value: &Value) -> Toml {
     }
 }
 
-/// A model or an integrator of a scene of so many dimensions as a table. What has no effect beside the other values, and is as it would be
-/// by itself, is left out: whoever reads the scene would be warned of it.
+/// A model or an integrator as a table of a scene of this dimension. Default values of fields that have no effect beside the other values are
+/// omitted, because a reader of the scene would get a warning about them.
 pub fn kind_table(values: &Values, dimension: usize) -> InlineTable {
     let spec = values.spec();
     let defaults = Values::defaults(spec, dimension);
@@ -40,7 +40,7 @@ pub fn kind_table(values: &Values, dimension: usize) -> InlineTable {
     table
 }
 
-/// A command as the file of a scene of so many dimensions writes it, on the body of this name; none for what has no such form.
+/// A command as a table in the file of a scene of this dimension, for the body of this name; none if the command has no such form.
 pub fn command_table(command: &CommandBlueprint<3>, dimension: usize, body: &str) -> Option<Table> {
     let mut table = Table::new();
     table.decor_mut().set_prefix("\n");

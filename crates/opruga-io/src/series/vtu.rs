@@ -1,7 +1,7 @@
-//! VTK XML unstructured grids: one frame a file, and the list of all (`.pvd`).
+//! VTK XML unstructured grids: one file per frame, and the list of all files (`.pvd`).
 //!
 //! # Source
-//! Kitware, "VTK XML Formats"; arrays are base64 with a header of 8 bytes, lowest byte first.
+//! Kitware, "VTK XML Formats"; arrays are base64 with a header of 8 bytes, little-endian.
 
 use super::{Elements, Shape};
 use crate::base64;
@@ -24,7 +24,7 @@ pub(crate) fn attribute(text: &str) -> String {
     out
 }
 
-/// An array of numbers, as bytes in letters.
+/// Writes an array of numbers as base64.
 pub(crate) fn array(out: &mut dyn Write, kind: &str, name: &str, components: usize, bytes: &[u8]) -> io::Result<()> {
     let mut whole = (bytes.len() as u64).to_le_bytes().to_vec();
     whole.extend_from_slice(bytes);
@@ -51,7 +51,7 @@ fn vectors<'a>(all: impl Iterator<Item = &'a [f64; 3]>) -> Vec<f64> {
     all.flatten().copied().collect()
 }
 
-/// Head and points of a file; the time [s] of a frame.
+/// Writes the head and the points of a file, and the time [s] of a frame.
 pub(crate) fn head(out: &mut dyn Write, time: Option<f64>, points: &[f64], cells: usize) -> io::Result<()> {
     writeln!(out, "<?xml version=\"1.0\"?>")?;
     writeln!(
@@ -75,7 +75,7 @@ pub(crate) fn head(out: &mut dyn Write, time: Option<f64>, points: &[f64], cells
     writeln!(out, "</Points>")
 }
 
-/// Nodes and types of cells.
+/// Writes the nodes and the types of cells.
 pub(crate) fn cells<'c>(out: &mut dyn Write, all: impl Iterator<Item = (u8, &'c [usize])>) -> io::Result<()> {
     let (mut nodes, mut offsets, mut types) = (Vec::new(), Vec::new(), Vec::new());
     for (kind, own) in all {
@@ -115,7 +115,7 @@ pub(super) fn write(out: &mut dyn Write, time: f64, shapes: &[Shape<'_>]) -> io:
     reals(out, "velocity [m/s]", 3, &vectors(shapes.iter().flat_map(|s| s.velocities)))?;
     writeln!(out, "</PointData>\n<CellData>")?;
 
-    // Cells: what a body does not have is not a number.
+    // Cells: values that a body does not have are NaN.
     wholes(out, "body", &all().map(|(body, _)| body as i64).collect::<Vec<i64>>())?;
     let filled = |elements: &Elements, shape: &Shape<'_>| {
         let own = shape.body.cells().len();
@@ -157,7 +157,7 @@ pub(super) fn write(out: &mut dyn Write, time: f64, shapes: &[Shape<'_>]) -> io:
     foot(out)
 }
 
-/// Writes the list of a series of files with their times, as ParaView reads it (`.pvd`).
+/// Writes the list of a series of files with their times, in the format of ParaView (`.pvd`).
 ///
 /// # Errors
 /// Those of the writer.

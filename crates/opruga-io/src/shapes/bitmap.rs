@@ -1,7 +1,8 @@
 //! Pictures: contours where a quantity of the pixels crosses a threshold.
 //!
-//! Values lie at the middles of pixels; between them they are linear along the lines of the grid, so contours are finer than pixels (marching squares).
-//! Where two opposite corners of a square are inside, their mean says whether they are joined. Around the picture nothing is inside.
+//! Values belong to the centres of pixels. Between centres they are linear along the grid lines, so contours are finer than pixels (marching
+//! squares). If two opposite corners of a square are inside, their mean decides whether they are connected. Everything outside the picture counts as
+//! outside.
 
 use super::curves::Curves;
 use super::drawing::Drawing;
@@ -14,7 +15,7 @@ use opruga_math::message::Setting;
 /// Reads a PNG picture.
 ///
 /// # Errors
-/// `png.syntax`, `limit.pixels` before the pixels are read, `limit.outlines`, `limit.points`, `shape.no_area` where none of them is inside.
+/// `png.syntax`, `limit.pixels` before the pixels are read, `limit.outlines`, `limit.points`, `shape.no_area` if none of them is inside.
 pub(super) fn read<'a>(bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, SceneError> {
     let inside = shape.text("inside").unwrap_or("dark");
     let threshold = shape.number("threshold").unwrap_or(0.5);
@@ -32,7 +33,7 @@ pub(super) fn read<'a>(bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, Scen
     Ok(Drawing { curves, y_down: true, source: None, spans, painted, rules, notices })
 }
 
-/// Gives the values of the pixels, from 0 to 1, row by row, with a border of zeros on all sides; returns the largest.
+/// Passes on the values of the pixels, from 0 to 1, row by row, with a border of zeros on all sides; returns the largest value.
 fn pixels(
     bytes: &[u8],
     inside: &str,
@@ -71,7 +72,7 @@ fn pixels(
         take(&values)
     };
     if reader.info().interlaced {
-        // Rows of interlaced pictures come in seven rounds: these need room for all of them.
+        // The rows of interlaced pictures come in seven passes, so all of them must be in memory.
         let mut data = vec![0; reader.output_buffer_size().unwrap_or(0)];
         let info = reader.next_frame(&mut data).map_err(refuse)?;
         data.chunks_exact(info.line_size).take(h as usize).try_for_each(&mut row)?;
@@ -85,13 +86,13 @@ fn pixels(
     Ok(most)
 }
 
-/// Contours while rows come in: the steps from one line of the grid to the next, with their points.
+/// Contours, built while rows come in: the steps from one grid line to the next, with their points.
 struct Lines {
     threshold: f64,
-    /// The row before, and how many rows there have been.
+    /// The previous row, and the number of rows so far.
     above: Vec<f32>,
     rows: usize,
-    /// From which line of the grid, to which, and where the contour crosses the first one.
+    /// Grid line at which the step starts, grid line at which it ends, and the point where the contour crosses the first.
     steps: Vec<(u64, u64, [f64; 2])>,
 }
 
@@ -100,7 +101,7 @@ impl Lines {
         Lines { threshold, above: Vec::new(), rows: 0, steps: Vec::new() }
     }
 
-    /// Takes the next row.
+    /// Adds the next row.
     fn row(&mut self, below: &[f32]) -> Result<(), SceneError> {
         if self.rows > 0 {
             let above = std::mem::take(&mut self.above);
@@ -110,20 +111,20 @@ impl Lines {
         self.above.clear();
         self.above.extend(below);
         self.rows += 1;
-        // A contour has a step on every side of a pixel at most.
+        // A contour has at most one step on every side of a pixel.
         POINTS.check(self.steps.len() as u64)
     }
 
-    /// The squares between two rows of pixels, with the inside to the left of each step where y counts upwards.
+    /// The squares between two rows of pixels. The inside is to the left of each step if y points upwards.
     fn squares(&mut self, above: &[f32], below: &[f32]) {
         let (w, y, threshold) = (above.len(), self.rows - 1, self.threshold);
         let inside = |value: f32| f64::from(value) > threshold;
-        // Lines of the grid by number: 2·corner to the right of it, 2·corner + 1 below it.
+        // Numbers of grid lines: 2·corner to the right of it, 2·corner + 1 below it.
         let line = |x: usize, y: usize, down: usize| 2 * (y * w + x) as u64 + down as u64;
         let crossing = |a: f32, b: f32| (threshold - f64::from(a)) / (f64::from(b) - f64::from(a));
         for x in 0..w - 1 {
             let values = [above[x], above[x + 1], below[x + 1], below[x]];
-            // A border of zeros must lie outside, whatever the threshold is.
+            // A border of zeros must be outside, whatever the threshold is.
             let code = values.iter().enumerate().map(|(k, value)| usize::from(inside(*value)) << k).sum::<usize>();
             if code == 0 || code == 15 {
                 continue;
@@ -139,7 +140,7 @@ impl Lines {
                 };
                 self.steps.push((from, to, point));
             };
-            // Seen with y down, the inside lies to the right of each step.
+            // Seen with y downwards, the inside is to the right of each step.
             match code {
                 1 => go(left, top),
                 2 => go(top, right),
@@ -157,7 +158,7 @@ impl Lines {
                     let [a, b, c, d] = values.map(f64::from);
                     let mean = 0.25 * (a + b + c + d);
                     let joined = mean > threshold;
-                    // Corners 0 and 2 apart, or corners 1 and 3 joined; or the other way.
+                    // Corners 0 and 2 are separate, or corners 1 and 3 are connected; or vice versa.
                     let pairs = match (code == 5, (code == 5) != joined) {
                         (true, true) => [(left, top), (right, bottom)],
                         (false, true) => [(top, left), (bottom, right)],
@@ -170,7 +171,8 @@ impl Lines {
         }
     }
 
-    /// Draws the closed contours, the lowest lines first; returns how many contours and points there are. Too many are counted only.
+    /// Draws the closed contours, beginning with the lowest grid lines; returns the numbers of contours and points. If there are too many, they are
+    /// only counted.
     fn contours(mut self, curves: &mut Curves) -> (u64, u64) {
         self.steps.sort_unstable_by_key(|step| step.0);
         let (mut contours, points) = (0, self.steps.len() as u64);

@@ -1,4 +1,4 @@
-//! How much of a TrueType font a letter draws: composite letters are made of others, which may be composite themselves.
+//! The amount of data that a letter of a TrueType font draws: composite letters consist of others, which may be composite themselves.
 //!
 //! # Source
 //! Microsoft, OpenType Specification 1.9, tables `glyf` and `loca`.
@@ -7,10 +7,11 @@ use crate::budget::EXPANSION;
 use std::collections::BTreeMap;
 use ttf_parser::{Face, GlyphId, Tag};
 
-/// Letters may be made of one another so deep; the library ends there.
+/// The deepest nesting of letters; the library stops there.
 const DEEPEST: u8 = 32;
 
-/// The bytes of all letters that a letter is made of, each as often as it is drawn; 0 for fonts of another kind. It stops counting above the limit.
+/// The total size [bytes] of the letters that a letter consists of, each counted as often as it is drawn; 0 for fonts of another format. Counting
+/// stops above the limit.
 pub(super) fn bytes(face: &Face<'_>, glyph: GlyphId) -> u64 {
     let table = |name| face.raw_face().table(Tag::from_bytes(name));
     let (Some(glyf), Some(loca)) = (table(b"glyf"), table(b"loca")) else { return 0 };
@@ -22,7 +23,7 @@ struct Letters<'a> {
     glyf: &'a [u8],
     loca: &'a [u8],
     long: bool,
-    /// Letters at a depth whose bytes have been counted.
+    /// Letters at a depth whose bytes have already been counted.
     known: BTreeMap<(u16, u8), u64>,
 }
 
@@ -62,7 +63,7 @@ fn parts(data: &[u8]) -> Vec<u16> {
     let word =
         |at: usize| data.get(at..).and_then(|rest| rest.first_chunk::<2>()).map(|word| u16::from_be_bytes(*word));
     let mut found = Vec::new();
-    // A number of contours below zero, then a box, and then the parts.
+    // A negative number of contours, then a box, and then the parts.
     if word(0).is_none_or(|contours| contours < 0x8000) {
         return found;
     }
@@ -89,7 +90,7 @@ mod tests {
     use super::Letters;
     use std::collections::BTreeMap;
 
-    /// A letter of two letters of two letters …: the first of a chain of 40.
+    /// A letter made of two letters, each made of two letters, and so on: the first of a chain of 40.
     #[test]
     fn letters_of_letters_are_counted_and_not_drawn() {
         let (mut glyf, mut loca) = (Vec::new(), vec![0u8; 4]);

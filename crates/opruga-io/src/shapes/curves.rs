@@ -1,10 +1,10 @@
-//! Lines and curves before they are cut into points.
+//! Lines and curves before they are divided into points.
 
 use opruga_mesh::outline::Ring;
 
 pub(super) type Point = [f64; 2];
 
-/// The most points that one curve is cut into.
+/// The largest number of points of one curve.
 const MOST_PIECES: f64 = 10_000.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +14,7 @@ enum Segment {
     Cubic(Point, Point, Point),
 }
 
-/// A curve from its start through its segments and straight back.
+/// A closed curve: from its start through its segments, and straight back to the start.
 #[derive(Clone, Debug, PartialEq)]
 struct Contour {
     start: Point,
@@ -26,18 +26,18 @@ struct Contour {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Curves {
     contours: Vec<Contour>,
-    /// Where the pen is.
+    /// The position of the pen.
     at: Point,
-    /// The part that is drawn now.
+    /// The part that is being drawn.
     part: u32,
 }
 
-/// The smaller of two finite numbers; the first of equal ones, zeros of either sign among them.
+/// The smaller of two finite numbers; if they are equal (zeros of either sign included), the first.
 pub(super) fn smaller(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
 }
 
-/// The larger of two finite numbers; the first of equal ones.
+/// The larger of two finite numbers; if they are equal, the first.
 pub(super) fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
@@ -45,23 +45,23 @@ pub(super) fn larger(a: f64, b: f64) -> f64 {
 /// x′ = a x + c y + e, y′ = b x + d y + f.
 pub(super) type Affine = [f64; 6];
 
-/// The map that leaves every point where it is.
+/// The identity map.
 pub(super) const IDENTITY: Affine = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
 
-/// First `inner`, then `outer`.
+/// The composition of two maps: first `inner`, then `outer`.
 pub(super) fn after(outer: &Affine, inner: &Affine) -> Affine {
     let [a, b, c, d, e, f] = *outer;
     let [p, q, r, s, t, u] = *inner;
     [a * p + c * q, b * p + d * q, a * r + c * s, b * r + d * s, a * t + c * u + e, b * t + d * u + f]
 }
 
-/// A point under a map.
+/// The image of a point under a map.
 pub(super) fn mapped(map: &Affine, [x, y]: Point) -> Point {
     [map[0] * x + map[2] * y + map[4], map[1] * x + map[3] * y + map[5]]
 }
 
 impl Curves {
-    /// Nothing yet, to be drawn for a part.
+    /// An empty drawing, to be drawn for a part.
     pub(super) fn of_part(part: u32) -> Curves {
         Curves { part, ..Curves::default() }
     }
@@ -82,7 +82,7 @@ impl Curves {
         self.push(Segment::Cubic(first, second, to), to);
     }
 
-    /// A quadratic Bézier curve, raised to a cubic one.
+    /// A quadratic Bézier curve, converted to a cubic one.
     pub(super) fn quadratic_to(&mut self, control: Point, to: Point) {
         let third = |p: Point, q: Point| [p[0] + (q[0] - p[0]) * 2.0 / 3.0, p[1] + (q[1] - p[1]) * 2.0 / 3.0];
         self.cubic_to(third(self.at, control), third(to, control), to);
@@ -105,7 +105,7 @@ impl Curves {
         self.at = to;
     }
 
-    /// Where the present contour began.
+    /// The start of the present contour.
     pub(super) fn start(&self) -> Point {
         self.contours.last().map_or([0.0; 2], |contour| contour.start)
     }
@@ -128,22 +128,23 @@ impl Curves {
         }));
     }
 
-    /// How many contours there are.
+    /// The number of contours.
     pub(super) fn count(&self) -> usize {
         self.contours.len()
     }
 
-    /// How many of them enclose something, perhaps.
+    /// The number of contours that may enclose an area.
     pub(super) fn closed(&self) -> usize {
         self.contours.iter().filter(|contour| !contour.segments.is_empty()).count()
     }
 
-    /// The contours from one on.
+    /// The contours from index `begun` on.
     pub(super) fn from(&self, begun: usize) -> Curves {
         Curves { contours: self.contours.get(begun..).unwrap_or(&[]).to_vec(), ..Curves::default() }
     }
 
-    /// Whether this is one convex polygon that holds all points and control points of other curves, within a distance: then it holds the curves.
+    /// Whether this is a single convex polygon that contains all points and control points of other curves, within a tolerance. It then contains the
+    /// curves.
     pub(super) fn holds_points_of(&self, other: &Curves, within: f64) -> bool {
         let [contour] = self.contours.as_slice() else { return false };
         let mut corners = vec![contour.start];
@@ -161,7 +162,7 @@ impl Curves {
             let (u, v) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
             (u[0] * v[1] - u[1] * v[0]) / (u[0] * u[0] + u[1] * u[1]).sqrt()
         };
-        // Every corner and every point lies on the same side of all edges.
+        // Every corner and every point is on the same side of all edges.
         let turn = (0..n).map(|k| side(k, corners[(k + 2) % n])).find(|turn| *turn != 0.0).unwrap_or(0.0).signum();
         let inside = |p: Point| (0..n).all(|k| turn * side(k, p) >= -within);
         let convex = n > 2 && turn != 0.0 && corners.iter().all(|p| (0..n).all(|k| turn * side(k, *p) >= 0.0));
@@ -173,7 +174,7 @@ impl Curves {
             && other.contours.iter().all(|contour| inside(contour.start) && contour.segments.iter().all(segment_inside))
     }
 
-    /// How many points lines and curves join; one that repeats the start of its contour is not counted twice.
+    /// The number of points that lines and curves connect. A point that repeats the start of its contour is not counted twice.
     pub(super) fn points(&self) -> usize {
         let of = |contour: &Contour| {
             let end = contour.segments.last().map(|segment| match *segment {
@@ -205,7 +206,7 @@ impl Curves {
         larger(high[0] - low[0], high[1] - low[1])
     }
 
-    /// How many points [`Curves::flatten`] would make; at most as many as it needs to know that they are more than some.
+    /// The number of points that [`Curves::flatten`] would make. Counting stops once the number exceeds `most`.
     pub(super) fn flat_points(&self, tolerance: f64, most: u64) -> u64 {
         let mut count = 0;
         for contour in &self.contours {
@@ -227,7 +228,7 @@ impl Curves {
         count
     }
 
-    /// Rings that stay within `tolerance` of the curves. Points that repeat the one before are left out.
+    /// Rings that stay within `tolerance` of the curves. A point that repeats the previous one is left out.
     pub(super) fn flatten(&self, tolerance: f64) -> Vec<Ring> {
         let flat = |contour: &Contour| {
             let mut points = vec![contour.start];
@@ -258,7 +259,7 @@ impl Curves {
     }
 }
 
-/// How many lines follow a cubic curve within a tolerance: n² = ¾ max|second difference| / tolerance.
+/// The number of lines that approximate a cubic curve within a tolerance: n² = ¾ max|second difference| / tolerance.
 fn pieces([a, p, q, b]: [Point; 4], tolerance: f64) -> u64 {
     let second = |a: Point, b: Point, c: Point| {
         let (x, y) = (a[0] - 2.0 * b[0] + c[0], a[1] - 2.0 * b[1] + c[1]);
@@ -275,7 +276,7 @@ fn on_cubic([a, p, q, b]: [Point; 4], t: f64) -> Point {
 }
 
 impl Curves {
-    /// An elliptical arc of the SVG path language from the present point; radii that are too small are enlarged, as its standard says.
+    /// Adds an elliptical arc of the SVG path language from the present point. Radii that are too small are enlarged according to the standard.
     ///
     /// Pieces of at most 45° become cubic curves, which differ from the arc by less than 5·10⁻⁶ of its radius.
     ///
@@ -291,7 +292,7 @@ impl Curves {
             return self.line_to(to);
         }
         let (sin, cos) = (libm::sin(rotation), libm::cos(rotation));
-        // From the middle of the chord, along the axes of the ellipse.
+        // From the midpoint of the chord, along the axes of the ellipse.
         let (hx, hy) = (0.5 * (from[0] - to[0]), 0.5 * (from[1] - to[1]));
         let (x, y) = (cos * hx + sin * hy, cos * hy - sin * hx);
         let stretch = (x / rx) * (x / rx) + (y / ry) * (y / ry);

@@ -1,4 +1,4 @@
-//! From the curves of a drawing to rings of the wanted size and spacing.
+//! Converts the curves of a drawing to rings of the desired size and spacing.
 
 use super::curves::{Curves, larger};
 use super::errors::{ShapeError, ShapeHint, ShapeNotice};
@@ -14,7 +14,7 @@ use opruga_math::words::rounded;
 use opruga_mesh::outline::{self, OutlineError, Overlap, Painted, Ring};
 use opruga_mesh::{MAXIMUM_NODES, Mesh, MeshError};
 
-/// Curves are followed within this part of the spacing.
+/// Curves are approximated within this fraction of the spacing.
 const TOLERANCE: f64 = 0.002;
 
 /// What a reader found.
@@ -22,12 +22,12 @@ pub(super) struct Drawing<'a> {
     pub(super) curves: Curves,
     /// Whether y points downwards.
     pub(super) y_down: bool,
-    /// The file, if it is a text, and where each part stands in it.
+    /// The file, if it is a text, and the location of each part in it.
     pub(super) source: Option<&'a Source<'a>>,
     pub(super) spans: Vec<(usize, usize)>,
-    /// The colours of the parts, if they are wanted: red, green, blue, opacity.
+    /// The colours of the parts, if they are needed: red, green, blue, opacity.
     pub(super) painted: Vec<Option<[u8; 4]>>,
-    /// By which rule each part is filled; the even-odd rule where this is silent and nothing else is usual.
+    /// The fill rule of each part; the even-odd rule for parts without one.
     pub(super) rules: Vec<Rule>,
     pub(super) notices: Vec<SceneError>,
 }
@@ -42,29 +42,29 @@ impl Drawing<'_> {
     }
 }
 
-/// What fills an outline.
+/// The filling of an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Inside {
     /// Nothing: it is a skin of edges.
     Nothing,
-    /// Triangles that follow it, of sides about so long [m].
+    /// Triangles that follow it, with sides of about this length [m].
     Triangles(f64),
-    /// Squares around it, of this side [m].
+    /// Squares around it, with this side [m].
     Squares(f64),
 }
 
 /// A drawing at its final size.
 #[derive(Clone, Debug)]
 pub(super) struct Outline {
-    /// What the body is made of.
+    /// The rings that the body is made of.
     pub(super) rings: Vec<Ring>,
     pub(super) inside: Inside,
-    /// What it carries for pictures.
+    /// The drawing that it carries for pictures.
     pub(super) painted: Vec<Painted>,
 }
 
 impl Outline {
-    /// About how many nodes the body will have.
+    /// The approximate number of nodes of the body.
     pub(super) fn node_count(&self) -> f64 {
         match self.inside {
             Inside::Nothing => self.rings.iter().map(|ring| ring.points.len() as f64).sum(),
@@ -73,10 +73,10 @@ impl Outline {
         }
     }
 
-    /// The body, with what it carries; and which of its triangles are thinner than promised.
+    /// Makes the body with the drawing that it carries; also reports triangles that are thinner than promised.
     ///
     /// # Errors
-    /// What fillings refuse.
+    /// Those of the filling.
     pub(super) fn mesh(&self) -> Result<(Mesh<2>, Option<SceneError>), SceneError> {
         let too_many = |e: MeshError| refused(&e.into());
         let (mut mesh, thin) = match self.inside {
@@ -92,7 +92,7 @@ impl Outline {
     }
 }
 
-/// Size, overlaps, holes and spacing, as the scene asks for.
+/// Applies size, overlaps, holes and spacing as the scene asks for.
 pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded, Problem> {
     let spacing = shape.number("spacing").unwrap_or(1.0);
     let size = shape.number("size").unwrap_or(1.0);
@@ -123,11 +123,11 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     };
     if let Some(how) = how {
         let together = outline::joined(&rings, how);
-        // Parts in their colours stay seen, one over another.
+        // Coloured parts remain visible, one above the other.
         drawing.notices.extend(overlap_notice(&rings, &together, how).filter(|_| painted.is_empty()));
         rings = together;
     }
-    // What is left of borders that nearly coincide.
+    // Remnants of borders that nearly coincide.
     rings.retain(|ring| ring.area().abs() > 1e-12 * extent * extent || shape.text("overlap") == Some("refuse"));
     let mut rings = scale_and_center(rings, &mut painted, &drawing, shape)?;
     if how.is_none()
@@ -152,7 +152,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     let inside = match shape.text("filling") {
         Some("triangles") => Inside::Triangles(spacing),
         Some("lattice") => {
-            // The squares carry the outline itself, as fine as it is; nobody has to hold its points.
+            // The squares carry the outline itself at full resolution; its points need not be nodes.
             painted.insert(0, Painted { rings: rings.clone(), colour: None });
             let outline = Outline { rings, inside: Inside::Squares(spacing), painted };
             return Ok(Loaded { notices: drawing.notices, content: Content::Outline(outline) });
@@ -160,7 +160,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         _ => Inside::Nothing,
     };
     too_fine(&rings, spacing, inside)?;
-    // Points of a contour or a font are not what one has drawn.
+    // The points of a contour or a font were not drawn by the user.
     let given = if drawing.source.is_some() { drawing.curves.points() } else { 0 };
     let before = rings;
     let rings = outline::resampled(&before, spacing).map_err(|e| {
@@ -173,7 +173,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
     Ok(Loaded { notices: drawing.notices, content: Content::Outline(outline) })
 }
 
-/// Refuses a spacing with which the body would have more nodes than any may have, before they are made.
+/// Refuses a spacing that would give the body more nodes than allowed, before they are made.
 fn too_fine(rings: &[Ring], spacing: f64, inside: Inside) -> Result<(), Problem> {
     let length: f64 = rings.iter().map(Ring::length).sum();
     let area = match inside {
@@ -192,14 +192,14 @@ fn too_fine(rings: &[Ring], spacing: f64, inside: Inside) -> Result<(), Problem>
     Err(Problem::new("spacing", error))
 }
 
-/// Whether a ring encloses more than an area: halves of a figure of eight add, though their signed areas cancel.
+/// Whether a ring encloses more than a given area. The halves of a figure of eight add up, though their signed areas cancel.
 fn encloses_more(ring: &Ring, least: f64) -> bool {
     let whole = |ring: &Ring| ring.area().abs();
     let halves = || outline::joined(core::slice::from_ref(ring), Overlap::EvenOdd).iter().map(whole).sum::<f64>();
     ring.points.len() > 2 && (whole(ring) > least || halves() > least)
 }
 
-/// How many outlines are no more as they were since they cross, touch or cover one another.
+/// Reports how many outlines have changed because they cross, touch or cover one another.
 fn overlap_notice(rings: &[Ring], together: &[Ring], how: Overlap) -> Option<SceneError> {
     let (count, left) = (changed(rings, together), together.len());
     let notice = match how {
@@ -209,11 +209,11 @@ fn overlap_notice(rings: &[Ring], together: &[Ring], how: Overlap) -> Option<Sce
     (count > 0).then(|| SceneError::of(notice))
 }
 
-/// How many rings are not among those that were made of all of them: neither area nor box is the same.
+/// The number of rings that the union does not contain: no ring in it has the same area and the same box.
 fn changed(rings: &[Ring], together: &[Ring]) -> usize {
     let Some((low, high)) = outline::bounds(rings) else { return 0 };
     let extent = larger(high[0] - low[0], high[1] - low[1]);
-    // Joining keeps coordinates on a grid of 2⁻³⁰ of the extent.
+    // Joining rounds coordinates to a grid of 2⁻³⁰ of the extent.
     let tolerance = 1e-7 * extent;
     let mut kept: Vec<(f64, &Ring)> = together.iter().map(|ring| (ring.area().abs(), ring)).collect();
     kept.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -230,7 +230,7 @@ fn changed(rings: &[Ring], together: &[Ring]) -> usize {
     rings.iter().filter(|ring| !is_kept(ring)).count()
 }
 
-/// The parts of a drawing that have a colour, in the order in which they are painted.
+/// The coloured parts of a drawing, in painting order.
 fn painted(colours: &[Option<[u8; 4]>], rings: &[Ring]) -> Vec<Painted> {
     let mut all: Vec<Painted> = colours.iter().map(|c| Painted { rings: Vec::new(), colour: *c }).collect();
     for ring in rings {
@@ -242,7 +242,7 @@ fn painted(colours: &[Option<[u8; 4]>], rings: &[Ring]) -> Vec<Painted> {
     all
 }
 
-/// Turns holes the other way and brings the drawing to its size and position.
+/// Gives holes the opposite orientation, and scales and moves the drawing.
 fn scale_and_center(
     mut rings: Vec<Ring>,
     painted: &mut [Painted],
@@ -275,7 +275,7 @@ fn scale_and_center(
     Ok(rings)
 }
 
-/// An error of outlines as an error of the scene.
+/// Converts an error of outlines to an error of the scene.
 pub(super) fn refused(error: &OutlineError) -> SceneError {
     SceneError::of(error.clone())
 }

@@ -1,11 +1,11 @@
-//! What readers of drawings, maps, fonts and pictures refuse and leave out.
+//! Errors and notices of the readers of drawings, maps, fonts and pictures.
 
 use opruga_math::message::Setting;
 use opruga_math::messages;
 use opruga_math::words::counted;
 
 messages! {
-    /// What is wrong with a drawing in SVG.
+    /// Errors in an SVG drawing.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum SvgError {
         "svg.unknown_id" #[error("no element has the id `{id}`")] #[value("{id}")]
@@ -83,7 +83,7 @@ messages! {
         EntityLoop { reason: String, found: String },
     }
 
-    /// What of a drawing in SVG is left out or read otherwise.
+    /// Parts of an SVG drawing that are omitted or interpreted differently.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum SvgNotice {
         "svg.open_path" #[error("{} closed by a straight line", counted(*count as u64, "open path is", "open paths are"))] #[value("{count}")]
@@ -115,7 +115,7 @@ messages! {
         FillRule { count: usize },
     }
 
-    /// What is wrong with a map.
+    /// Errors in a map.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum MapError {
         "map.unknown_layer" #[error("there is no layer `{layer}`")] #[value("{layer}")] #[allowed("no {setting}: only a topology has some")]
@@ -158,7 +158,7 @@ messages! {
         Json { reason: String, found: String },
     }
 
-    /// What of a map is left out or changed.
+    /// Parts of a map that are omitted or changed.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum MapNotice {
         "mesh.strokes" #[error("{} left out", counted(*count as u64, "point or line is", "points and lines are"))] #[value("{count}")]
@@ -178,7 +178,7 @@ messages! {
         Features { count: usize, feature: String },
     }
 
-    /// What is wrong with a font, a picture, or what the scene wants of them.
+    /// Errors in a font or a picture, or in what the scene asks of them.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum LetterError {
         "font.syntax" #[error("the font cannot be read: {reason}")] #[value("{bytes} bytes")] #[allowed("OpenType or TrueType (.ttf, .otf)")]

@@ -1,20 +1,21 @@
-//! How long a drawing becomes when its entities are written out: known before that is done.
+//! The length of a drawing with its entities expanded, computed before they are.
 
 use crate::budget::{EXPANSION, LimitHint};
 use crate::problem::SceneError;
 use crate::source::Source;
 use std::collections::BTreeMap;
 
-/// Entities may stand in one another so deep: the reader refuses more.
+/// The deepest nesting of entities; the XML reader refuses more.
 const DEEPEST: usize = 10;
 
-/// Refuses a text whose entities would make it much longer: four thousand times the same path, which is itself four thousand squares.
+/// Refuses a text that its entities would make much longer, for example with four thousand repetitions of a path that itself consists of four
+/// thousand squares.
 ///
-/// Entities from outside, and those that contain themselves, are left to the reader of the XML, which refuses them.
+/// External entities, and those that contain themselves, are left to the XML reader, which refuses them.
 pub(super) fn check(source: &Source<'_>) -> Result<(), SceneError> {
     let text = source.text;
     let Some(begin) = text.find("<!DOCTYPE") else { return Ok(()) };
-    // Where the declarations end is not looked for: a reference within them is counted once too often at most.
+    // The end of the declarations is not searched for: at worst, a reference within them is counted once too often.
     let mut entities: BTreeMap<&str, &str> = BTreeMap::new();
     let mut at = begin;
     while let Some(place) = text[at..].find("<!ENTITY") {
@@ -43,7 +44,7 @@ pub(super) fn check(source: &Source<'_>) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// How long each entity is with those in it, level by level.
+/// The length of each entity including those in it, level by level.
 fn written_out<'a>(entities: &BTreeMap<&'a str, &'a str>) -> BTreeMap<&'a str, u64> {
     let inner: Vec<(&str, u64, Vec<&str>)> = entities
         .iter()
@@ -60,7 +61,7 @@ fn written_out<'a>(entities: &BTreeMap<&'a str, &'a str>) -> BTreeMap<&'a str, u
     lengths
 }
 
-/// The names of entities in a text, with their places.
+/// The names of entities in a text, with their positions.
 fn references(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.match_indices('&').filter_map(|(place, _)| {
         let name = &text[place + 1..];

@@ -1,11 +1,11 @@
-//! What the makers of bodies from shapes refuse, and what they count.
+//! Errors and notices of the functions that make bodies from shapes.
 
 use opruga_math::message::Setting;
 use opruga_math::messages;
 use opruga_math::words::{counted, number};
 
 messages! {
-    /// How much of an area or a volume is gone, or has come.
+    /// The change of an area or a volume.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum Change {
         "part.change" #[error("{off} {unit} ({percent} %) of {whole} {unit} lost")]
@@ -14,7 +14,7 @@ messages! {
         Added { off: String, unit: &'static str, percent: String, whole: String },
     }
 
-    /// Why triangles have sharp angles.
+    /// The cause of triangles with sharp angles.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ThinCause {
         "part.thin_cause" #[error("the outline itself has a corner of {angle}° there")]
@@ -25,7 +25,7 @@ messages! {
         Unfinished {},
     }
 
-    /// What helps where a shape is refused or changed.
+    /// What helps if a shape is refused or changed.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ShapeHint {
         "part.shape_hint" #[error("use a smaller {spacing}")]
@@ -63,7 +63,7 @@ messages! {
         Weld { count: usize, weld: Setting, cap: Setting, sheet: Setting },
     }
 
-    /// Why no body can be made of the contents of a file.
+    /// Why no body can be made from the contents of a file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ShapeError {
         "scene.unknown_kind" #[error("`{kind}` reads no file")] #[value("{kind}")]
@@ -91,7 +91,7 @@ messages! {
         TooFineOutline { spacing: f64, nodes: String, least: String, most: u64 },
     }
 
-    /// What has changed while a body was made of the contents of a file.
+    /// What has changed while a body was made from the contents of a file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ShapeNotice {
         "shape.lost_volume" #[error("the filling leaves {change}")] #[value("{kept}")]

@@ -1,9 +1,9 @@
-//! The chunks of a .glb: the JSON and the bytes of a glTF file in one.
+//! The chunks of a .glb: the JSON and the binary data of a glTF file in one file.
 
 use super::gltf_errors::{GltfError, Sized};
 use crate::problem::SceneError;
 
-/// The JSON of a file, and the binary chunk of a .glb.
+/// Returns the JSON of a file, and the binary chunk of a .glb.
 pub(super) fn chunks<'a>(file: &str, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), SceneError> {
     if !bytes.starts_with(b"glTF") {
         return Ok((bytes, None));

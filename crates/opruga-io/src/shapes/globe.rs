@@ -1,38 +1,38 @@
-//! Polygons of the globe laid out flat, in degrees.
+//! Lays out polygons of the globe in a plane, in degrees.
 //!
-//! * A ring that steps over the antimeridian (from 179° to −179°) is drawn in one piece, beyond 180°.
+//! * A ring that crosses the antimeridian (from 179° to −179°) is drawn in one piece, beyond 180°.
 //! * A ring around a pole is cut along the antimeridian and closed along the pole.
-//! * Polygons lie side by side where that makes the map narrower: the longitudes of some then lie beyond 180°.
-//! * Polygons that were cut along the antimeridian, as RFC 7946 wants it, are one again.
+//! * Polygons are moved next to one another if that makes the map narrower; the longitudes of some then exceed 180°.
+//! * Polygons that were cut along the antimeridian, as RFC 7946 requires, are joined again.
 
 use super::curves::{Point, larger, smaller};
 use opruga_mesh::outline::{self, Overlap, Ring};
 
-/// A step between neighbours of at least so many degrees runs over the antimeridian: no edge is that long.
+/// A step of at least this many degrees between neighbours crosses the antimeridian: no edge is that long.
 const OVER: f64 = 270.0;
 /// A whole turn [°].
 const TURN: f64 = 360.0;
-/// Longitudes that differ by less are the same [°].
+/// Longitudes that differ by less are equal [°].
 const SAME: f64 = 1e-9;
 
 /// A polygon: its outline, then its holes.
 pub(super) type Polygon = Vec<Vec<Point>>;
 
-/// What had to be done.
+/// Counts of the changes that were made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct LaidOut {
-    /// Rings that step over the antimeridian.
+    /// Rings that cross the antimeridian.
     pub(super) over: usize,
     /// Rings around a pole.
     pub(super) polar: usize,
-    /// Polygons that lie beyond 180°, so that they are beside the others.
+    /// Polygons that were moved beyond 180° next to the others.
     pub(super) beside: usize,
     /// Polygons that were cut along the antimeridian.
     pub(super) cut: usize,
 }
 
-/// Lays polygons out, each with what belongs to it; `stitched` where the format leaves cuts along the antimeridian out, as
-/// topologies do: a step of exactly a turn is then one in place.
+/// Lays polygons out, each with its data. `stitched` says that the format omits cuts along the antimeridian, as topologies do; a step of exactly one
+/// turn is then a step in place.
 pub(super) fn lay_out<T>(polygons: &mut Vec<(Polygon, T)>, stitched: bool) -> LaidOut {
     let mut done = LaidOut::default();
     for (polygon, _) in &mut *polygons {
@@ -64,18 +64,18 @@ fn is_same(p: Point, q: Point) -> bool {
     (q[0] - p[0]).abs() < SAME && (q[1] - p[1]).abs() < SAME
 }
 
-/// Lowest and highest longitude.
+/// The lowest and the highest longitude.
 fn span(ring: &[Point]) -> [f64; 2] {
     ring.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [smaller(low, p[0]), larger(high, p[0])])
 }
 
-/// What brings a longitude into a range, as far as whole turns can.
+/// The turn that moves a longitude into a range, if a whole turn can.
 fn turns_into(x: f64, low: f64, high: f64) -> f64 {
     [0.0, TURN, -TURN].into_iter().find(|turn| low <= x + turn && x + turn <= high).unwrap_or(0.0)
 }
 
-/// A ring whose longitudes go on over the antimeridian, and by how much they have grown after one round (0, or a turn for
-/// a ring around a pole); none where no step runs over it.
+/// Makes the longitudes of a ring continuous over the antimeridian. Returns the ring, and how much its longitudes grow in one round (0, or one turn
+/// for a ring around a pole); none if no step crosses it.
 fn unrolled(ring: &[Point], stitched: bool) -> Option<(Vec<Point>, f64)> {
     let mut turns = 0.0;
     let mut flat = Vec::with_capacity(ring.len());
@@ -84,7 +84,7 @@ fn unrolled(ring: &[Point], stitched: bool) -> Option<(Vec<Point>, f64)> {
         flat.push([p[0] + turns, p[1]]);
         let q = ring[(k + 1) % ring.len()];
         let step = q[0] - p[0];
-        // Along a pole, and along a parallel around the whole globe, a ring may run a turn.
+        // Along a pole, and along a parallel around the whole globe, a step of one turn is allowed.
         let whole = (step.abs() - TURN).abs() < SAME;
         let along_pole = p[1].abs() == 90.0 && q[1].abs() == 90.0;
         if step.abs() >= OVER && !along_pole && (stitched || !whole) {
@@ -92,7 +92,7 @@ fn unrolled(ring: &[Point], stitched: bool) -> Option<(Vec<Point>, f64)> {
             any = true;
         }
     }
-    // Longitudes at a step in place are the same: one of the two points is enough.
+    // The longitudes at a step in place are equal, so one of the two points is enough.
     flat.dedup_by(|q, p| is_same(*q, *p));
     let swept = flat.windows(2).any(|pair| {
         let (o, a, b) = (flat[0], pair[0], pair[1]);
@@ -101,7 +101,7 @@ fn unrolled(ring: &[Point], stitched: bool) -> Option<(Vec<Point>, f64)> {
     (any && (swept || turns != 0.0)).then_some((flat, turns))
 }
 
-/// A ring whose middle lies above −180° and at 180° at most.
+/// The ring, moved so that its centre is above −180° and at most at 180°.
 fn centred(mut ring: Vec<Point>) -> Vec<Point> {
     let [low, high] = span(&ring);
     let turns = TURN * (1.0 - ((0.5 * (low + high) + 180.0) / TURN).ceil());
@@ -109,8 +109,8 @@ fn centred(mut ring: Vec<Point>) -> Vec<Point> {
     ring
 }
 
-/// A ring around a pole, whose longitudes grow by a turn of either sign from its first point to its first point: cut where it
-/// crosses the antimeridian first, and closed along the pole on whose half of the globe it lies in the mean.
+/// Closes a ring around a pole, whose longitudes grow by a turn of either sign in one round: cuts it where it first crosses the antimeridian, and
+/// closes it along the pole of the hemisphere that contains its mean latitude.
 fn closed_along_the_pole(flat: &[Point], winding: f64) -> Vec<Point> {
     let n = flat.len();
     let at = |k: usize| if k < n { flat[k] } else { [flat[k - n][0] + winding, flat[k - n][1]] };
@@ -130,7 +130,7 @@ fn closed_along_the_pole(flat: &[Point], winding: f64) -> Vec<Point> {
     centred(ring)
 }
 
-/// Moves polygons by whole turns to where the map is narrowest; returns how many.
+/// Moves polygons by whole turns so that the map is as narrow as possible; returns the number of moved polygons.
 fn side_by_side<T>(polygons: &mut [(Polygon, T)]) -> usize {
     let mut spans: Vec<[f64; 2]> =
         polygons.iter().filter_map(|(polygon, _)| polygon.first()).map(|ring| span(ring)).collect();
@@ -158,9 +158,9 @@ fn side_by_side<T>(polygons: &mut [(Polygon, T)]) -> usize {
     moved
 }
 
-/// Joins polygons that share a border along the antimeridian; returns how many there were.
+/// Joins polygons that share a border along the antimeridian; returns the number of joined polygons.
 fn sewn<T>(polygons: &mut Vec<(Polygon, T)>) -> usize {
-    // Borders along the antimeridian: its longitude, from which latitude to which, and on which side the polygon lies.
+    // Borders along the antimeridian: the longitude, the range of latitudes, and the side on which the polygon is.
     let mut borders: Vec<(usize, f64, [f64; 2], bool)> = Vec::new();
     for (number, (polygon, _)) in polygons.iter().enumerate() {
         let Some(ring) = polygon.first() else { continue };
@@ -184,7 +184,7 @@ fn sewn<T>(polygons: &mut Vec<(Polygon, T)>) -> usize {
         rings.extend(own.into_iter().map(|points| Ring { points, part: *number as u32 }));
     }
     for ring in &mut rings {
-        // On both sides the same longitude, to the last bit.
+        // Both sides get the same longitude, to the last bit.
         for p in &mut ring.points {
             let off = ((p[0] - 180.0) / TURN).round();
             if (p[0] - 180.0 - TURN * off).abs() < SAME {
@@ -197,9 +197,9 @@ fn sewn<T>(polygons: &mut Vec<(Polygon, T)>) -> usize {
     cut.len()
 }
 
-/// The polygons of borders that lie on a border of the other side, for a part of its length.
+/// The polygons whose border shares a part of its length with a border of the other side.
 fn shared(borders: &[(usize, f64, [f64; 2], bool)]) -> Vec<usize> {
-    // Those of one meridian, from south to north.
+    // The borders of one meridian, from south to north.
     let turn = |x: f64| ((x - 180.0) / TURN).round();
     let mut order: Vec<&(usize, f64, [f64; 2], bool)> = borders.iter().collect();
     order.sort_by(|a, b| turn(a.1).total_cmp(&turn(b.1)).then(a.2[0].total_cmp(&b.2[0])).then(a.0.cmp(&b.0)));
@@ -207,7 +207,7 @@ fn shared(borders: &[(usize, f64, [f64; 2], bool)]) -> Vec<usize> {
     for meridian in order.chunk_by(|a, b| turn(a.1) == turn(b.1)) {
         let side = |west: bool| meridian.iter().filter(move |border| border.3 == west);
         for west in [false, true] {
-            // Of the other side: where each begins, and how far north those reach that begin there or before.
+            // For the other side: where each border begins, and how far north the borders reach that begin there or before.
             let (mut reach, mut others) = (f64::NEG_INFINITY, Vec::new());
             for border in side(!west) {
                 reach = larger(reach, border.2[1]);
@@ -241,7 +241,7 @@ mod tests {
         let mut one = vec![(vec![box_of([176.0, -176.0], [0.0, 4.0])], ())];
         assert_eq!(lay_out(&mut one, false), LaidOut { over: 1, ..LaidOut::default() });
         assert_eq!((area(&one[0].0), span(&one[0].0[0])), (32.0, [176.0, 184.0]));
-        // A band around the globe steps over nothing, and wide polygons have long edges.
+        // A band around the globe crosses nothing, and wide polygons have long edges.
         for x in [[-180.0, 180.0], [-130.0, 130.0]] {
             let mut band = vec![(vec![box_of(x, [-10.0, 10.0])], ())];
             assert_eq!(lay_out(&mut band, false), LaidOut::default());
@@ -256,7 +256,7 @@ mod tests {
         assert_eq!(lay_out(&mut two, false), LaidOut { beside: 1, cut: 2, ..LaidOut::default() });
         assert_eq!((two.len(), two[0].1, two[0].0.len()), (1, 'a', 1));
         assert!((area(&two[0].0) - 24.0).abs() < 1e-6 && (span(&two[0].0[0])[1] - 184.0).abs() < 1e-6);
-        // Islands on both sides lie side by side, and stay two.
+        // Islands on both sides are placed next to each other, and stay two.
         let mut islands =
             vec![(vec![box_of([170.0, 175.0], [0.0, 4.0])], ()), (vec![box_of([-175.0, -170.0], [0.0, 4.0])], ())];
         assert_eq!(lay_out(&mut islands, false), LaidOut { beside: 1, ..LaidOut::default() });

@@ -1,8 +1,8 @@
-//! glTF 2.0: the triangles of a scene, as .gltf with its buffers or as one .glb.
+//! glTF 2.0: the triangles of a scene, from a .gltf with its buffers or from one .glb.
 //!
-//! Read are meshes of triangles with positions in 32-bit numbers, through the tree of nodes of one scene with their transforms. Materials, normals and
-//! cameras carry nothing for a body. What would move its vertices, skins, shapes to morph into and animations, is left out, and so are other scenes; all of
-//! it is counted. Compressed or sparse data and other primitives are refused. Named nodes and meshes become groups.
+//! The reader takes meshes of triangles with positions in 32-bit numbers, from the node tree of one scene with its transforms. Materials, normals and
+//! cameras are irrelevant for a body. Everything that would move its vertices (skins, morph targets and animations) is omitted, and so are other
+//! scenes; all omissions are counted. Compressed or sparse data and other primitives are refused. Named nodes and meshes become groups.
 //!
 //! # Source
 //! The Khronos Group, glTF 2.0 Specification (2021).
@@ -23,13 +23,13 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Nodes may be nested this deep.
+/// The deepest nesting of nodes.
 const DEEPEST: usize = 128;
 
-/// The least bytes that a vertex or a triangle takes in a file.
+/// The least number of bytes of a vertex or a triangle in a file.
 const LEAST_BYTES: u64 = 3;
 
-/// A mesh as it is drawn: its name, and its primitives with their places.
+/// A mesh as it is drawn: its name, and its primitives with their locations.
 struct Parts<'a> {
     name: Option<String>,
     primitives: Vec<(Raw<'a>, Primitive<'a>)>,
@@ -56,25 +56,26 @@ struct Reader<'a, 's, 'o, 'f> {
     binary: Option<&'a [u8]>,
     open: &'o mut Open<'f>,
     found: Triangles,
-    /// For every triangle the byte of the text where its primitive begins.
+    /// For every triangle, the byte of the text at which its primitive begins.
     starts: Vec<u32>,
-    /// Nodes that have been placed in the tree.
+    /// For every node, whether it has already occurred in the tree.
     placed: Vec<bool>,
     /// Meshes that have been read.
     meshes: BTreeMap<usize, Rc<Parts<'a>>>,
-    /// Rows of accessors that have been taken, and texts that have been read again.
+    /// Rows of accessors that have been drawn, and texts that have been parsed again.
     drawn: u64,
     others: usize,
-    /// Nodes whose vertices would follow bones.
+    /// Number of nodes whose vertices would follow bones.
     skinned: usize,
-    /// Primitives with shapes to morph into.
+    /// Number of primitives with morph targets.
     morphed: usize,
 }
 
-/// Reads the triangles of the default scene, or of all meshes where there is no scene.
+/// Reads the triangles of the default scene, or of all meshes if there is no scene.
 ///
 /// # Errors
-/// `json.syntax`, `gltf.syntax`, `gltf.index`, `gltf.size`, `gltf.tree`, `gltf.unsupported`, `limit.instances` with the place in the JSON; `mesh.index`; `scene.not_finite`.
+/// `json.syntax`, `gltf.syntax`, `gltf.index`, `gltf.size`, `gltf.tree`, `gltf.unsupported`, `limit.instances` with the location in the JSON;
+/// `mesh.index`; `scene.not_finite`.
 pub(super) fn read<'a>(
     source: &'a Source<'a>,
     binary: Option<&'a [u8]>,
@@ -160,7 +161,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
 
     fn node(&mut self, index: usize, map: &Map, depth: usize) -> Result<(), SceneError> {
         let raw = self.entry(&self.root.nodes, index, "node")?;
-        // Else a short list of nodes could stand for a tree without end.
+        // Otherwise a short list of nodes could represent an endless tree.
         if std::mem::replace(&mut self.placed[index], true) {
             return Err(self.refuse(raw, GltfError::Parents { node: index }));
         }
@@ -169,7 +170,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         }
         let node: Node = parse(self.source, raw.get())?;
         let own = match node.matrix {
-            // Matrices stand column by column.
+            // Matrices are stored column by column.
             Some(m) => core::array::from_fn(|i| core::array::from_fn(|j| m[4 * j + i])),
             None => {
                 let t = node.translation.unwrap_or([0.0; 3]);
@@ -207,7 +208,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         Ok(())
     }
 
-    /// A mesh, which is taken apart once.
+    /// A mesh, which is parsed only once.
     fn parts(&mut self, index: usize) -> Result<Rc<Parts<'a>>, SceneError> {
         if let Some(known) = self.meshes.get(&index) {
             return Ok(Rc::clone(known));
@@ -221,7 +222,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         Ok(parts)
     }
 
-    /// Counts rows that are drawn: as many as the file can hold, and some that stand there once and are drawn again.
+    /// Counts rows that are drawn. The limit is the number that the file can contain, plus some that occur once and are drawn repeatedly.
     fn draw(&mut self, more: u64, at: Raw<'_>) -> Result<(), SceneError> {
         self.drawn = self.drawn.saturating_add(more);
         let available: usize = self.buffers.iter().flatten().map(|bytes| bytes.len()).sum();
@@ -267,11 +268,11 @@ impl<'a> Reader<'a, '_, '_, '_> {
         if !indices.len().is_multiple_of(3) {
             return Err(self.refuse(raw, GltfError::Corners { corners: indices.len() }));
         }
-        // What nodes do to them is not rounded by the file.
+        // The transforms of nodes are not rounded by the file.
         let stored = Stored::of(&rows, indices.chunks_exact(3), true);
         self.found.stored = Some(self.found.stored.unwrap_or_default().worse(stored));
         let start = span(self.source, raw.get()).0 as u32;
-        // A map that mirrors turns triangles inside out.
+        // A map with a reflection inverts triangles.
         let det = map[0][0] * (map[1][1] * map[2][2] - map[1][2] * map[2][1])
             - map[0][1] * (map[1][0] * map[2][2] - map[1][2] * map[2][0])
             + map[0][2] * (map[1][0] * map[2][1] - map[1][1] * map[2][0]);
@@ -290,7 +291,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         Ok(())
     }
 
-    /// The rows of an accessor: three numbers or one, as the kind says.
+    /// The rows of an accessor: three numbers or one, depending on its kind.
     fn accessor(&mut self, index: usize, kind: &'static str, components: &[u32]) -> Result<Vec<[f64; 3]>, SceneError> {
         let source = self.source;
         let raw = self.entry(&self.root.accessors, index, "accessor")?;
@@ -317,7 +318,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         };
         let each = if kind == "VEC3" { 3 * size } else { size };
         let stride = view.stride.unwrap_or(each);
-        // Compared with the bytes that there are before anything is allocated.
+        // Compared with the bytes present before anything is allocated.
         let within = || {
             let last =
                 accessor.count.checked_sub(1)?.checked_mul(stride)?.checked_add(each)?.checked_add(accessor.offset)?;
@@ -327,7 +328,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         if within().is_none() {
             return bad(GltfError::Rows { rows: accessor.count, each, bytes: bytes.len() });
         }
-        // What describes it is read again too.
+        // Its description is parsed again, too.
         self.draw(accessor.count + (raw.get().len() + view_raw.get().len()) as u64 / 64, raw)?;
         let start = (view.offset + accessor.offset) as usize;
         let rows = (0..accessor.count as usize).map(|k| {
@@ -346,7 +347,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         Ok(rows.collect())
     }
 
-    /// The bytes of a buffer: the chunk of a .glb, a data address, or a file beside the scene.
+    /// The bytes of a buffer: the chunk of a .glb, a data URI, or a file next to the scene.
     fn buffer(&mut self, index: usize) -> Result<Arc<[u8]>, SceneError> {
         let source = self.source;
         let raw = self.entry(&self.root.buffers, index, "buffer")?;

@@ -1,10 +1,10 @@
-//! What the reader of glTF refuses and leaves out.
+//! Errors and notices of the glTF reader.
 
 use opruga_math::words::counted;
 use opruga_math::{messages, terms};
 
 terms! {
-    /// What of a binary file has a size that does not fit.
+    /// A part of a binary file whose size is wrong.
     pub(crate) enum Sized = "part.gltf_size" {
         File = "at byte 8, the length of the file",
         Chunk = "a chunk begins at byte",
@@ -12,7 +12,7 @@ terms! {
 }
 
 messages! {
-    /// What is wrong with a file of glTF.
+    /// Errors in a glTF file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum GltfError {
         "gltf.size" #[error("{what}: {length}, but the file has {bytes} bytes")] #[value("{length}")] #[hint("the file is cut off")]
@@ -67,7 +67,7 @@ messages! {
         Buffer { promised: u64, bytes: usize },
     }
 
-    /// What of a file of glTF is left out.
+    /// Parts of a glTF file that are omitted.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum GltfNotice {
         "gltf.scenes" #[error("{} left out", counted(*count as u64, "other scene is", "other scenes are"))] #[value("{count}")]

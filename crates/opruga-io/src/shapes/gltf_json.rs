@@ -1,4 +1,4 @@
-//! The JSON of glTF: what of its objects is read. Those in lists are read where they are named.
+//! The parts of the glTF JSON that are read. Objects in lists are read where they are named.
 
 use super::json::Raw;
 use serde::Deserialize;
@@ -63,7 +63,7 @@ pub(super) struct Primitive<'a> {
     pub(super) attributes: BTreeMap<String, usize>,
     pub(super) indices: Option<usize>,
     pub(super) mode: Option<u32>,
-    /// Shapes to morph into.
+    /// Morph targets.
     #[serde(borrow, default)]
     pub(super) targets: Vec<Raw<'a>>,
 }

@@ -1,4 +1,4 @@
-//! JSON whose values know their place in the file.
+//! JSON with the location of each value in the file.
 
 use super::drawing_errors::MapError;
 use crate::problem::{SceneError, visible};
@@ -6,22 +6,22 @@ use crate::source::Source;
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
-/// A value as it stands in the file, read where it is needed.
+/// A value as it is written in the file, parsed when it is needed.
 pub(super) type Raw<'a> = &'a RawValue;
 
-/// Where a value stands in the text of its file.
+/// The range of a value in the text of its file.
 pub(super) fn span(source: &Source<'_>, raw: &str) -> (usize, usize) {
     let from = (raw.as_ptr() as usize).saturating_sub(source.text.as_ptr() as usize);
     (from, from + raw.len())
 }
 
-/// Reads a value of some type.
+/// Parses a value of some type.
 ///
 /// # Errors
 /// `json.syntax` with line and column.
 pub(super) fn parse<'a, T: Deserialize<'a>>(source: &Source<'_>, raw: &'a str) -> Result<T, SceneError> {
     serde_json::from_str(raw).map_err(|e| {
-        // Lines and columns (in bytes) of the library count from the value.
+        // Lines and columns (in bytes) of the library are relative to the value.
         let line = raw.split_inclusive('\n').take(e.line().saturating_sub(1)).map(str::len).sum::<usize>();
         let at = span(source, raw).0 + (line + e.column().saturating_sub(1)).min(raw.len().saturating_sub(1));
         let text = e.to_string();

@@ -1,4 +1,4 @@
-//! What the making of a body has lost, and where it is worse than promised: said in figures.
+//! Notices, with numbers, of what was lost when a body was made, and of where it is worse than promised.
 
 use super::errors::{Change, ShapeHint, ShapeNotice, ThinCause};
 use super::settings;
@@ -9,10 +9,10 @@ use opruga_mesh::Mesh;
 use opruga_mesh::outline::{self, Cause, Ring, SMALLEST_ANGLE, Thin};
 use opruga_world::shapes::{Loss, REPORTED_LOSS};
 
-/// An outline that has so many times more points in its file than nodes loses detail that one may look for.
+/// If an outline has this many times more points in its file than nodes, it loses detail that the user may miss.
 const THINNED: usize = 4;
 
-/// How much of an area or a volume is gone, or has come: `0.012 m³ (6.3 %) of 0.19 m³ lost`.
+/// The change of an area or a volume: `0.012 m³ (6.3 %) of 0.19 m³ lost`.
 fn difference(before: f64, after: f64, unit: &'static str) -> Change {
     let off = (after - before).abs();
     let (off, percent, whole) = (rounded(off, 3), rounded(100.0 * off / before, 2), rounded(before, 3));
@@ -22,7 +22,7 @@ fn difference(before: f64, after: f64, unit: &'static str) -> Change {
     }
 }
 
-/// That tetrahedra have not the volume of the surface that they fill; `scale` is a factor on all lengths that is still to come.
+/// The notice that tetrahedra do not have the volume of the surface that they fill; `scale` is a factor for all lengths that is applied later.
 pub(crate) fn lost_volume<const D: usize>(filling: &Mesh<D>, loss: Loss, scale: f64) -> SceneError {
     let after = filling.measure().map_or(0.0, |measure| measure.value()) * (scale * scale * scale).abs();
     let change = difference(after / loss.kept, after, "m³");
@@ -36,7 +36,7 @@ pub(crate) fn lost_volume<const D: usize>(filling: &Mesh<D>, loss: Loss, scale: 
     SceneError::of(ShapeNotice::Filling { change, kept: rounded(loss.kept, 3), warned }).advice(hint)
 }
 
-/// That a surface made anew does not enclose the volume that it had.
+/// The notice that a remeshed surface does not enclose its original volume.
 pub(super) fn remeshed(made: &Mesh<3>, before: &Mesh<3>, length: f64, scale: f64) -> Option<SceneError> {
     let cube = (scale * scale * scale).abs();
     let (after, before) = (made.enclosed_volume() * cube, before.enclosed_volume() * cube);
@@ -46,8 +46,8 @@ pub(super) fn remeshed(made: &Mesh<3>, before: &Mesh<3>, length: f64, scale: f64
         .then(|| SceneError::of(notice).advice(ShapeHint::SmallerRemesh { remesh: Setting::named("remesh") }))
 }
 
-/// That most points of an outline are left out, or much of its area, as the spacing of its nodes wants it: `given` points in the file, and the rings
-/// before and after.
+/// The notice that most points of an outline, or much of its area, are lost because of the spacing of its nodes. The arguments are the number of
+/// points in the file, `given`, and the rings before and after.
 pub(super) fn thinned(given: usize, before: &[Ring], rings: &[Ring], spacing: f64) -> Option<SceneError> {
     let nodes: usize = rings.iter().map(|ring| ring.points.len()).sum();
     let area = |rings: &[Ring]| rings.iter().map(Ring::area).sum::<f64>();
@@ -65,10 +65,10 @@ pub(super) fn thinned(given: usize, before: &[Ring], rings: &[Ring], spacing: f6
     Some(SceneError::of(notice))
 }
 
-/// How many outlines of a drawing are holes since they lie within one of another element, which paints there too; and the first of these
-/// elements. Rings are nested, holes run clockwise.
+/// The number of outlines of a drawing that became holes because they are within an outline of another element, which is painted there, too; and the
+/// first of these elements. Rings are nested; holes run clockwise.
 pub(super) fn nested(rings: &[Ring]) -> Option<(u32, SceneError)> {
-    // The innermost of those around it is what a ring is a hole of.
+    // A ring is a hole of the innermost of the rings around it.
     let around = outline::around(rings);
     let holes = (0..rings.len()).filter(|number| rings[*number].area() < 0.0);
     let foreign: Vec<u32> = holes
@@ -86,7 +86,7 @@ pub(super) fn nested(rings: &[Ring]) -> Option<(u32, SceneError)> {
     ))
 }
 
-/// That triangles have sharper angles than fillings promise.
+/// The notice that triangles have sharper angles than fillings promise.
 pub(super) fn thin(mesh: &Mesh<2>, thin: &Thin) -> SceneError {
     let (spacing, lattice) = (Setting::named("spacing"), settings::lattice());
     let (cause, hint) = match thin.cause {
@@ -101,7 +101,7 @@ pub(super) fn thin(mesh: &Mesh<2>, thin: &Thin) -> SceneError {
     SceneError::of(ShapeNotice::ThinTriangles { count, triangles, least, angle, x, y, cause }).advice(hint)
 }
 
-/// Vertices that lie exactly where another one lies.
+/// The number of vertices at exactly the same position as another one.
 pub(super) fn seams(mesh: &Mesh<3>) -> usize {
     let mut coordinates: Vec<[u64; 3]> = mesh.positions.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
     coordinates.sort_unstable();

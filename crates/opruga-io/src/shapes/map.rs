@@ -18,10 +18,10 @@ use serde::Deserialize;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-/// Collections may be nested this deep.
+/// The deepest nesting of collections.
 const DEEPEST: usize = 32;
 
-/// Any object of either format: what is not there stays empty.
+/// Any object of either format; missing parts stay empty.
 #[derive(Deserialize)]
 struct Object<'a> {
     #[serde(rename = "type")]
@@ -60,21 +60,21 @@ struct Reader<'a, 's> {
     wanted: Option<&'s str>,
     /// The arcs of a topology, in degrees.
     arcs: Option<Vec<Vec<Point>>>,
-    /// Points of arcs, as often as rings name them.
+    /// The number of points of arcs, counted as often as rings name them.
     drawn: Cell<u64>,
     polygons: Vec<(Polygon, Raw<'a>)>,
     names: Vec<String>,
-    /// Geometries with area that the scene does not want.
+    /// The number of geometries with an area that the scene does not select.
     areas: usize,
-    /// Objects that the scene's name means.
+    /// The number of objects with the name that the scene gives.
     meant: usize,
-    /// Points and lines, which have no area.
+    /// The number of points and lines, which have no area.
     others: usize,
-    /// Features and geometries that are null.
+    /// The number of features and geometries that are null.
     empty: usize,
 }
 
-/// Reads a map: the feature that the scene names, or all of them.
+/// Reads a map: the feature that the scene names, or all features.
 ///
 /// # Errors
 /// `json.syntax`, `map.syntax`, `map.arc`, `map.hole`, `map.range`, `map.unknown_feature`, `map.unknown_layer`, with line and column.
@@ -130,7 +130,7 @@ fn arcs(source: &Source<'_>, topology: &Topology<'_>) -> Result<Vec<Vec<Point>>,
     for raw in &topology.arcs {
         let mut points = positions(source, raw)?;
         if let Some(Quantisation { scale, translate }) = &topology.transform {
-            // Quantised arcs hold differences.
+            // Quantised arcs contain differences.
             let mut at = [0.0; 2];
             for point in &mut points {
                 at = [at[0] + point[0], at[1] + point[1]];
@@ -142,7 +142,7 @@ fn arcs(source: &Source<'_>, topology: &Topology<'_>) -> Result<Vec<Vec<Point>>,
     Ok(all)
 }
 
-/// A list of positions; heights are passed over.
+/// A list of positions; heights are ignored.
 fn positions(source: &Source<'_>, raw: Raw<'_>) -> Result<Vec<Point>, SceneError> {
     let rows: Vec<Vec<f64>> = parse(source, raw.get())?;
     rows.into_iter()
@@ -179,7 +179,7 @@ fn layer<'a>(
 }
 
 impl<'a> Reader<'a, '_> {
-    /// An object and what is in it; `taken` where the scene wants all of it.
+    /// Reads an object and its contents; `taken` means that the scene selects all of it.
     fn object(&mut self, raw: Raw<'a>, taken: bool, depth: usize) -> Result<(), SceneError> {
         if depth > DEEPEST {
             let error = SceneError::of(MapError::Depth { deepest: DEEPEST });
@@ -227,14 +227,14 @@ impl<'a> Reader<'a, '_> {
                 return Err(refuse(self.source, &raw.get()[..1], error));
             }
         }
-        // Nobody can mean what has no area.
+        // A name cannot mean something without an area.
         if self.areas + self.polygons.len() == before {
             self.names.truncate(named);
         }
         Ok(())
     }
 
-    /// Whether the scene means this object, by its `id` or by any text among its properties.
+    /// Whether the scene names this object, by its `id` or by any text among its properties.
     fn is_wanted(&mut self, object: &Object<'_>) -> bool {
         let Some(wanted) = self.wanted else { return true };
         let mut means = false;
@@ -262,7 +262,7 @@ impl<'a> Reader<'a, '_> {
         })
     }
 
-    /// The rings of one polygon, without the repeated end.
+    /// The rings of one polygon, without the repeated last point.
     fn polygon(&self, geometry: Raw<'_>, raw: Raw<'a>) -> Result<Vec<Vec<Point>>, SceneError> {
         let rings: Vec<Raw<'a>> = parse(self.source, raw.get())?;
         let mut out = Vec::with_capacity(rings.len());
@@ -279,7 +279,7 @@ impl<'a> Reader<'a, '_> {
                             let error = SceneError::of(MapError::NoArc { arc: index, least: -n, most: n - 1 });
                             return Err(refuse(self.source, geometry.get(), error));
                         };
-                        // The first point of an arc repeats the last of the one before.
+                        // The first point of an arc repeats the last point of the previous one.
                         points.pop();
                         if backwards {
                             points.extend(arc.iter().rev())
@@ -314,12 +314,12 @@ impl<'a> Reader<'a, '_> {
         Ok(out)
     }
 
-    /// Whether holes can be told from islands: not yet where a ring steps over the antimeridian.
+    /// Whether holes can be distinguished from islands. This is not possible yet if a ring crosses the antimeridian.
     fn checks_holes(&self, outer: &[Point]) -> bool {
         outer.windows(2).all(|pair| (pair[1][0] - pair[0][0]).abs() < 180.0)
     }
 
-    /// What was done that the map does not say by itself.
+    /// Notices of changes that the map itself does not ask for.
     fn notices(&self, done: &globe::LaidOut) -> Vec<SceneError> {
         let mut notices = Vec::new();
         let mut report = |count: usize, notice: fn(usize) -> MapNotice| {
@@ -357,7 +357,7 @@ impl<'a> Reader<'a, '_> {
     }
 }
 
-/// From degrees to the plane; the middle of the polygons keeps its proportions.
+/// Projects degrees to the plane; the proportions are right at the centre of the polygons.
 fn projection(
     source: &Source<'_>,
     polygons: &[(Polygon, Raw<'_>)],
@@ -367,7 +367,7 @@ fn projection(
     if kind == "none" {
         return Ok(Box::new(|p| p));
     }
-    // The poles lie at infinity in Mercator's projection.
+    // In the Mercator projection the poles are at infinity.
     let most = if kind == "mercator" { 89.0 } else { 90.0 };
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (rings, raw) in polygons {

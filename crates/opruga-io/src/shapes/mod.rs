@@ -5,7 +5,7 @@
 //! obj, stl, ply, gltf ─────→ triangles ──→ welded, checked, turned outward, sized ───────┼→ mesh
 //! msh, vtk, vtu, mesh, ele → elements ───→ checked ──────────────────────────────────────┘
 //! ```
-//! Every reader tells what is wrong with the line or byte of its file. Nothing is repaired unless the scene asks for it, and then it is counted.
+//! Every reader reports errors with the line or byte of its file. Nothing is repaired unless the scene asks for it; repairs are counted.
 
 mod bitmap;
 mod composite;
@@ -85,13 +85,13 @@ pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     drawing_errors::LetterError::VARIANTS,
 ];
 
-/// Gives the bytes of a file by the name that the scene uses.
+/// Returns the bytes of a file by the name that the scene uses.
 type Open<'o> = dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError> + 'o;
 
-/// The contents of a shape's file, checked, before a mesh is made of it.
+/// The contents of a shape's file, checked, before a mesh is made from it.
 #[derive(Clone, Debug)]
 pub(crate) struct Loaded {
-    /// What is odd about it, counted.
+    /// Notices about it, with counts.
     pub(crate) notices: Vec<SceneError>,
     content: Content,
 }
@@ -100,7 +100,7 @@ pub(crate) struct Loaded {
 enum Content {
     /// A drawing.
     Outline(drawing::Outline),
-    /// A surface at its final size, the length of edges that it is remeshed to, and what fills it.
+    /// A surface at its final size, the edge length to which it is remeshed, and its filling.
     Surface { mesh: Box<Mesh<3>>, remesh: Option<f64>, filling: Option<Filling> },
     /// Cells of the plane.
     Plane(Box<Mesh<2>>),
@@ -111,7 +111,7 @@ enum Content {
 /// Why a shape's file is refused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// The field of the shape to blame, where the error has no place in the file itself.
+    /// The field of the shape at fault, if the error has no location in the file itself.
     pub field: &'static str,
     /// What is wrong.
     pub about: SceneError,
@@ -130,10 +130,10 @@ impl From<SceneError> for Problem {
     }
 }
 
-/// Reads the file of a shape for a scene of 2 or 3 dimensions; `open` gives the bytes of a file by the name that the scene uses.
+/// Reads the file of a shape for a scene of 2 or 3 dimensions; `open` returns the bytes of a file by the name that the scene uses.
 ///
 /// # Errors
-/// The first that is found, with its place in the file.
+/// The first error that is found, with its location in the file.
 pub(crate) fn load(shape: &Values, dimension: usize, open: &mut Open<'_>) -> Result<Loaded, Problem> {
     let name = shape.text("file").unwrap_or("").to_string();
     let bytes = open(&name)?;
@@ -157,11 +157,11 @@ pub(crate) fn load(shape: &Values, dimension: usize, open: &mut Open<'_>) -> Res
     }
 }
 
-/// The body that a scene would make of a shape's file, outside of any scene; and what is odd about the file, counted. The names of
-/// the files that were read go to `named`.
+/// Makes the body that a scene would make from a shape's file, independently of any scene. Also returns notices about the file, with counts. The
+/// names of the files that were read are added to `named`.
 ///
 /// # Errors
-/// The first that is found, with its place in the file, or the field of the shape that it is about.
+/// The first error that is found, with its location in the file, or the field of the shape that it is about.
 pub fn body<const D: usize>(
     shape: &Values,
     files: &Files,
@@ -180,7 +180,7 @@ pub fn body<const D: usize>(
     Ok((mesh, [loaded.notices, made].concat()))
 }
 
-/// The kind of shape that a file of this name is made for; none where the name does not tell.
+/// The kind of shape for a file of this name; none if the name does not determine it.
 pub fn kind_of_file(name: &str) -> Option<&'static str> {
     match name.rsplit_once('.')?.1.to_ascii_lowercase().as_str() {
         "svg" => Some("svg"),
@@ -192,7 +192,7 @@ pub fn kind_of_file(name: &str) -> Option<&'static str> {
     }
 }
 
-/// A surface in the format that its contents, or else its ending, tell.
+/// Reads a surface; the format is determined by the contents or, failing that, by the ending.
 fn surface(name: &str, bytes: &[u8], shape: &Values, open: &mut Open<'_>) -> Result<Loaded, Problem> {
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
     let text = || text_of(name, bytes);
@@ -209,7 +209,7 @@ fn surface(name: &str, bytes: &[u8], shape: &Values, open: &mut Open<'_>) -> Res
         }
         "ply" => {
             let found = ply::read(name, bytes)?;
-            // Only those of texts have lines.
+            // Only text files have lines.
             let source = core::str::from_utf8(bytes).ok().map(|text| Source { file: name, text });
             triangles::loaded(found, name, source.as_ref(), shape)
         }
@@ -241,7 +241,7 @@ fn text_of<'a>(name: &'a str, bytes: &'a [u8]) -> Result<Source<'a>, SceneError>
 }
 
 impl Loaded {
-    /// About how many nodes the body will have.
+    /// The approximate number of nodes of the body.
     pub(crate) fn node_count(&self) -> f64 {
         match &self.content {
             Content::Outline(outline) => outline.node_count(),
@@ -252,10 +252,10 @@ impl Loaded {
         }
     }
 
-    /// The mesh, scaled and turned; and what was lost when it was made, counted.
+    /// Makes the mesh, scaled and rotated; also returns what was lost, with counts.
     ///
     /// # Errors
-    /// What fillings refuse.
+    /// Those of the filling.
     pub(crate) fn mesh<const D: usize>(
         &self,
         transform: &Transform<'_>,

@@ -1,9 +1,9 @@
 //! Wavefront OBJ: vertices and polygons, line by line.
 //!
-//! Read are `v`, `f` (polygons cut into triangles; indices from 1, or negative from the end), `o` and `g` (groups of vertices). `vt`, `vn`, `vp`, `s`, `usemtl`,
-//! `mtllib` and comments carry nothing for a body, but the `vt` and `vn` that faces name must be there; lines and points (`l`, `p`), and weights of
-//! vertices, are counted and left out; all else is refused. A `\` at the end of a line
-//! lets its statement go on in the next one.
+//! The reader takes `v`, `f` (polygons, which are divided into triangles; indices count from 1, or from the end if negative), `o` and `g` (groups of
+//! vertices). `vt`, `vn`, `vp`, `s`, `usemtl`, `mtllib` and comments are irrelevant for a body, but the `vt` and `vn` that faces name must exist.
+//! Lines and points (`l`, `p`) and weights of vertices are counted and omitted; everything else is refused. A `\` at the end of a line continues the
+//! statement on the next line.
 //!
 //! # Source
 //! Wavefront Technologies, Object Files, version 3.0.
@@ -16,7 +16,7 @@ use crate::source::Source;
 use opruga_math::message::AnyMessage;
 use std::collections::BTreeMap;
 
-/// A polygon as it stands in the file, before all vertices are known.
+/// A polygon as it is written in the file, before all vertices are known.
 struct Face {
     line: u32,
     corners: (usize, usize),
@@ -51,7 +51,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Triangles, SceneError> {
     statements.triangles(source)
 }
 
-/// A line with those in which its statement goes on.
+/// A line together with its continuation lines.
 struct Line<'a> {
     source: &'a Source<'a>,
     start: usize,
@@ -73,13 +73,13 @@ impl<'a> Line<'a> {
         self.text.split_inclusive('\n').flat_map(|piece| statement(piece).0.split_ascii_whitespace())
     }
 
-    /// Where a part of it stands in the file.
+    /// The range of a part of it in the file.
     fn range(&self, part: &str) -> (usize, usize) {
         let from = self.start + (part.as_ptr() as usize - self.text.as_ptr() as usize);
         (from, from + part.len())
     }
 
-    /// An error at a part of it, which is the value.
+    /// An error at a part of it; the part is the value.
     fn refuse(&self, part: &str, error: impl Into<AnyMessage>) -> SceneError {
         self.mark(part, SceneError::of(error))
     }
@@ -99,21 +99,21 @@ impl<'a> Line<'a> {
     }
 }
 
-/// What the statements of a file give.
+/// The result of the statements of a file.
 #[derive(Default)]
 struct Statements {
     found: Triangles,
     faces: Vec<Face>,
     /// Vertices of all faces.
     corners: Vec<i64>,
-    /// Groups of vertices, with the number of each name, and the present one.
+    /// Groups of vertices, the index of each name, and the present group.
     names: Vec<String>,
     numbers: BTreeMap<String, usize>,
     group: Option<usize>,
-    /// How many lines and points there are, and vertices with weights.
+    /// The number of lines and points, and of vertices with weights.
     strokes: usize,
     weighed: usize,
-    /// How many `vt` and `vn` there are, and the largest that a face names with its range in the file.
+    /// The numbers of `vt` and `vn`, and the largest index of each that a face names, with its range in the file.
     extras: [i64; 2],
     largest: [(i64, usize, usize); 2],
 }
@@ -140,7 +140,7 @@ impl Statements {
             return Err(line.refuse_whole(more[1], ObjError::FiveNumbers {}));
         }
         let numbers = more.into_iter().map(|part| line.number(part)).collect::<Result<Vec<_>, _>>()?;
-        // Three more numbers are a colour.
+        // Three additional numbers are a colour.
         self.weighed += usize::from(numbers.len() % 3 == 1 && numbers[0] != 1.0);
         self.found.positions.push(position);
         Ok(())
@@ -166,7 +166,7 @@ impl Statements {
                 }
                 let index = text.parse::<i64>().ok().filter(|index| k < 2 && *index != 0);
                 let Some(index) = index else { return Err(corner()) };
-                // Those before the first cannot come any more.
+                // An index before the first can never become valid.
                 let wanted = if index < -self.extras[k] { i64::MAX } else { index };
                 if wanted > self.largest[k].0 {
                     let (from, to) = line.range(part);
@@ -179,7 +179,7 @@ impl Statements {
         Ok(())
     }
 
-    /// `o NAME` or `g NAME`: faces from here on are in this group.
+    /// `o NAME` or `g NAME`: the following faces belong to this group.
     fn group(&mut self, name: String) {
         self.group = (!name.is_empty()).then(|| {
             *self.numbers.entry(name).or_insert_with_key(|name| {
@@ -189,7 +189,7 @@ impl Statements {
         });
     }
 
-    /// Counts what carries nothing for a body.
+    /// Counts parts that are irrelevant for a body.
     fn count_left_out(&mut self) {
         if self.strokes > 0 {
             self.found.notices.push(SceneError::of(SurfaceNotice::Strokes { count: self.strokes }));
@@ -199,7 +199,7 @@ impl Statements {
         }
     }
 
-    /// Refuses faces that name a `vt` or `vn` that is not there.
+    /// Refuses faces that name a missing `vt` or `vn`.
     fn check_extras(&self, source: &Source<'_>) -> Result<(), SceneError> {
         for (k, name) in ["vt", "vn"].into_iter().enumerate() {
             let (index, from, to) = self.largest[k];
@@ -214,7 +214,7 @@ impl Statements {
         Ok(())
     }
 
-    /// The faces as triangles, and the vertices of the groups.
+    /// Converts the faces to triangles, and collects the vertices of the groups.
     fn triangles(self, source: &Source<'_>) -> Result<Triangles, SceneError> {
         let Statements { mut found, faces, corners, names, .. } = self;
         let mut lines = Vec::with_capacity(faces.len());
@@ -252,7 +252,7 @@ impl Statements {
     }
 }
 
-/// A line without its comment, and whether a `\` says that its statement goes on in the next one.
+/// A line without its comment, and whether a `\` continues its statement on the next line.
 fn statement(line: &str) -> (&str, bool) {
     let Some((before, _)) = line.split_once('#') else {
         let text = line.trim_end_matches(['\n', '\r']);
@@ -261,7 +261,7 @@ fn statement(line: &str) -> (&str, bool) {
     (before, false)
 }
 
-/// A finite number with a decimal point, whatever the language of the machine.
+/// A finite number with a decimal point, independently of the locale.
 pub(super) fn number(text: &str) -> Result<f64, SceneError> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(x),

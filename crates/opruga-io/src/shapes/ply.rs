@@ -1,7 +1,8 @@
 //! PLY: elements with properties, as text or as bytes of either order.
 //!
-//! Read are the properties `x`, `y`, `z` of `vertex` and the list `vertex_indices` (or `vertex_index`) of `face`; polygons are cut into triangles. Other
-//! properties, which say how vertices look, are passed over by the sizes that the header gives, and so are other elements, which are counted.
+//! The reader takes the properties `x`, `y`, `z` of `vertex` and the list `vertex_indices` (or `vertex_index`) of `face`; polygons are divided into
+//! triangles. Other properties, which concern the appearance of vertices, are skipped by the sizes in the header. Other elements are skipped as well,
+//! and counted.
 //!
 //! # Source
 //! G. Turk, The PLY Polygon File Format (1994).
@@ -72,7 +73,7 @@ enum Format {
 /// Reads the file.
 ///
 /// # Errors
-/// `ply.syntax` with the line of the header or of the text; `ply.size` where the header promises more than the file holds, before anything is
+/// `ply.syntax` with the line of the header or of the text; `ply.size` if the header announces more than the file contains, before anything is
 /// allocated; `mesh.index`, `mesh.degenerate_face`, with the number of the element and, in binary files, the byte.
 pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Triangles, SceneError> {
     let (format, elements, body) = header(file, bytes)?;
@@ -132,7 +133,7 @@ fn read_vertices(values: &mut Reader<'_>, element: &Element, found: &mut Triangl
     Ok(())
 }
 
-/// Reads faces as triangles, each with the start of its face in the file.
+/// Reads faces as triangles, each with the location of its face in the file.
 fn read_faces(
     values: &mut Reader<'_>,
     element: &Element,
@@ -175,9 +176,9 @@ fn read_faces(
     Ok(())
 }
 
-/// Passes over elements that are neither vertices nor faces; returns a notice that counts them.
+/// Skips elements that are neither vertices nor faces; returns a notice with their number.
 fn pass_over(values: &mut Reader<'_>, element: &Element) -> Result<Option<SceneError>, SceneError> {
-    // Without properties they take no room: however many there are, nothing stands there.
+    // Elements without properties take no space, however many there are.
     for _ in 0..if element.properties.is_empty() { 0 } else { element.count } {
         values.begin();
         for property in &element.properties {
@@ -188,10 +189,10 @@ fn pass_over(values: &mut Reader<'_>, element: &Element) -> Result<Option<SceneE
     Ok((element.count > 0).then(|| SceneError::of(notice)))
 }
 
-/// Format, elements, and where they begin.
+/// Reads the format, the elements, and the offset at which their data begin.
 fn header(file: &str, bytes: &[u8]) -> Result<(Format, Vec<Element>, usize), SceneError> {
     let refuse = |from: usize, end: usize, error: PlyError| {
-        // Binary contents may follow; the header itself is a text.
+        // The contents may be binary; the header itself is text.
         let good = bytes[..end].iter().position(|b| !b.is_ascii()).unwrap_or(end);
         let text = core::str::from_utf8(&bytes[..good]).unwrap_or("");
         let value = text.get(from..).unwrap_or("").trim().to_string();
@@ -263,18 +264,18 @@ struct Reader<'a> {
     file: &'a str,
     bytes: &'a [u8],
     at: usize,
-    /// Where the element begins that is read.
+    /// The offset at which the present element begins.
     begun: usize,
     format: Format,
 }
 
 impl Reader<'_> {
-    /// An error of the file as a whole.
+    /// An error about the file as a whole.
     fn of_file(&self, error: PlyError) -> SceneError {
         SceneError { file: self.file.into(), ..SceneError::of(error) }
     }
 
-    /// Refuses more elements than the rest of the file can hold.
+    /// Refuses more elements than the rest of the file can contain.
     fn check_count(&self, element: &Element) -> Result<(), SceneError> {
         let size = |p: &Property| if self.format == Format::Text { 2 } else { p.count.unwrap_or(p.kind).size() };
         let least: usize = element.properties.iter().map(size).sum();
@@ -286,14 +287,14 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Refuses what stands behind the last element, and a text that is cut off.
+    /// Refuses data after the last element, and truncated texts.
     fn check_end(&mut self) -> Result<(), SceneError> {
         let rest = self.bytes.get(self.at..).unwrap_or(&[]);
         if self.format != Format::Text && !rest.is_empty() || !rest.trim_ascii().is_empty() {
             self.begin();
             return Err(self.error(PlyError::Behind { count: rest.len() }));
         }
-        // Of an index that is cut off, what is left looks whole.
+        // A truncated index looks complete.
         if self.format == Format::Text && self.bytes.last().is_some_and(|b| !b.is_ascii_whitespace()) {
             let from = self.bytes.iter().rposition(u8::is_ascii_whitespace).map_or(0, |at| at + 1);
             return Err(self.placed(cut_line("ply.syntax", &self.bytes[from..])));
@@ -301,7 +302,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// An error where the reader is: a line of a text, a byte of a binary file.
+    /// An error at the position of the reader: the line of a text, the byte of a binary file.
     fn error(&self, error: impl Into<AnyMessage>) -> SceneError {
         self.placed(SceneError::of(error))
     }
@@ -316,7 +317,7 @@ impl Reader<'_> {
         SceneError { file: self.file.to_string(), byte: Some(self.begun), ..error }
     }
 
-    /// Goes to where the next element begins: to the next word of a text.
+    /// Goes to the beginning of the next element; in a text, to the next word.
     fn begin(&mut self) {
         if self.format == Format::Text {
             self.at += self.bytes[self.at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
@@ -324,7 +325,7 @@ impl Reader<'_> {
         self.begun = self.at;
     }
 
-    /// The values of one property: one, or those of a list.
+    /// Reads the values of one property: one value, or those of a list.
     fn property(&mut self, property: &Property) -> Result<Vec<f64>, SceneError> {
         let Some(count) = property.count else { return Ok(vec![self.value(property.kind)?]) };
         let length = self.value(count)?;

@@ -1,4 +1,4 @@
-//! Surfaces of files made anew of triangles of a wanted size, and which size would do where that does not.
+//! Remeshes surfaces of files with triangles of a desired size; if that size is not suitable, finds one that is.
 
 use super::errors::{ShapeError, ShapeHint};
 use crate::problem::SceneError;
@@ -7,28 +7,28 @@ use opruga_math::words::number;
 use opruga_mesh::Mesh;
 use opruga_mesh::outline::OutlineError;
 
-/// A surface that is remeshed may lose or win this part of its volume.
+/// The largest relative change of the volume of a remeshed surface.
 const DRIFT: f64 = 0.25;
-/// Lengths that are tried where the wanted one is too coarse, each this part of the one before.
+/// If the desired length is too coarse, shorter ones are tried; each is this fraction of the previous one.
 const SHORTER: f64 = 0.9;
-/// The most lengths that are tried.
+/// The largest number of lengths that are tried.
 const TRIED: usize = 30;
-/// The most nodes that a surface may have for which a length is tried: an answer shall not take longer than the body.
+/// The largest number of nodes of a surface for which a length is tried, so that the answer does not take longer than the body would.
 const LARGEST_TRIED: f64 = 20_000.0;
 
 /// Why a length is refused.
 enum TooCoarse {
-    /// Triangles would meet others that are not their neighbours.
+    /// Triangles would intersect others that are not their neighbours.
     Crosses,
-    /// So much of the volume would be left.
+    /// This fraction of the volume would remain.
     Encloses(f64),
 }
 
-/// The surface with edges of a wanted length.
+/// Remeshes the surface with edges of a desired length.
 ///
 /// # Errors
-/// `scene.shape` for a length that makes too many nodes, or so few that the surface would cross itself or lose its shape; the
-/// hint has the largest of the lengths below it, in steps of a tenth, that was tried and works.
+/// `scene.shape` for a length that makes too many nodes, or so few that the surface would cross itself or lose its shape. The hint gives the largest
+/// length that works, found by trying shorter lengths in steps of a tenth.
 pub(super) fn remeshed(mesh: &Mesh<3>, length: f64) -> Result<Mesh<3>, SceneError> {
     let refuse = |error| SceneError::of(OutlineError::Mesh { error }).value(length.to_string());
     let error = match made(mesh, length).map_err(refuse)? {
@@ -44,25 +44,25 @@ pub(super) fn remeshed(mesh: &Mesh<3>, length: f64) -> Result<Mesh<3>, SceneErro
     }))
 }
 
-/// The surface with edges of a length, or why that is too coarse for it.
+/// Returns the surface with edges of a given length, or why that length is too coarse for it.
 fn made(mesh: &Mesh<3>, length: f64) -> Result<Result<Mesh<3>, TooCoarse>, opruga_mesh::MeshError> {
     let made = mesh.remeshed(length)?;
-    // One that was taken as it is may go on crossing itself.
+    // A surface that was accepted although it crosses itself may still do so.
     if !made.crossing_facets().pairs.is_empty() && mesh.crossing_facets().pairs.is_empty() {
         return Ok(Err(TooCoarse::Crosses));
     }
-    // What is thinner than its edges shrinks with them.
+    // Parts that are thinner than their edges shrink with them.
     let kept = made.enclosed_volume() / mesh.enclosed_volume();
     Ok(if (kept - 1.0).abs() > DRIFT { Err(TooCoarse::Encloses(kept)) } else { Ok(made) })
 }
 
-/// The first of ever shorter lengths that works, each of two digits; or the shortest that was tried. Coarse surfaces are quickly
-/// made, so that all of them together take little longer than the last one.
+/// Tries shorter and shorter lengths, each rounded to two digits, and returns the first that works; otherwise, as the error, the shortest one that
+/// was tried. Coarse surfaces are made quickly, so that all attempts together take little longer than the last one.
 fn coarsest(mesh: &Mesh<3>, length: f64) -> Result<f64, f64> {
     let (mut tried, mut next) = (length, length);
     for _ in 0..TRIED {
         next *= SHORTER;
-        // As it will be written.
+        // Rounded as it will be written.
         let shown = format!("{next:.1e}").parse().unwrap_or(next);
         if shown >= tried {
             continue;

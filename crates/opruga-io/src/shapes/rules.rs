@@ -1,25 +1,25 @@
-//! By which rule the parts of a drawing are filled.
+//! The fill rules of the parts of a drawing.
 
 use super::drawing_errors::SvgNotice;
 use crate::problem::SceneError;
 use opruga_mesh::outline::{self, Overlap, Ring};
 
-/// What is inside where the rings of a part lie over one another.
+/// What is inside if the rings of a part overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rule {
-    /// The file does not say, and other programs take the non-zero rule then.
+    /// The file gives no rule; other programs then use the non-zero rule.
     Unsaid,
-    /// What an odd number of rings enclose.
+    /// Points that an odd number of rings enclose.
     EvenOdd,
-    /// Points around which the rings wind.
+    /// Points with a winding number other than zero.
     NonZero,
 }
 
-/// Makes rings of parts with the non-zero rule into such that the even-odd rule bounds the same; says for how many of those
-/// that name no rule the two differ.
+/// Replaces the rings of parts with the non-zero rule by rings that bound the same region under the even-odd rule. Also reports for how many parts
+/// without a rule the two differ.
 pub(super) fn follow(rings: &mut Vec<Ring>, rules: &[Rule]) -> Option<SceneError> {
     let mut differing = 0;
-    // Rings come part by part.
+    // Rings are sorted by part.
     let mut followed = Vec::with_capacity(rings.len());
     let mut rest = std::mem::take(rings).into_iter().peekable();
     while let Some(part) = rest.peek().map(|ring| ring.part) {

@@ -1,4 +1,4 @@
-//! Parameters of shapes with the values that several hints name.
+//! Parameters of shapes, with the values that several hints name.
 
 use opruga_math::message::Setting;
 
@@ -7,12 +7,12 @@ pub(super) fn lattice() -> Setting {
     Setting::with("filling", "\"lattice\"")
 }
 
-/// What any of several areas covers.
+/// The region that at least one of several areas covers.
 pub(super) fn union() -> Setting {
     Setting::with("overlap", "\"union\"")
 }
 
-/// What an odd number of areas encloses.
+/// The region that an odd number of areas encloses.
 pub(super) fn parity() -> Setting {
     Setting::with("overlap", "\"even_odd\"")
 }

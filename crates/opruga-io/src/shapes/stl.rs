@@ -1,8 +1,8 @@
-//! STL: triangles with corners of their own, as text or as bytes.
+//! STL: triangles with separate corners, as text or as bytes.
 //!
-//! A file is binary where its size is the one that its header promises, or where it cannot be a text. The corners tell the side of a triangle; normals of
-//! the file that are no numbers or say otherwise are counted.
-//! Vertices at the same place are joined, since the format cannot say that triangles share them.
+//! A file is binary if it has the size that its header announces, or if it cannot be text. The order of the corners determines the side of a
+//! triangle; normals in the file that are not numbers or that contradict it are counted. Vertices at the same position are merged, because in this
+//! format triangles cannot share vertices.
 //!
 //! # Source
 //! 3D Systems, StereoLithography Interface Specification (1989).
@@ -18,7 +18,7 @@ const HEAD: usize = 84;
 /// A normal, three corners, two spare bytes.
 const EACH: usize = 50;
 
-/// Whether the bytes are a binary STL file, whole or cut off.
+/// Whether the bytes are a binary STL file, complete or truncated.
 pub(super) fn is_binary(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(HEAD)];
     promised(bytes).is_some_and(|size| size == bytes.len() as u64)
@@ -26,7 +26,7 @@ pub(super) fn is_binary(bytes: &[u8]) -> bool {
         || head.contains(&0)
 }
 
-/// The size that the header promises.
+/// The size that the header announces.
 fn promised(bytes: &[u8]) -> Option<u64> {
     let count = bytes.get(80..HEAD)?.first_chunk::<4>()?;
     Some(HEAD as u64 + EACH as u64 * u64::from(u32::from_le_bytes(*count)))
@@ -79,17 +79,17 @@ pub(super) fn read_binary(bytes: &[u8]) -> Result<Triangles, SceneError> {
     Ok(found)
 }
 
-/// Normals that do not say what the corners say.
+/// Normals that contradict the corners.
 #[derive(Default)]
 struct Normals {
-    /// No numbers.
+    /// Normals that are not numbers.
     broken: usize,
-    /// On the other side.
+    /// Normals on the opposite side.
     against: usize,
 }
 
 impl Normals {
-    /// Compares a normal with the triangle of the last three corners; one of length zero says nothing.
+    /// Compares a normal with the triangle of the last three corners; a normal of length zero is ignored.
     fn compare(&mut self, normal: [f64; 3], positions: &[[f64; 3]]) {
         let [.., a, b, c] = positions else { return };
         if normal.iter().any(|x| !x.is_finite()) {
@@ -115,7 +115,7 @@ impl Normals {
 pub(super) fn read_text(source: &Source<'_>) -> Result<Triangles, SceneError> {
     let mut found = Triangles { soup: true, ..Triangles::default() };
     let mut lines = Vec::new();
-    // What has to follow: solid, facet, outer loop, three vertices, endloop, endfacet, and facet or endsolid.
+    // The expected sequence: solid, facet, outer loop, three vertices, endloop, endfacet, and facet or endsolid.
     let mut state = "solid";
     let (mut corners, mut begun) = (0u32, 0usize);
     let (mut normals, mut normal) = (Normals::default(), [0.0; 3]);
@@ -138,7 +138,7 @@ pub(super) fn read_text(source: &Source<'_>) -> Result<Triangles, SceneError> {
                 begun = here;
                 normal = [0.0; 3];
                 for (x, part) in normal.iter_mut().zip(text.split_ascii_whitespace().skip(2)) {
-                    // What is no number is told like one that is none.
+                    // A word that is not a number is reported like NaN.
                     *x = part.parse().unwrap_or(f64::NAN);
                 }
                 "outer loop"

@@ -1,11 +1,11 @@
-//! What readers of surfaces and the welding of triangles refuse, and what they count.
+//! Errors and notices of the readers of surfaces and of the merging of vertices.
 
 use opruga_math::message::Setting;
 use opruga_math::messages;
 use opruga_math::words::{counted, number};
 use opruga_mesh::MeshError;
 
-/// What corners of a face have to be.
+/// The requirement for the corners of a face.
 const CORNERS: &str = "at least three different corners, of a face that is nearly flat and does not cross itself";
 
 /// `is` or `are`.
@@ -13,18 +13,18 @@ fn are(count: usize) -> &'static str {
     if count == 1 { "is" } else { "are" }
 }
 
-/// How many faces have more than three corners.
+/// The number of faces with more than three corners.
 fn polygons(count: usize) -> String {
     format!("{} with more than three corners", counted(count as u64, "face", "faces"))
 }
 
-/// How many pairs there are, all of them or more.
+/// The number of pairs, exactly or as a lower bound.
 fn pairs(count: usize, complete: bool) -> String {
     if complete { counted(count as u64, "pair", "pairs") } else { format!("{count} pairs and more") }
 }
 
 messages! {
-    /// Why a face cannot be cut into triangles.
+    /// Why a face cannot be divided into triangles.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum FaceProblem {
         "mesh.degenerate_face" #[error("a face has fewer than three corners")]
@@ -41,7 +41,7 @@ messages! {
         Bent { off: String },
     }
 
-    /// What is wrong with a surface of any format.
+    /// Errors in a surface of any format.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum SurfaceError {
         "mesh.empty" #[error("the file holds no triangles")] #[value("0")] #[allowed("at least one triangle")]
@@ -99,7 +99,7 @@ messages! {
         NotFiniteCoordinate { value: String },
     }
 
-    /// What of a surface is left out, changed or remarkable.
+    /// Parts of a surface that are omitted, changed or remarkable.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum SurfaceNotice {
         "mesh.concave_face" #[error("{count} of {} {} concave: cut along diagonals inside", polygons(*faces), are(*count))] #[value("{count}")]
@@ -135,7 +135,7 @@ messages! {
         Strokes { count: usize },
     }
 
-    /// What is wrong with a file of OBJ.
+    /// Errors in an OBJ file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ObjError {
         "obj.syntax" #[error("a vertex has fewer than three coordinates")] #[allowed("v x y z")]
@@ -165,7 +165,7 @@ messages! {
         NoNumber {},
     }
 
-    /// What of a file of OBJ is left out.
+    /// Parts of an OBJ file that are omitted.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ObjNotice {
         "obj.weight" #[error("{} other than 1, which triangles do not have", counted(*count as u64, "vertex has a weight", "vertices have weights"))]
@@ -173,7 +173,7 @@ messages! {
         Weights { count: usize },
     }
 
-    /// What is wrong with a file of PLY.
+    /// Errors in a PLY file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum PlyError {
         "ply.size" #[error("the header promises {count} of `{element}`, but only {rest} bytes follow")] #[value("{count}")]
@@ -222,14 +222,14 @@ messages! {
         NotWhole { word: String },
     }
 
-    /// What of a file of PLY is left out.
+    /// Parts of a PLY file that are omitted.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum PlyNotice {
         "ply.element" #[error("{count} of `{element}` {} left out", if *count == 1 { "is" } else { "are" })] #[value("{count}")]
         Element { count: u64, element: String },
     }
 
-    /// What is wrong with a file of STL.
+    /// Errors in an STL file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum StlError {
         "stl.size" #[error("at byte 80 the header promises {triangles} triangles, but the file has {length} bytes")] #[value("{length}")]
@@ -248,7 +248,7 @@ messages! {
         Ends { wanted: &'static str },
     }
 
-    /// What of a file of STL is passed over.
+    /// Parts of an STL file that are ignored.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum StlNotice {
         "stl.normal" #[error("{}: the order of the corners tells the side", counted(*count as u64, "normal is not a number", "normals are not numbers"))] #[value("{count}")]

@@ -1,10 +1,11 @@
 //! Drawings: the shapes of an SVG file as curves.
 //!
-//! What is read: `path`, `rect`, `circle`, `ellipse`, `polygon`, `polyline` in `svg`, `g`, `a`, the first suitable one in `switch`, and through `use`,
-//! with `transform`, an `svg` inside the drawing and a `symbol` also with their `viewBox`. What carries no outline (`title`, `defs`, gradients …) is passed over, and what is not displayed; what would be drawn but has no
-//! outline here (`text`, `image`, strokes, markers, filters, animations, masks, and clip paths that cut something off) is refused or counted. Style sheets are followed; what is said behind selectors that
-//! are not read is counted, or refused where it would change outlines. Every part of the drawing
-//! follows the even-odd rule, or the non-zero rule where its `fill-rule` says so. Fill colours are read where the scene wants them.
+//! The reader takes `path`, `rect`, `circle`, `ellipse`, `polygon` and `polyline` in `svg`, `g` and `a`, in the first suitable child of `switch`, and
+//! through `use`. It applies `transform`, and also the `viewBox` of an inner `svg` and of a `symbol`. Elements without an outline (`title`, `defs`,
+//! gradients …) and elements that are not displayed are skipped. Elements that would be drawn but have no outline here (`text`, `image`, strokes,
+//! markers, filters, animations, masks, and clip paths that cut something off) are refused or counted. Style sheets are applied; rules with
+//! unsupported selectors are counted, or refused if they would change outlines. Every part of the drawing uses the even-odd rule, or the non-zero
+//! rule if its `fill-rule` says so. Fill colours are read if the scene asks for them.
 //!
 //! # Source
 //! W3C, Scalable Vector Graphics (SVG) 1.1, second edition.
@@ -23,10 +24,10 @@ use crate::source::Source;
 use opruga_core::spec::nearest;
 use roxmltree::{Document, Node};
 
-/// Elements may be nested this deep, `use` included.
+/// The deepest nesting of elements, `use` included.
 const DEEPEST: usize = 128;
 
-/// Elements inside which nothing is drawn.
+/// Elements whose contents are not drawn.
 const NOT_DRAWN: [&str; 15] = [
     "title",
     "desc",
@@ -45,11 +46,11 @@ const NOT_DRAWN: [&str; 15] = [
     "view",
 ];
 
-/// Reads a whole drawing, or the element with an id; its fill colours too where they are wanted.
+/// Reads a whole drawing, or the element with an id, with fill colours if they are needed.
 ///
 /// # Errors
-/// `svg.syntax`, `svg.entity`, `svg.cycle`, `svg.depth`, `svg.unsupported`, `svg.style`, `svg.unknown_id`, `svg.same_id`, `svg.colour`,
-/// `limit.…`, with line and column.
+/// `svg.syntax`, `svg.entity`, `svg.cycle`, `svg.depth`, `svg.unsupported`, `svg.style`, `svg.unknown_id`, `svg.same_id`, `svg.colour`, `limit.…`,
+/// with line and column.
 pub(super) fn read<'a>(source: &'a Source<'a>, id: Option<&str>, colours: bool) -> Result<Drawing<'a>, SceneError> {
     let document = document(source)?;
     let root = document.root_element();
@@ -95,14 +96,14 @@ pub(super) struct Reader<'a, 'd> {
     pub(super) document: &'d Document<'a>,
     pub(super) sheets: &'d Sheets,
     pub(super) curves: Curves,
-    /// Where each part stands in the file.
+    /// The range of each part in the file.
     spans: Vec<(usize, usize)>,
     pub(super) fills: Fills<'a, 'd>,
-    /// Width and height that per cent refer to; none where the drawing does not say.
+    /// Width and height to which percentages refer; none if the drawing does not give them.
     pub(super) canvas: Option<Point>,
     pub(super) open: usize,
     unfilled: usize,
-    /// Shapes that draw nothing.
+    /// The number of shapes that draw nothing.
     pub(super) empty: usize,
     images: usize,
     pub(super) hidden: usize,
@@ -113,7 +114,7 @@ pub(super) struct Reader<'a, 'd> {
 }
 
 impl<'a, 'd> Reader<'a, 'd> {
-    /// A reader that has read nothing.
+    /// A reader that has not read anything yet.
     pub(super) fn new(
         source: &'a Source<'a>,
         document: &'d Document<'a>,
@@ -147,7 +148,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     /// An error at the tag of an element.
     fn marked(&self, node: Node<'_, '_>, error: SceneError) -> SceneError {
         let range = node.range();
-        // The tag alone, not all that it holds.
+        // The tag alone, without the contents of the element.
         let end = self.source.text[range.clone()].find('>').map_or(range.end, |k| range.start + k + 1);
         self.source.mark(error, range.start, end)
     }
@@ -164,7 +165,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// What per cent of a drawing refer to: its `viewBox`, else its width and height.
+    /// The size to which percentages of a drawing refer: its `viewBox`, otherwise its width and height.
     fn canvas_of(&self, root: Node<'_, '_>) -> Result<Option<Point>, SceneError> {
         let size = |name: &str| {
             let length = root.attribute(name)?.parse::<svgtypes::Length>().ok()?;
@@ -181,7 +182,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         Ok(Some([view.w, view.h]))
     }
 
-    /// The child of a `switch` that is drawn: the first that asks for nothing that is not there.
+    /// The child of a `switch` that is drawn: the first one that does not require anything unsupported.
     fn chosen<'n, 'i>(&self, node: Node<'n, 'i>) -> Result<Option<Node<'n, 'i>>, SceneError> {
         for child in node.children().filter(Node::is_element) {
             if child.has_attribute("systemLanguage") {
@@ -194,7 +195,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         Ok(None)
     }
 
-    /// An element alone, with the transforms and clips around it.
+    /// Reads an element alone, with the transforms and clips around it.
     fn element_by_itself(&mut self, wanted: Node<'_, '_>) -> Result<(), SceneError> {
         let (mut map, mut fill) = (IDENTITY, Fill::FIRST);
         let (mut clips, mut frames) = (Vec::new(), Vec::new());
@@ -216,7 +217,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         frames.iter().try_for_each(|(ancestor, frame, map)| self.framed(*ancestor, frame, map, 0))
     }
 
-    /// The coordinates of an element and its fill, inside of others; refused is what would cut or move it and is not read.
+    /// Returns the coordinate map of an element and its fill, within those of its parent. Refuses properties that are not read but would cut or move
+    /// the element.
     fn within(&mut self, node: Node<'_, '_>, map: &Affine, fill: Fill) -> Result<(Affine, Fill), SceneError> {
         let sheets = self.sheets;
         if let Some((word, value)) = sheets.unread(node) {
@@ -227,7 +229,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         Ok((after(map, &self.transform(node)?), fill))
     }
 
-    /// That a property of an element cannot be read.
+    /// The error that a property of an element cannot be read.
     pub(super) fn not_read(&self, node: Node<'_, '_>, word: &str, value: &str) -> SceneError {
         self.error(node, SvgError::Property { property: word.into(), value: visible(value) })
     }
@@ -245,7 +247,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         Ok(())
     }
 
-    /// An element and what is in it; `path` holds the elements around it, to find cycles.
+    /// Reads an element and its contents; `path` lists the elements around it, to find cycles.
     fn element_at(
         &mut self,
         node: Node<'_, '_>,
@@ -253,12 +255,12 @@ impl<'a, 'd> Reader<'a, 'd> {
         path: &mut Vec<usize>,
         fill: Fill,
     ) -> Result<(), SceneError> {
-        // What drawing programs note for themselves is in languages of their own.
+        // Data that drawing programs store for themselves are in their own namespaces.
         if !is_drawing(node) {
             return Ok(());
         }
         let name = node.tag_name().name();
-        // Elements that `use` draws are counted again.
+        // Elements that `use` draws are counted every time.
         self.sheets.index.element().map_err(|e| self.marked(node, e))?;
         if path.len() >= DEEPEST {
             return Err(self.error(node, SvgError::Depth { deepest: DEEPEST, element: name.into() }));
@@ -319,7 +321,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         Ok(())
     }
 
-    /// `use`: the element that it names, moved.
+    /// Reads `use`: the element that it names, moved.
     fn used(&mut self, node: Node<'_, '_>, map: &Affine, path: &mut Vec<usize>, fill: Fill) -> Result<(), SceneError> {
         let link =
             node.attribute("href").or_else(|| node.attribute(("http://www.w3.org/1999/xlink", "href"))).unwrap_or("");

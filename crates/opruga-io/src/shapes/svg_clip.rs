@@ -1,4 +1,4 @@
-//! Clip paths: one that cuts nothing off leaves a drawing as it is.
+//! Clip paths: a clip path that cuts nothing off leaves a drawing as it is.
 //!
 //! # Source
 //! W3C, Scalable Vector Graphics 1.1, chapter 14.
@@ -13,13 +13,14 @@ use opruga_math::words::rounded;
 use opruga_mesh::outline::{self, Overlap, Ring};
 use roxmltree::Node;
 
-/// Curves are followed within this part of the size of what is drawn.
+/// Curves are approximated within this fraction of the size of the drawing.
 const TOLERANCE: f64 = 1e-5;
-/// What is cut off counts from this part of the area on: more than following the curves may change.
+/// A cut counts if it exceeds this fraction of the area, which is more than the approximation of curves may change.
 const CUT: f64 = 1e-4;
 
 impl<'a, 'd> Reader<'a, 'd> {
-    /// Refuses an element that is drawn, from a contour on, larger than its clip path leaves it; `map` leads from its coordinates to those of the drawing.
+    /// Refuses an element if its contours from `begun` on extend beyond its clip path; `map` maps the coordinates of the element to those of the
+    /// drawing.
     pub(super) fn clipped(
         &mut self,
         node: Node<'_, '_>,
@@ -41,7 +42,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             return Err(self.error(node, SvgError::Cycle { id: visible(id) }));
         }
 
-        // What the clip path leaves, read as a drawing of its own.
+        // The region of the clip path, read as a drawing of its own.
         let mut map = *map;
         if clip.attribute("clipPathUnits") == Some("objectBoundingBox") {
             let Some(unit) = self.box_of(begun, &map) else { return Ok(()) };
@@ -57,7 +58,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         Err(self.error(node, SvgError::Clipped { percent, value: visible(value) }))
     }
 
-    /// The map from the unit square to the box around what was drawn from a contour on, in coordinates that `map` leads out of; none where that has no area.
+    /// The map from the unit square to the bounding box of the contours from `begun` on, in the coordinates that `map` maps from; none if the box has
+    /// no area.
     fn box_of(&self, begun: usize, map: &Affine) -> Option<Affine> {
         let [a, b, c, d, e, f] = *map;
         let det = a * d - b * c;
@@ -69,7 +71,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         (w > 0.0 && h > 0.0 && w.is_finite() && h.is_finite()).then_some([w, 0.0, 0.0, h, low[0], low[1]])
     }
 
-    /// How many per cent of the area drawn from a contour on lie outside of a clip; none where that is all inside.
+    /// The percentage of the area of the contours from `begun` on that is outside a clip; none if all of it is inside.
     pub(super) fn cut_off(&self, begun: usize, clip: &Curves, rules: &[Rule]) -> Option<String> {
         let drawn = self.curves.from(begun);
         let size = drawn.extent();
@@ -78,7 +80,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
         let silhouette = |curves: &Curves, rules: &[Rule], part: u32| {
             let mut rings = curves.flatten(TOLERANCE * size);
-            // Of shapes that do not say a rule, the one by which they are read is told elsewhere.
+            // For shapes without a rule, the rule that is used is reported elsewhere.
             rules::follow(&mut rings, rules);
             let mut made = outline::joined(&rings, Overlap::Union);
             made.iter_mut().for_each(|ring| ring.part = part);

@@ -10,7 +10,7 @@ use roxmltree::{Attribute, Node};
 use svgtypes::{LengthUnit, PathParser, PointsParser, TransformListParser, TransformListToken};
 
 impl Reader<'_, '_> {
-    /// Where a part of an attribute's value stands in the file.
+    /// The location of a part of an attribute's value in the file.
     pub(super) fn in_attribute(&self, attribute: &Attribute<'_, '_>, at: Option<usize>, error: SvgError) -> SceneError {
         let error = SceneError::of(error);
         let range = attribute.range_value();
@@ -25,7 +25,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A value that the SVG grammar refuses.
+    /// An error of the SVG grammar about a value.
     pub(super) fn refused(&self, attribute: &Attribute<'_, '_>, error: &svgtypes::Error) -> SceneError {
         use svgtypes::Error as E;
         let at = match error {
@@ -102,7 +102,7 @@ impl Reader<'_, '_> {
     pub(super) fn rectangle(&self, node: Node<'_, '_>, curves: &mut Curves) -> Result<(), SceneError> {
         let (x, y) = (self.number(node, "x", 0.0)?, self.number(node, "y", 0.0)?);
         let (w, h) = (self.size(node, "width")?, self.size(node, "height")?);
-        // One radius stands for both.
+        // One radius is used for both.
         let (rx, ry) = (self.size(node, "rx")?, self.size(node, "ry")?);
         let rx = if node.has_attribute("rx") { rx } else { ry };
         let ry = if node.has_attribute("ry") { ry } else { rx };
@@ -143,7 +143,7 @@ impl Reader<'_, '_> {
             return Ok(());
         };
         let points: Vec<Point> = PointsParser::from(attribute.value()).map(|(x, y)| [x, y]).collect();
-        // The library stops in silence at what it cannot read.
+        // The library silently stops at anything that it cannot read.
         let numbers = svgtypes::NumberListParser::from(attribute.value());
         let mut count = 0;
         for number in numbers {

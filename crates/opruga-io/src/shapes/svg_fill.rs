@@ -1,4 +1,4 @@
-//! Fill colours of a drawing: inherited from element to element, as the standard says.
+//! Fill colours of a drawing, inherited from element to element according to the standard.
 
 use super::drawing_errors::SvgError;
 use super::rules::Rule;
@@ -9,29 +9,29 @@ use opruga_math::message::Setting;
 use roxmltree::{Document, Node};
 use svgtypes::{Color, Paint, PaintFallback};
 
-/// How an element is filled.
+/// The fill of an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fill {
     /// Whether it is filled at all.
     pub(super) filled: bool,
     /// Red, green and blue.
     colour: [u8; 3],
-    /// How much of what lies below it hides, from 0 to 1: of its colour, and of the groups around it.
+    /// The opacity, from 0 to 1: that of its colour times that of the groups around it.
     opacity: f64,
-    /// What `fill-opacity` says, which is inherited and not multiplied.
+    /// The value of `fill-opacity`, which is inherited and not multiplied.
     fill_opacity: f64,
-    /// What is inside.
+    /// The fill rule.
     rule: Rule,
-    /// Whether rules of style sheets may be about it or what it is in, of which that is not known.
+    /// Whether rules of style sheets may apply to it or to an element around it, which cannot be decided.
     styled: bool,
 }
 
 impl Fill {
-    /// Where nothing is said: black.
+    /// The default fill: black.
     pub(super) const FIRST: Fill =
         Fill { filled: true, colour: [0; 3], opacity: 1.0, fill_opacity: 1.0, rule: Rule::Unsaid, styled: false };
 
-    /// A clip path where nothing is said.
+    /// The default fill of a clip path.
     pub(super) const CLIP: Fill = Fill { rule: Rule::NonZero, ..Fill::FIRST };
 }
 
@@ -39,23 +39,23 @@ impl Fill {
 pub(super) struct Fills<'a, 'd> {
     document: &'d Document<'a>,
     source: &'a Source<'a>,
-    /// Whether colours are wanted; else only whether an element is filled.
+    /// Whether colours are needed; otherwise only whether an element is filled.
     wanted: bool,
-    /// Red, green, blue and opacity of every part of the drawing; none of those that are not filled.
+    /// Red, green, blue and opacity of every part of the drawing; none for parts that are not filled.
     pub(super) painted: Vec<Option<[u8; 4]>>,
-    /// How many elements are filled by a gradient.
+    /// The number of elements that are filled with a gradient.
     pub(super) gradients: usize,
-    /// Of how many parts it is not known which rules of style sheets are about them.
+    /// The number of parts to which rules of style sheets may apply, which cannot be decided.
     pub(super) styled: usize,
-    /// By which rule every part of the drawing is filled.
+    /// The fill rule of every part of the drawing.
     pub(super) rules: Vec<Rule>,
     sheets: &'d Sheets,
-    /// The property that says what is inside: another one for clip paths.
+    /// The property with the fill rule; clip paths have a separate one.
     rule: &'static str,
 }
 
 impl<'a, 'd> Fills<'a, 'd> {
-    /// Nothing read yet.
+    /// A reader that has not read anything yet.
     pub(super) fn of(
         document: &'d Document<'a>,
         source: &'a Source<'a>,
@@ -76,16 +76,16 @@ impl<'a, 'd> Fills<'a, 'd> {
         }
     }
 
-    /// Nothing read yet of a clip path.
+    /// A reader for a clip path that has not read anything yet.
     pub(super) fn of_clip(&self) -> Fills<'a, 'd> {
         Fills { rule: "clip-rule", ..Fills::of(self.document, self.source, self.sheets, false) }
     }
 
-    /// The fill of an element inside one with another.
+    /// Returns the fill of an element inside one with the fill `around`.
     ///
     /// # Errors
-    /// `svg.colour` for what is no fill, where colours are wanted; `svg.unsupported` for what is no rule of filling; `svg.style` for style sheets that
-    /// may change outlines.
+    /// `svg.colour` for something that is not a fill, if colours are needed; `svg.unsupported` for an unknown fill rule; `svg.style` for style sheets
+    /// that may change outlines.
     pub(super) fn within(&mut self, node: Node<'_, '_>, around: Fill) -> Result<Fill, SceneError> {
         let mut fill = around;
         let sheets = self.sheets;
@@ -117,7 +117,7 @@ impl<'a, 'd> Fills<'a, 'd> {
         Ok(fill)
     }
 
-    /// Notes the fill of the next part of the drawing.
+    /// Stores the fill of the next part of the drawing.
     pub(super) fn paint(&mut self, fill: Fill) {
         self.rules.push(fill.rule);
         self.styled += usize::from(fill.styled);
@@ -126,7 +126,7 @@ impl<'a, 'd> Fills<'a, 'd> {
         self.painted.push((self.wanted && fill.filled && opacity > 0).then_some([red, green, blue, opacity]));
     }
 
-    /// A fill, and the opacity of its colour; no colour for none.
+    /// A fill and the opacity of its colour; no colour for `none`.
     fn colour(&mut self, node: Node<'_, '_>, text: &str, around: Fill) -> Result<(Option<[u8; 3]>, f64), SceneError> {
         let plain = |c: Color| (Some([c.red, c.green, c.blue]), f64::from(c.alpha) / 255.0);
         match Paint::from_str(text) {
@@ -155,7 +155,7 @@ impl<'a, 'd> Fills<'a, 'd> {
         }
     }
 
-    /// The mean colour of the stops of a gradient; none where there is no such gradient.
+    /// The mean colour of the stops of a gradient; none if the gradient does not exist.
     fn gradient(&self, id: &str) -> Result<Option<[u8; 4]>, SceneError> {
         let mut next = id;
         // A gradient may take its stops from another one.
@@ -184,7 +184,7 @@ impl<'a, 'd> Fills<'a, 'd> {
         Ok(None)
     }
 
-    /// A number from 0 to 1, or per cent.
+    /// A number from 0 to 1, or a percentage.
     fn share(&self, node: Node<'_, '_>, name: &str, text: &str) -> Result<f64, SceneError> {
         let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 100.0));
         match number.trim().parse::<f64>() {

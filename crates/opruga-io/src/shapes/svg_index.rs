@@ -1,4 +1,4 @@
-//! What is looked up again and again while a drawing is read, and how often elements are drawn.
+//! Elements that are looked up repeatedly while a drawing is read, and the number of drawn elements.
 
 use crate::budget::{ELEMENTS, Limit, POINTS};
 use crate::problem::SceneError;
@@ -6,17 +6,17 @@ use roxmltree::{Document, Node, NodeId};
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-/// The elements of a drawing by their ids, and what has been drawn so far, by clip paths too.
+/// The elements of a drawing by their ids, and counts of what has been drawn so far, including clip paths.
 #[derive(Debug, Default)]
 pub(super) struct Index {
-    /// The first two elements of each id.
+    /// The first two elements with each id.
     ids: BTreeMap<String, (NodeId, Option<NodeId>)>,
     elements: Cell<u64>,
     points: Cell<u64>,
 }
 
 impl Index {
-    /// The ids of a drawing.
+    /// Indexes the ids of a drawing.
     pub(super) fn of(document: &Document<'_>) -> Index {
         let mut index = Index::default();
         for node in document.descendants() {
@@ -29,7 +29,7 @@ impl Index {
         index
     }
 
-    /// The first element with an id, and the second.
+    /// The first and the second element with an id.
     pub(super) fn named<'d, 'a>(&self, document: &'d Document<'a>, id: &str) -> [Option<Node<'d, 'a>>; 2] {
         let Some((first, second)) = self.ids.get(id) else { return [None; 2] };
         [document.get_node(*first), second.and_then(|id| document.get_node(id))]

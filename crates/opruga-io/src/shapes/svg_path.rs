@@ -3,7 +3,7 @@
 use super::curves::{Curves, Point};
 use svgtypes::PathSegment;
 
-/// The pen of the path language: where it is, and what a smooth curve goes on from.
+/// The pen of the path language: its position, and the control point that a smooth curve continues from.
 pub(super) struct Pen<'c> {
     curves: &'c mut Curves,
     pub(super) at: Point,
@@ -13,7 +13,7 @@ pub(super) struct Pen<'c> {
     begun: bool,
     /// Whether lines have been drawn from it that are not closed yet.
     drawing: bool,
-    /// Subpaths that were left open.
+    /// The number of subpaths that were left open.
     pub(super) open: usize,
 }
 
@@ -23,7 +23,7 @@ impl<'c> Pen<'c> {
         Pen { curves, at: [0.0; 2], control: None, begun: false, drawing: false, open: 0 }
     }
 
-    /// Ends a subpath that was not closed.
+    /// Leaves the present subpath open.
     pub(super) fn leave(&mut self) {
         let closed = self.curves.start() == self.at;
         self.open += usize::from(self.drawing && !closed);
@@ -34,14 +34,14 @@ impl<'c> Pen<'c> {
     pub(super) fn draw(&mut self, segment: PathSegment) {
         let from = self.at;
         let point = |abs: bool, x: f64, y: f64| if abs { [x, y] } else { [from[0] + x, from[1] + y] };
-        // A smooth curve mirrors the control point of the curve of its own kind before it.
+        // A smooth curve mirrors the control point of the previous curve if that is of the same kind.
         let mirrored = |cubic: bool| match self.control {
             Some((p, kind)) if kind == cubic => [2.0 * from[0] - p[0], 2.0 * from[1] - p[1]],
             _ => from,
         };
         let mut control = None;
         let mut draws = true;
-        // After a close the next subpath begins where the last one did.
+        // After a close, the next subpath begins where the last one began.
         if !self.begun && !matches!(segment, PathSegment::MoveTo { .. } | PathSegment::ClosePath { .. }) {
             self.curves.move_to(from);
             self.begun = true;

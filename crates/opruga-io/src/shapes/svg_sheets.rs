@@ -1,7 +1,7 @@
-//! Style sheets of a drawing: which of their rules an element obeys.
+//! Style sheets of a drawing: which of their rules apply to an element.
 //!
-//! Read are selectors of names, `.class`, `#id` and `*`, also one inside another (` `, `>`), in lists. Of rules behind other selectors, and of those that
-//! hold under conditions (`@media`), it is not known which elements they are about: they may be about each that has one of the names in them.
+//! The reader supports selectors of names, `.class`, `#id` and `*`, also nested (` `, `>`), in lists. For rules with other selectors, and for
+//! conditional rules (`@media`), it cannot decide to which elements they apply: they may apply to every element with one of the names in them.
 //!
 //! # Source
 //! W3C, Cascading Style Sheets, level 2 revision 1, chapters 5 and 6.
@@ -18,7 +18,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// Blocks that say nothing about elements.
+/// Blocks that do not apply to elements.
 const ELSEWHERE: [&str; 5] = ["@font-face", "@keyframes", "@page", "@counter-style", "@property"];
 
 /// All rules of a drawing, in their order.
@@ -27,31 +27,31 @@ pub(super) struct Sheets {
     rules: Vec<Rule>,
     /// The elements of the drawing by their ids.
     pub(super) index: Index,
-    /// What elements have been asked about: the rules that each obeys, with their weights.
+    /// A cache: the rules that apply to each element looked up so far, with their weights.
     obeyed: RefCell<BTreeMap<usize, Obeyed>>,
-    /// Of elements with a long `style`: where the value of each of its properties stands in it.
+    /// For elements with a long `style`: the range of the value of each of its properties.
     styles: RefCell<BTreeMap<usize, LongStyle>>,
 }
 
-/// From where to where the value of each property stands.
+/// The range of the value of each property.
 type LongStyle = BTreeMap<String, (usize, usize)>;
 
-/// A `style` of more bytes is taken apart once and not whenever it is asked.
+/// A `style` with more bytes is parsed only once, and not at each look-up.
 const LONG_STYLE: usize = 1024;
 
-/// The rules that an element obeys, by their numbers.
+/// The rules that apply to an element, by their numbers.
 type Obeyed = Rc<[(Weight, usize)]>;
 
-/// Which of two rules wins: the one with more ids, then with more classes, then with more names.
+/// The precedence of rules: the one with more ids wins, then the one with more classes, then the one with more names.
 type Weight = [usize; 3];
 
 #[derive(Debug)]
 struct Rule {
     selectors: Vec<Selector>,
-    /// Names of elements, `.class` and `#id` that it may be about, where its selectors are not read.
+    /// The names of elements, `.class` and `#id` to which it may apply, if its selectors are not supported.
     perhaps: Vec<String>,
     declarations: Vec<Declaration>,
-    /// Where its sheet stands in the file.
+    /// The range of its sheet in the file.
     sheet: (usize, usize),
 }
 
@@ -62,11 +62,11 @@ struct Declaration {
     important: bool,
 }
 
-/// Elements one inside another: the simple selectors of each, and whether it has to be a child of the one before.
+/// Nested elements: the simple selectors of each, and whether it must be a child of the previous one.
 #[derive(Debug)]
 struct Selector(Vec<(Vec<String>, bool)>);
 
-/// What a block is about while it is read.
+/// The subject of a block while it is read.
 enum Block {
     Conditional,
     Rule,
@@ -77,7 +77,7 @@ impl Sheets {
     /// Reads the style sheets of a drawing.
     ///
     /// # Errors
-    /// `limit.rules` where it would take too long to look which elements obey them.
+    /// `limit.rules` if it would take too long to find the elements to which they apply.
     pub(super) fn of(document: &Document<'_>, source: &Source<'_>) -> Result<Sheets, SceneError> {
         let mut sheets = Sheets { index: Index::of(document), ..Sheets::default() };
         for node in document.descendants().filter(|node| is_drawing(*node) && node.tag_name().name() == "style") {
@@ -122,7 +122,7 @@ impl Sheets {
                         rule.declarations.push(declaration);
                     }
                 }
-                // Another file could say anything about any element.
+                // Another file could contain rules for any element.
                 (";", None) if piece.starts_with("@import") => self.rules.push(Rule {
                     selectors: Vec::new(),
                     perhaps: vec!["*".into()],
@@ -137,12 +137,12 @@ impl Sheets {
         }
     }
 
-    /// A property of an element: in its `style`, by a sheet, or as an attribute.
+    /// The value of a property of an element: from its `style`, a sheet, or an attribute.
     pub(super) fn style<'n>(&'n self, node: Node<'n, '_>, name: &str) -> Option<&'n str> {
         self.declared(node, name).or_else(|| node.attribute(name).map(str::trim))
     }
 
-    /// A property in the `style` of an element, or by a sheet.
+    /// The value of a property from the `style` of an element, or from a sheet.
     pub(super) fn declared<'n>(&'n self, node: Node<'n, '_>, name: &str) -> Option<&'n str> {
         let own = node.attribute("style").and_then(|text| self.of_attribute(node, text, name));
         let own = own.map(|(value, important)| ((important, true, [0; 3], 0), value));
@@ -159,9 +159,9 @@ impl Sheets {
         best.map(|(_, value)| value)
     }
 
-    /// What a `style` says of a property. Long ones are taken apart once: those of groups are asked by all that is in them.
+    /// The value of a property in a `style`. Long styles are parsed only once, because every element in a group looks up the style of the group.
     fn of_attribute<'n>(&self, node: Node<'n, '_>, text: &'n str, name: &str) -> Option<(&'n str, bool)> {
-        // Of two that say the same the later one counts.
+        // If a property is given twice, the later one counts.
         let mut pieces = text.rsplit(';').filter_map(|piece| piece.split_once(':'));
         if text.len() <= LONG_STYLE {
             let (_, value) = pieces.find(|(word, _)| word.trim() == name)?;
@@ -180,7 +180,7 @@ impl Sheets {
         Some(without_importance(&text[from..to]))
     }
 
-    /// The rules that an element obeys.
+    /// The rules that apply to an element.
     fn obeyed(&self, node: Node<'_, '_>) -> Obeyed {
         if self.rules.is_empty() {
             return Rc::from([]);
@@ -196,10 +196,10 @@ impl Sheets {
         found
     }
 
-    /// Whether a rule may be about an element, of which that is not known.
+    /// Whether a rule may apply to an element although this cannot be decided.
     ///
     /// # Errors
-    /// `svg.style` for one that changes outlines.
+    /// `svg.style` for a rule that changes outlines.
     pub(super) fn may_be_about(&self, node: Node<'_, '_>, source: &Source<'_>) -> Result<bool, SceneError> {
         let mut about = false;
         for rule in self.rules.iter().filter(|rule| rule.perhaps.iter().any(|word| fits(word, node))) {
@@ -247,7 +247,7 @@ impl Selector {
         let (mut parts, mut child): (Vec<(Vec<String>, bool)>, bool) = (Vec::new(), false);
         for word in apart.split_ascii_whitespace() {
             if word == ">" {
-                // One needs something to its left, and there are no two of them.
+                // A `>` needs something to its left, and must not be repeated.
                 if child || parts.is_empty() {
                     return None;
                 }
@@ -280,7 +280,7 @@ impl Selector {
             [(words, _)] => all(words, node),
             [.., (last, _)] if !all(last, node) => false,
             parts => {
-                // From the outermost element inwards: how many parts have been met anywhere above, and by the parent.
+                // From the outermost element inwards: how many parts have matched anywhere above, and at the parent.
                 let mut lineage: Vec<Node<'_, '_>> = node.ancestors().filter(Node::is_element).collect();
                 lineage.reverse();
                 let (mut above, mut parent) = (vec![false; parts.len()], vec![false; parts.len()]);
@@ -299,7 +299,7 @@ impl Selector {
     }
 }
 
-/// Whether a name, a `.class`, an `#id` or `*` fits an element.
+/// Whether a name, a `.class`, an `#id` or `*` matches an element.
 fn fits(word: &str, node: Node<'_, '_>) -> bool {
     match word.as_bytes() {
         b"*" => true,
@@ -324,7 +324,7 @@ fn simple(word: &str) -> Vec<String> {
     found
 }
 
-/// A value, and whether it says of itself that it is important.
+/// A value without `!important`, and whether it had it.
 fn without_importance(value: &str) -> (&str, bool) {
     let value = value.trim();
     match value.rsplit_once('!') {

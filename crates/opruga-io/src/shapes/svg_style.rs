@@ -1,12 +1,12 @@
-//! What styles of a drawing say about its outlines: refused where it would change them, else counted.
+//! Styles of a drawing that affect its outlines: refused if they would change outlines, otherwise counted.
 
 use super::svg_sheets::Sheets;
 use roxmltree::Node;
 
-/// Properties that are read as attributes only, where they place an element otherwise than its attributes say.
+/// Properties that are read only as attributes; as styles they would override the attributes that place an element.
 const PLACING: [&str; 5] = ["transform", "translate", "rotate", "scale", "offset-path"];
 
-/// Properties that give elements their sizes and places, where they stand in styles, with the elements that have them.
+/// Properties in styles that give elements their sizes and positions, with the elements that have them.
 const MEASURES: [(&str, &[&str]); 10] = [
     ("d", &["path"]),
     ("x", &["rect", "use", "svg"]),
@@ -21,14 +21,14 @@ const MEASURES: [(&str, &[&str]); 10] = [
 ];
 
 impl Sheets {
-    /// A property of an element that would place or cut it otherwise than it is read, with the value that it has.
+    /// A property that would place or cut an element differently from how it is read, with its value.
     pub(super) fn unread<'n>(&'n self, node: Node<'n, '_>) -> Option<(&'static str, &'n str)> {
         let set = |value: &&str| *value != "none";
         if let Some(value) = self.style(node, "mask").filter(set) {
             return Some(("mask", value));
         }
         let element = node.tag_name().name();
-        // The size of the whole drawing says nothing about its outlines.
+        // The size of the whole drawing has no influence on its outlines.
         let inner = node.parent_element().is_some();
         let measures = MEASURES.iter().filter(|(_, of)| inner && of.contains(&element)).map(|(name, _)| *name);
         for name in PLACING.into_iter().chain(measures) {
@@ -41,13 +41,13 @@ impl Sheets {
         moved.filter(|value| !matches!(*value, "0" | "0 0" | "0px 0px")).map(|value| ("transform-origin", value))
     }
 
-    /// Whether an element is there but cannot be seen. Visibility is inherited, and may come back.
+    /// Whether an element exists but is invisible. Visibility is inherited, and children may restore it.
     pub(super) fn is_hidden(&self, node: Node<'_, '_>) -> bool {
         let inherited = |node| self.style(node, "visibility").filter(|value| *value != "inherit");
         matches!(node.ancestors().find_map(inherited), Some("hidden" | "collapse"))
     }
 
-    /// Whether an element and all that is in it is fully transparent.
+    /// Whether an element and its contents are fully transparent.
     pub(super) fn is_clear(&self, node: Node<'_, '_>) -> bool {
         let opacity = self.style(node, "opacity").map(|value| value.trim_end_matches('%').trim().parse::<f64>());
         matches!(opacity, Some(Ok(x)) if x <= 0.0)
@@ -60,7 +60,7 @@ impl Sheets {
             .any(|name| self.style(node, name).is_some_and(|value| value != "none"))
     }
 
-    /// Whether a stroke would be drawn along an element, which makes it larger by half of its width. Strokes are inherited.
+    /// Whether a stroke would be drawn along an element, which makes the element larger by half of the stroke width. Strokes are inherited.
     pub(super) fn has_stroke(&self, node: Node<'_, '_>) -> bool {
         let inherited =
             |name: &str| node.ancestors().find_map(|node| self.style(node, name).filter(|value| *value != "inherit"));
@@ -70,11 +70,11 @@ impl Sheets {
     }
 }
 
-/// Elements that change others in time: the drawing is read as it is without them.
+/// Elements that change others over time: the drawing is read without them.
 pub(super) const ANIMATIONS: [&str; 6] =
     ["animate", "animateColor", "animateMotion", "animateTransform", "discard", "set"];
 
-/// How many animations stand in an element itself.
+/// The number of animations directly within an element.
 pub(super) fn animations_of(node: Node<'_, '_>) -> usize {
     node.children().filter(|child| ANIMATIONS.contains(&child.tag_name().name())).count()
 }

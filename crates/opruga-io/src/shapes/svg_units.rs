@@ -2,7 +2,7 @@
 
 use svgtypes::LengthUnit;
 
-/// How many user units an absolute unit has, 96 to the inch; none for those that depend on something.
+/// The number of user units in an absolute unit, with 96 per inch; none for relative units.
 pub(super) fn units(unit: LengthUnit) -> Option<f64> {
     match unit {
         LengthUnit::None | LengthUnit::Px => Some(1.0),

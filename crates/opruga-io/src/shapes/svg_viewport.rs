@@ -1,4 +1,4 @@
-//! Drawings inside a drawing: an `<svg>` with a place and a scale of its own, and a `<symbol>` drawn by `use`.
+//! Drawings inside a drawing: an `<svg>` with its own position and scale, and a `<symbol>` drawn by `use`.
 //!
 //! # Source
 //! W3C, Scalable Vector Graphics 1.1, chapter 7.
@@ -12,13 +12,13 @@ use crate::problem::{SceneError, visible};
 use roxmltree::Node;
 use svgtypes::{Align, AspectRatio, ViewBox};
 
-/// Where what is inside of an element is drawn.
+/// Where the contents of an element are drawn.
 pub(super) struct Viewport {
-    /// From its coordinates to those around it.
+    /// The map from its coordinates to those around it.
     pub(super) map: Affine,
-    /// The corners of the rectangle that it shows, in the coordinates around it; none where it shows everything.
+    /// The corners of the rectangle that it shows, in the coordinates around it; none if it shows everything.
     pub(super) frame: Option<[Point; 4]>,
-    /// What per cent refer to inside of it.
+    /// The size to which percentages inside it refer.
     pub(super) canvas: Option<Point>,
 }
 
@@ -33,7 +33,7 @@ impl Reader<'_, '_> {
         Ok(Some(view))
     }
 
-    /// Where what is inside of an `<svg>` or of a `<symbol>` is drawn, whose size a `use` may give; nowhere where that is zero.
+    /// Where the contents of an `<svg>` or a `<symbol>` are drawn. A `use` may give its size; none if the size is zero.
     pub(super) fn viewport(
         &self,
         node: Node<'_, '_>,
@@ -72,7 +72,7 @@ impl Reader<'_, '_> {
             _ if ratio.slice => (larger(sx, sy), larger(sx, sy)),
             _ => (smaller(sx, sy), smaller(sx, sy)),
         };
-        // The part of the room that is left over before it.
+        // The fraction of the remaining space that is before it.
         let [before_x, before_y] = match ratio.align {
             Align::None | Align::XMinYMin => [0.0, 0.0],
             Align::XMidYMin => [0.5, 0.0],
@@ -89,10 +89,10 @@ impl Reader<'_, '_> {
         Ok(Some(Viewport { map, frame, canvas: Some([view.w, view.h]) }))
     }
 
-    /// What is inside of an `<svg>` or of a `<symbol>`.
+    /// Reads the contents of an `<svg>` or a `<symbol>`.
     ///
     /// # Errors
-    /// Those of what is in it; `svg.unsupported` where it shows only a part of that.
+    /// Those of its contents; `svg.unsupported` if it shows only a part of them.
     pub(super) fn inside(
         &mut self,
         node: Node<'_, '_>,
@@ -113,7 +113,7 @@ impl Reader<'_, '_> {
         view.frame.map_or(Ok(()), |frame| self.framed(node, &frame, map, begun))
     }
 
-    /// Refuses what an element draws outside of its frame, from a contour on.
+    /// Refuses an element if its contours from `begun` on extend beyond its frame.
     pub(super) fn framed(
         &self,
         node: Node<'_, '_>,

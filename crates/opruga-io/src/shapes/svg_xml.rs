@@ -5,10 +5,10 @@ use crate::problem::{SceneError, visible};
 use crate::source::Source;
 use roxmltree::{Document, Node, ParsingOptions};
 
-/// The largest number of elements and texts that stand in a file.
+/// The largest number of elements and texts in a file.
 const MOST_NODES: u32 = 4 << 20;
 
-/// Whether an element belongs to the drawing: one of SVG, or of no language at all.
+/// Whether an element belongs to the drawing: its namespace is that of SVG, or none.
 pub(super) fn is_drawing(node: Node<'_, '_>) -> bool {
     matches!(node.tag_name().namespace(), None | Some("http://www.w3.org/2000/svg"))
 }
@@ -29,7 +29,7 @@ pub(super) fn document<'a>(source: &Source<'a>) -> Result<Document<'a>, SceneErr
     Ok(document)
 }
 
-/// What the XML reader refuses.
+/// An error of the XML reader.
 fn syntax(source: &Source<'_>, error: &roxmltree::Error) -> SceneError {
     let position = error.pos();
     let at = source.offset(position.row as usize, position.col as usize);

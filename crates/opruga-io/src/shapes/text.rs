@@ -1,4 +1,4 @@
-//! Texts: the outlines of letters in a font.
+//! Texts: the outlines of the letters of a font.
 
 use super::Problem;
 use super::composite;
@@ -10,7 +10,7 @@ use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
-/// Scripts whose letters join, change or run from right to left, and marks that are set onto letters: from which character to which.
+/// Scripts whose letters join, change or run from right to left, and marks that are placed on letters: ranges of characters.
 const SHAPED: [(char, char); 18] = [
     ('\u{0300}', '\u{036f}'),
     ('\u{0590}', '\u{109f}'),
@@ -32,7 +32,7 @@ const SHAPED: [(char, char); 18] = [
     ('\u{e0000}', '\u{e0fff}'),
 ];
 
-/// The pen of a font, from where a letter begins.
+/// The pen of a font, relative to the origin of a letter.
 struct Pen {
     curves: Curves,
     from: f64,
@@ -65,11 +65,11 @@ impl OutlineBuilder for Pen {
     }
 }
 
-/// Reads the letters of `text` from a font in OpenType or TrueType, one part each, set on one line with the kerning of the table `kern`.
+/// Reads the letters of `text` from an OpenType or TrueType font, each as one part, placed on one line with the kerning of the table `kern`.
 ///
 /// # Errors
-/// `font.syntax` for a file that is no font, `font.no_glyph` for a letter that it lacks, `font.script` for one of a script that is not set letter by
-/// letter from left to right, `shape.no_area` for a text without outlines.
+/// `font.syntax` for a file that is not a font, `font.no_glyph` for a letter that the font lacks, `font.script` for a letter of a script that is not
+/// written letter by letter from left to right, `shape.no_area` for a text without outlines.
 pub(super) fn read<'a>(file: &str, bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, Problem> {
     let named = |error: SceneError| Problem::from(SceneError { file: file.to_string(), ..error });
     let face = Face::parse(bytes, 0)

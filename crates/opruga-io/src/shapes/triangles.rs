@@ -1,4 +1,4 @@
-//! Triangles as a file gives them, and what becomes of them: a closed surface, cloth, or a filled body.
+//! Triangles of a file, and what is made of them: a closed surface, cloth, or a filled body.
 
 use super::curves::larger;
 use super::errors::ShapeHint;
@@ -15,15 +15,15 @@ use opruga_mesh::{FaceError, Mesh, MeshError, cut_face};
 use opruga_world::shapes;
 use std::collections::BTreeMap;
 
-/// Faces whose corners lie this part of their size off their plane are reported: another cut would give another surface.
+/// Faces with corners farther from their plane than this fraction of their size are reported: another division would give another surface.
 const BENT: f64 = 0.02;
-/// A triangle whose area is below this part of its longest edge squared is refused.
+/// A triangle is refused if its area is below this fraction of its longest edge squared.
 const THIN: f64 = 1e-10;
-/// Below this part of its longest edge squared a triangle is a sliver: an angle of a tenth of a degree.
+/// A triangle is a sliver if its area is below this fraction of its longest edge squared, which is an angle of a tenth of a degree.
 const SLIVER: f64 = 1e-3;
-/// Extents of surfaces that nobody wonders at [m].
+/// Usual extents of surfaces [m].
 const USUAL: [f64; 2] = [1e-4, 1e2];
-/// How much larger or smaller a surface may be for another unit to explain it.
+/// The largest factor by which a surface may be larger or smaller than usual for another unit to explain it.
 const UNITS: f64 = 1e5;
 
 /// What a reader found.
@@ -31,51 +31,51 @@ const UNITS: f64 = 1e5;
 pub(super) struct Triangles {
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Where each triangle stands in the file.
+    /// The location of each triangle in the file.
     pub(super) locations: Locations,
     /// Named sets of vertices.
     pub(super) groups: BTreeMap<String, Vec<u32>>,
-    /// What the file has rounded away, where positions are not as they stand in it.
+    /// The rounding in the file, if positions are not those in the file.
     pub(super) stored: Option<Stored>,
     /// Whether coordinates have 4 bytes.
     pub(super) single: bool,
-    /// Whether the format gives every triangle corners of its own.
+    /// Whether the format gives every triangle separate corners.
     pub(super) soup: bool,
     pub(super) notices: Vec<SceneError>,
     pub(super) polygons: Polygons,
 }
 
-/// Faces with more than three corners that were cut into triangles.
+/// Faces with more than three corners that were divided into triangles.
 #[derive(Debug, Default)]
 pub(super) struct Polygons {
     count: usize,
     concave: usize,
     bent: usize,
-    /// How far off its plane a corner of one lies, as a part of its size.
+    /// The largest distance of a corner from the plane of its face, as a fraction of the size of the face.
     most_bent: f64,
 }
 
-/// Where triangles stand in a file.
+/// The locations of triangles in a file.
 #[derive(Debug, Default)]
 pub(super) enum Locations {
     /// Only their numbers are known.
     #[default]
     Numbers,
-    /// The byte of the text where the line of each begins.
+    /// The byte of the text at which the line of each begins.
     Lines(Vec<u32>),
-    /// The byte of the first one, and how many bytes each takes.
+    /// The byte of the first one, and the size of each [bytes].
     Bytes { first: usize, each: usize },
-    /// The byte where each begins.
+    /// The byte at which each begins.
     Starts(Vec<u64>),
 }
 
 impl Triangles {
-    /// What the numbers of the file have rounded away.
+    /// The rounding of the numbers in the file.
     fn as_stored(&self) -> Stored {
         Stored::of(&self.positions, self.triangles.iter().map(|triangle| &triangle[..]), self.single)
     }
 
-    /// Adds a polygon as triangles inside it, and says how many; or why there are none.
+    /// Adds a polygon as triangles inside it, and returns their number, or why there are none.
     pub(super) fn polygon(&mut self, corners: &[u32]) -> Result<usize, FaceProblem> {
         if corners.len() < 3 {
             return Err(FaceProblem::Few {});
@@ -100,7 +100,7 @@ impl Triangles {
         Ok(cut.triangles.len())
     }
 
-    /// Of which polygons the triangles are not what every program would make of them.
+    /// Reports the polygons that other programs may divide differently.
     fn cut(&self) -> Vec<SceneError> {
         let Polygons { count: faces, concave, bent, most_bent } = self.polygons;
         let concave = (concave > 0).then(|| SceneError::of(SurfaceNotice::Concave { count: concave, faces }));
@@ -130,7 +130,7 @@ impl Triangles {
     }
 }
 
-/// Whether a number stands there twice.
+/// Whether an index occurs twice.
 fn has_twins(corners: &[u32]) -> bool {
     if corners.len() <= 16 {
         return corners.iter().enumerate().any(|(k, corner)| corners[..k].contains(corner));
@@ -156,7 +156,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Welding, checks, orientation, size and filling, as the scene asks for.
+/// Applies welding, checks, orientation, size and filling as the scene asks for.
 pub(super) fn loaded(
     mut found: Triangles,
     file: &str,
@@ -221,7 +221,7 @@ pub(super) fn loaded(
     Ok(Loaded { notices, content: Content::Surface { mesh: Box::new(mesh), remesh, filling } })
 }
 
-/// Triangles that are so thin that springs and bending along them take small steps of time: how many, and the thinnest.
+/// Reports the number of triangles that are so thin that springs and bending along them need short time steps, and the thinnest.
 fn slivers(mesh: &Mesh<3>) -> Option<SceneError> {
     let thinness = |facet: &[u32; 3]| {
         let [a, b, c] = facet.map(|node| mesh.positions[node as usize]);
@@ -249,7 +249,7 @@ fn slivers(mesh: &Mesh<3>) -> Option<SceneError> {
     })
 }
 
-/// A surface whose file is probably not in metres.
+/// Reports a surface whose file is probably not in metres.
 fn unusual_scale(mesh: &Mesh<3>) -> Option<SceneError> {
     let (low, high) = mesh.bounds();
     let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, larger);
@@ -267,7 +267,7 @@ fn unusual_scale(mesh: &Mesh<3>) -> Option<SceneError> {
     Some(SceneError::of(SurfaceNotice::Scale { extent, least, most, size }).advice(hint))
 }
 
-/// Joins vertices where the scene or the format asks for it.
+/// Merges vertices if the scene or the format asks for it.
 fn weld(
     found: &mut Triangles,
     source: Option<&Source<'_>>,
@@ -291,7 +291,7 @@ fn weld(
         Err(problem) => return Err(SceneError::of(SurfaceError::Weld { problem }).value(distance.to_string())),
     };
     if joined > 0 && !found.groups.is_empty() {
-        // Groups follow their vertices by the corners of the triangles.
+        // The vertices of groups are found by the corners of the triangles.
         let mut number = vec![u32::MAX; before];
         for (old, new) in found.triangles.iter().flatten().zip(triangles.iter().flatten()) {
             number[*old as usize] = *new;
@@ -303,7 +303,7 @@ fn weld(
             nodes.dedup();
         }
     }
-    // A format that repeats every corner is welded as a matter of course.
+    // A format that repeats every corner always needs welding.
     if joined > 0 && !found.soup {
         notices.push(SceneError::of(SurfaceNotice::Welded { count: joined, vertices: before }));
     }
@@ -311,7 +311,7 @@ fn weld(
     Ok(())
 }
 
-/// Makes all triangles face outward and closes or keeps open surfaces as the scene says.
+/// Makes all triangles face outward, and closes open surfaces or keeps them open, as the scene says.
 fn orient(
     mesh: &mut Mesh<3>,
     found: &Triangles,
@@ -356,7 +356,7 @@ fn orient(
     Ok(())
 }
 
-/// Refuses, or counts, triangles of a closed surface that meet one another where they are not neighbours.
+/// Refuses, or counts, triangles of a closed surface that intersect others that are not their neighbours.
 fn compare(
     mesh: &Mesh<3>,
     found: &Triangles,
@@ -390,21 +390,21 @@ fn compare(
     let keep = Setting::with("overlap", "\"keep\"");
     let error = SurfaceError::MeetsItself { first, first_center, second, second_center, count, complete, keep };
     let error = SceneError::of(error);
-    // Those that close a free boundary stand nowhere in the file.
+    // Triangles that close a free boundary do not occur in the file.
     Err(match [second, first].into_iter().find(of_file) {
         Some(facet) => found.at(source, facet, error),
         None => error,
     })
 }
 
-/// Tells of triangles that were turned to face as their neighbours do.
+/// Reports triangles that were flipped to be consistent with their neighbours.
 fn flipped(notices: &mut Vec<SceneError>, count: usize) {
     if count > 0 {
         notices.push(SceneError::of(SurfaceNotice::Against { count }));
     }
 }
 
-/// What the topology of a surface forbids.
+/// An error in the topology of a surface.
 fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error: MeshError) -> SceneError {
     let coordinates = |node: u32| mesh.positions[node as usize].map(number).join(", ");
     match error {
@@ -431,7 +431,7 @@ fn refused(mesh: &Mesh<3>, found: &Triangles, source: Option<&Source<'_>>, error
     }
 }
 
-/// Brings the surface upright, to its size and to its position.
+/// Rotates, scales and moves the surface.
 fn scale_and_center(mesh: &mut Mesh<3>, shape: &Values) -> Result<(), SceneError> {
     if shape.text("up") == Some("z") {
         mesh.positions.iter_mut().for_each(|p| *p = [p[0], p[2], -p[1]]);

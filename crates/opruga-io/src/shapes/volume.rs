@@ -8,7 +8,7 @@ use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
 use opruga_mesh::triangle_parts;
 
-/// A body as the file has it, node by node.
+/// A body as in the file, node by node.
 pub(super) fn loaded(
     name: &str,
     bytes: &[u8],

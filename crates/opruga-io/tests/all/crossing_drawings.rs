@@ -1,4 +1,4 @@
-//! Drawings whose outlines cross themselves or one another, and what styles say about outlines.
+//! Drawings whose outlines cross themselves or one another, and styles that affect outlines.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use crate::common;
@@ -11,7 +11,7 @@ fn drawing(inside: &str) -> String {
     format!("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 100 100\">\n{inside}\n</svg>")
 }
 
-/// The area of a drawing whose longer side becomes `size`, and the codes of what is told of it.
+/// The area of a drawing whose longer side becomes `size`, and the codes of its notices.
 fn area_of(inside: &str, size: f64, more: &str) -> Result<(f64, Vec<&'static str>), Vec<SceneError>> {
     let shape = format!("kind = \"svg\", file = \"a.svg\", spacing = 0.02, size = {size}{more}");
     let (mesh, notices) = plane(&shape, "a.svg", drawing(inside).as_bytes())?;
@@ -27,7 +27,7 @@ fn crossing_outlines_have_their_areas_with_every_filling() {
         .map(|k| TAU * (0.25 + 0.4 * f64::from(k)))
         .map(|a| format!("{:.9},{:.9} ", 50.0 + 40.0 * a.cos(), 50.0 - 40.0 * a.sin()))
         .collect();
-    // A star of radius 1 is 2 sin 72° wide; its inner pentagon has a radius of (3 − √5)/2.
+    // A star of radius 1 is 2 sin 72° wide; its inner pentagon has the radius (3 − √5)/2.
     let (radius, inner) = (1.0 / (2.0 * 72f64.to_radians().sin()), (3.0 - 5f64.sqrt()) / 2.0);
     let whole = 5.0 * inner * 36f64.to_radians().sin() * radius * radius;
     let tips = whole - 2.5 * inner * inner * 72f64.to_radians().sin() * radius * radius;
@@ -36,7 +36,7 @@ fn crossing_outlines_have_their_areas_with_every_filling() {
         format!("<g fill-rule=\"nonzero\"><polygon points=\"{star}\"/></g>"),
     );
     let discs = "<circle cx=\"40\" cy=\"50\" r=\"20\"/><circle cx=\"60\" cy=\"50\" r=\"20\"/>";
-    // Three radii wide: of radius 1/3.
+    // Three radii wide, so the radius is 1/3.
     let lens = (2.0 * PI / 3.0 - 0.75f64.sqrt()) / 9.0;
     let uneven = "<path d=\"M10 10L90 90V30L10 90Z\"/>";
     let even = "<path d=\"M10 10L90 90V10L10 90Z\"/>";
@@ -63,8 +63,8 @@ fn crossing_outlines_have_their_areas_with_every_filling() {
 #[test]
 fn a_figure_of_eight_is_two_drops_or_refused_for_its_crossing() {
     let eight = "<path d=\"M50 50C90 10 90 90 50 50C10 10 10 90 50 50Z\"/>";
-    // One loop is a cubic curve from and to (0, 0) by (40, −40) and (40, 40): ½ ∫ (x dy − y dx) = 3/10 · 40 · 40 · 1 = 480, and
-    // its highest point lies at 3 · 40 / 4 = 30.
+    // One loop is a cubic curve from and to (0, 0) with the control points (40, −40) and (40, 40): ½ ∫ (x dy − y dx) = 3/10 · 40 · 40 · 1 = 480, and
+    // its highest point is at 3 · 40 / 4 = 30.
     let exact = 2.0 * 480.0 / 60.0f64.powi(2);
     for overlap in ["union", "even_odd"] {
         let (area, _) =
@@ -88,7 +88,7 @@ fn touching_outlines_are_apart_in_a_union() {
     }
 }
 
-/// What is read as other programs draw it: the area of a square of side 1 beside, and what is told.
+/// Styles must give what other programs draw: the area beside a square of side 1, and the notices.
 #[test]
 fn styles_that_change_outlines_are_followed_refused_or_counted() {
     let square = "<rect x=\"60\" y=\"60\" width=\"20\" height=\"20\"/>";
@@ -105,7 +105,7 @@ fn styles_that_change_outlines_are_followed_refused_or_counted() {
         let (area, codes) = area_of(&format!("{inside}{square}"), 1.0, "").unwrap_or_else(|e| panic!("{}", e[0]));
         assert!((area - 1.0).abs() < 1e-9 && codes == told, "{inside}: {area}, {codes:?}");
     }
-    // A child may be seen again, and markers leave the outline as it is.
+    // A child may be visible again, and markers leave the outline as it is.
     let again = "<g visibility=\"hidden\"><rect width=\"2\" height=\"2\" visibility=\"visible\"/></g>";
     assert_eq!(area_of(again, 1.0, "").map(|(_, told)| told), Ok(vec![]));
     let marked = format!("<g>{}</g>", square.replace("<rect", "<rect marker-start=\"url(#q)\""));
@@ -137,7 +137,7 @@ fn the_rule_of_filling_is_followed_where_the_file_says_it_and_told_where_it_matt
     read(&hole("style=\"fill-rule: evenodd\""), 3.0, &[]);
     read(&hole("fill-rule=\"nonzero\""), 4.0, &[]);
     read(&hole(""), 3.0, &["svg.fill_rule"]);
-    // A hole that runs the other way is one by both rules.
+    // A hole with the opposite orientation is a hole by both rules.
     read("<path d=\"M10 10H90V90H10ZM30 30V70H70V30Z\"/>", 3.0, &[]);
 }
 

@@ -1,4 +1,4 @@
-//! Drawings, maps, texts and pictures: what they measure, and what is wrong with bad ones.
+//! Drawings, maps, texts and pictures: areas of good ones, and errors of bad ones.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use crate::common;
@@ -31,10 +31,10 @@ fn shapes_of_a_drawing_have_their_areas() {
     near(area_of("<polygon points=\"0,0 2,0 2,2 0,2\"/>"), 4.0);
     near(area_of("<path d=\"M0 0h2v2h-2z\"/>"), 4.0);
     near(area_of("<path d=\"m1 1 2 0 0 2 -2 0z\"/>"), 4.0);
-    // A circle of two arcs; of four cubic curves; a stadium of rounded corners.
+    // A circle of two arcs, one of four cubic curves, and a stadium with rounded corners.
     near(area_of("<path d=\"M-1 0A1 1 0 0 0 1 0A1 1 0 0 0-1 0z\"/>"), PI);
     near(area_of("<rect width=\"4\" height=\"2\" rx=\"1\"/>"), (2.0 * 2.0 + PI) / 4.0);
-    // A parabola: 2/3 of its box of 2 by 1.
+    // A parabola has 2/3 of the area of its box of 2 by 1.
     near(area_of("<path d=\"M0 0Q1 2 2 0z\"/>"), 4.0 / 3.0);
 }
 
@@ -52,7 +52,7 @@ fn holes_follow_the_even_odd_rule_and_transforms_keep_areas() {
         "<g transform=\"scale(2)\"><g transform=\"translate(3,3)\"><g transform=\"scale(.25)\">{ring}</g></g></g>"
     );
     assert!((area_of(&nested) - 3.0).abs() < 1e-9);
-    // 30° make the box larger by cos 30° + sin 30°.
+    // A rotation by 30° makes the box larger by cos 30° + sin 30°.
     let tilted = area_of("<rect width=\"2\" height=\"2\" transform=\"rotate(30)\"/>");
     assert!(
         (tilted
@@ -100,7 +100,7 @@ fn open_paths_and_strokes_are_counted() {
     assert_eq!(notices[0].about.value.as_deref(), Some("2"));
 }
 
-/// Torture list, row 41. Each: what is in the drawing, the code, the line.
+/// Torture list, row 41. Each entry: the contents of the drawing, the code, the line.
 #[test]
 fn bad_drawings_are_refused_with_their_place() {
     let bomb = "<!DOCTYPE svg [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;\"><!ENTITY c \"&b;&b;&b;&b;&b;&b;&b;&b;\"><!ENTITY d \"&c;&c;&c;&c;&c;&c;&c;&c;\"><!ENTITY e \"&d;&d;&d;&d;&d;&d;&d;&d;\"><!ENTITY f \"&e;&e;&e;&e;&e;&e;&e;&e;\"><!ENTITY g \"&f;&f;&f;&f;&f;&f;&f;&f;\">]>\n<svg><title>&g;</title></svg>";
@@ -149,7 +149,7 @@ fn bad_drawings_are_refused_with_their_place() {
     for (text, code, line) in whole.into_iter().chain(inside) {
         let error = svg(&text).expect_err(&text).remove(0);
         let placed = line == 0 || (error.file == "a.svg" && error.line == Some(line));
-        // Nothing from outside of the file is shown.
+        // Nothing from outside the file is shown.
         if error.code != code || !placed || error.value.is_none() || error.to_string().contains("root:") {
             wrong.push(format!("{text}\n{error:?}"));
         }
@@ -196,7 +196,7 @@ fn parts_that_overlap_are_joined_where_the_scene_says_so() {
     assert!(refused.hint.is_some_and(|hint| hint.contains("union")));
 }
 
-/// What a drawing of two parts is painted with: inherited, by style, in per cent, from a gradient, or not at all.
+/// The fill colours of a drawing of two parts: inherited, by style, in per cent, from a gradient, or none.
 #[test]
 fn parts_are_painted_in_their_fill_colours() {
     let painted = |inside: &str| {
@@ -221,7 +221,7 @@ fn parts_are_painted_in_their_fill_colours() {
     ] {
         assert_eq!(painted(&format!("{whole}{inside}")), (vec![[255, 255, 255, 255], wanted], vec![]), "{inside}");
     }
-    // What is not filled is not painted.
+    // A part that is not filled is not painted.
     let none = painted(&format!("{whole}<path d=\"M1 1h2v2h-2z\" fill=\"none\"/>"));
     assert_eq!(none, (vec![[255; 4]], vec!["svg.stroke"]));
     let stops = "<stop stop-color=\"black\"/><stop offset=\"1\" stop-color=\"#204060\" stop-opacity=\"0\"/>";
@@ -232,7 +232,7 @@ fn parts_are_painted_in_their_fill_colours() {
     assert_eq!(painted(&gradient), (vec![[16, 32, 48, 128]], vec!["svg.gradient"]));
     let styled = "<style>.a { fill: red }</style><circle r=\"3\" class=\"a\"/>";
     assert_eq!(painted(styled), (vec![[255, 0, 0, 255]], vec![]));
-    // Colours are refused where they cannot be read, if they are wanted; else nobody looks at them.
+    // Colours that cannot be read are refused if they are needed; otherwise they are ignored.
     for bad in ["#12", "url(#nobody)", "rgb(1,2)", "context-stroke"] {
         let text = drawing(&format!("\n<circle r=\"2\" fill=\"{bad}\"/>"));
         let shape = "kind = \"svg\", file = \"a.svg\", spacing = 0.5, size = 4.0, colours = true";
@@ -242,7 +242,7 @@ fn parts_are_painted_in_their_fill_colours() {
     }
 }
 
-/// Squares around a drawing carry it as it is, with detail that is finer than they are.
+/// Squares around a drawing carry it as it is, with detail finer than the squares.
 #[test]
 fn a_coarse_lattice_carries_a_fine_outline() {
     let spikes: String = (0..400)
@@ -307,7 +307,7 @@ fn polygons_of_maps_are_found_by_name_with_holes_and_islands() {
     }
     let (area, components, _) = map(&text, &format!("{flat}, feature = \"Islands\"")).expect("islands");
     assert!((area - 2.0).abs() < 1e-9 && components == 2, "{area}, {components}");
-    // A road is there, but has no area; nor is it what one may have meant.
+    // A road exists, but has no area; nor is it offered as the name that may have been meant.
     let error = &map(&text, ", feature = \"Road\"").expect_err("a line")[0];
     assert_eq!((error.code, error.hint.as_deref()), ("map.unknown_feature", None));
     assert_eq!(error.message, "`Road` is nothing but points and lines");
@@ -315,7 +315,7 @@ fn polygons_of_maps_are_found_by_name_with_holes_and_islands() {
     assert_eq!((error.code, error.hint.as_deref()), ("map.unknown_feature", None));
     let error = &map(&text, ", feature = \"Island\"").expect_err("misspelt")[0];
     assert_eq!((error.code, error.hint.as_deref()), ("map.unknown_feature", Some("did you mean `Islands`?")));
-    // Both together share ground.
+    // The two overlap.
     assert_eq!(map(&text, flat).expect_err("they touch")[0].code, "shape.crossing");
     let (area, _, notices) = map(&text, &format!("{flat}, overlap = \"union\"")).expect("a union");
     assert!((area - 12.0).abs() < 1e-6, "{area}");
@@ -324,7 +324,7 @@ fn polygons_of_maps_are_found_by_name_with_holes_and_islands() {
 
 #[test]
 fn arcs_of_a_topology_are_shared_turned_and_decoded() {
-    // Two squares side by side share arc 0; positions are differences on a grid of 0.5.
+    // Two squares next to each other share arc 0; positions are differences on a grid of 0.5.
     let text = r#"{"type":"Topology","transform":{"scale":[0.5,0.5],"translate":[0,0]},
  "arcs":[[[4,0],[0,4]],[[4,4],[-4,0],[0,-4],[4,0]],[[4,0],[4,0],[0,4],[-4,0]]],
  "objects":{"two":{"type":"GeometryCollection","geometries":[
@@ -404,7 +404,7 @@ fn letters_have_their_counters() {
         assert_eq!(mesh.chambers().expect("chambers").len(), chambers, "{words}");
         let (filled, _) = text(words, ", filling = \"triangles\"").expect("filled");
         let edges = filled.edges(opruga_mesh::EdgeSet::All).len() as i64;
-        // V − E + T: one for every piece, less one for every hole.
+        // V − E + T: one for every piece, minus one for every hole.
         let euler = filled.nodes() as i64 - edges + filled.cells.len() as i64;
         assert_eq!(euler, 2 * chambers as i64 - rings as i64, "{words}");
         assert!((area(&filled) / area(&mesh) - 1.0).abs() < 1e-9);
@@ -416,7 +416,7 @@ fn letters_have_their_counters() {
         assert_eq!((error.code, error.line), ("shape.no_area", Some(10)), "{error}");
         assert!(error.message.starts_with("the text"), "{error}");
     }
-    // Letters that join, run from right to left, or are set onto others.
+    // Letters that join, run from right to left, or are placed on others.
     for script in ["سلام", "שלום", "नमस्ते", "e\\u0301"] {
         let error = &text(script, "").expect_err(script)[0];
         assert_eq!((error.code, error.line), ("font.script", Some(10)), "{error}");
@@ -449,7 +449,7 @@ fn contours_of_a_picture_follow_its_pixels() {
     assert_eq!((mesh.components().expect("closed").len(), mesh.chambers().expect("one").len()), (2, 1));
     let wanted = PI * (1.0 - 0.16);
     assert!((area(&mesh) / wanted - 1.0).abs() < 0.01, "{} and {wanted}", area(&mesh));
-    // What is bright: the hole, and all around.
+    // The bright part: the hole, and everything around.
     let (bright, _) = plane(&format!("{shape}, inside = \"bright\""), "a.png", &disc).expect("the rest");
     assert_eq!(bright.chambers().expect("two").len(), 2);
     // An upright picture: dark in the upper half only.
@@ -475,7 +475,7 @@ fn bad_pictures_are_refused() {
     let white = picture(9, 9, |_, _| 255);
     let error = &plane(shape, "a.png", &white).expect_err("nothing dark")[0];
     assert_eq!((error.code, &error.message[..]), ("shape.no_area", "no pixel is more dark than the threshold"));
-    // A header that promises 10¹⁰ pixels.
+    // A header that announces 10¹⁰ pixels.
     let mut huge = good.clone();
     huge[16..24].copy_from_slice(&[0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0]);
     assert!(plane(shape, "a.png", &huge).is_err());

@@ -10,7 +10,7 @@ fn said(text: &str) -> String {
 /// A command that adds a body at 2 s, in four lines.
 const LATE: &str = "[[command]]\ndo = \"add\"\nat = 2\nbody = { name = \"late\", shape = { kind = \"ring\", radius = 1, vertices = 4 }, mass = 1 }\n";
 
-/// A scene and what is said about it.
+/// Scenes with the texts of their errors.
 #[expect(clippy::too_many_lines, reason = "a table: one row for every text")]
 fn cases() -> Vec<(String, &'static str)> {
     let model = |fields: &str| format!("{HEAD}{}", BALL.replace("stiffness = 10", fields));
@@ -415,7 +415,7 @@ fn the_error_object() {
     );
 }
 
-/// What a scene places by numbers of any size is refused at its own line, with the value and what is allowed.
+/// Positions of excessive size are refused at their own line, with the value and what is allowed.
 #[test]
 fn placements_beyond_all_measure_name_their_field() {
     let with = |field: &str| format!("{HEAD}{BALL}{field}\n");

@@ -1,4 +1,4 @@
-//! Files that are never half written, checkpoints that are never half read, tables.
+//! Files that are never left half written, checkpoints that are never half read, and tables.
 
 use opruga_io::checkpoint::{Checkpoint, CheckpointError};
 use opruga_io::output_folder::{Existing, OutputFolder};
@@ -18,7 +18,7 @@ fn folder(name: &str) -> PathBuf {
     path
 }
 
-/// Row 83: wherever the disk fails, the old file is whole and nothing else is left.
+/// Row 83: wherever the disk fails, the old file stays intact and nothing else is left behind.
 #[test]
 fn a_failing_disk_leaves_the_old_file_whole() {
     let folder = folder("failing");
@@ -40,10 +40,10 @@ fn a_failing_disk_leaves_the_old_file_whole() {
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
-/// What is written at the end of a run.
+/// A writer of something at the end of a run.
 type Writer = Box<dyn Fn(&mut dyn Write) -> std::io::Result<()>>;
 
-/// Every writer of an output, with contents enough to be interrupted anywhere.
+/// All writers of outputs, with enough contents to be interrupted anywhere.
 fn writers() -> Vec<(&'static str, Writer)> {
     let mut table = NumberTable::new(vec!["time".into(), "kinetic".into()]);
     (0..8).for_each(|k| table.push(&[f64::from(k), 1.0 / f64::from(k + 1)]));
@@ -64,7 +64,7 @@ fn writers() -> Vec<(&'static str, Writer)> {
     ]
 }
 
-/// Every writer of meshes, of frames for other programs, and of motions.
+/// All writers of meshes, of frames for other programs, and of motions.
 fn exports() -> Vec<(String, Writer)> {
     let mesh = Mesh::<3>::grid([0.0; 3], [1.0; 3], [1; 3]).and_then(Mesh::into_simplices).expect("a cube");
     let mut all: Vec<(String, Writer)> = Vec::new();
@@ -95,7 +95,7 @@ fn exports() -> Vec<(String, Writer)> {
     all
 }
 
-/// Row 83 for exports: at every byte a full disk leaves the old file whole.
+/// Row 83 for exports: a full disk leaves the old file intact, at whatever byte it fails.
 #[test]
 fn a_full_disk_leaves_no_half_export() {
     let folder = folder("exports");
@@ -121,7 +121,7 @@ fn a_full_disk_leaves_no_half_export() {
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
-/// Rows 83 and 91: a drive that is full, broken, gone from the network or over its quota, at any byte of any output.
+/// Rows 83 and 91: a drive that is full, broken, disconnected or over its quota, at any byte of any output.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_drive_that_goes_away_at_any_byte_leaves_the_old_file_whole() {
@@ -143,12 +143,12 @@ fn a_drive_that_goes_away_at_any_byte_leaves_the_old_file_whole() {
                 let error = safe_write_through(&path, true, |file| Failing::with(k, number, file), &writer);
                 refused(error.expect_err("the drive is gone"), k, text);
             }
-            // Drives in a network often tell only when the bytes shall last.
+            // Network drives often report errors only when they are synced.
             let error = safe_write_through(&path, true, |file| Failing::at_sync(number, file), &writer);
             refused(error.expect_err("the drive is gone"), whole.len() as u64, text);
         }
         assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 1, "nothing is left aside");
-        // What was in memory is still there, and can be saved once the drive is back.
+        // The data are still in memory, and can be saved once the drive is back.
         safe_write(&path, true, &writer).expect("the drive is back");
         assert_eq!(std::fs::read(&path).expect("there"), whole);
         std::fs::remove_file(&path).expect("the file is there");
@@ -156,7 +156,7 @@ fn a_drive_that_goes_away_at_any_byte_leaves_the_old_file_whole() {
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
-/// A writer whose calls are interrupted by signals, and that takes one byte at a time, loses nothing.
+/// A writer whose calls are interrupted by signals, and which takes one byte at a time, loses nothing.
 #[test]
 fn interrupted_and_short_writes_lose_nothing() {
     struct Halting(std::fs::File, bool);
@@ -189,7 +189,7 @@ fn interrupted_and_short_writes_lose_nothing() {
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
-/// Row 79: what a killed run was writing is cleared away by the next one, and nothing else is.
+/// Row 79: the next run removes what a killed run was writing, and nothing else.
 #[test]
 fn what_a_killed_run_was_writing_is_cleared_away() {
     let folder = folder("killed");
@@ -215,7 +215,7 @@ fn what_a_killed_run_was_writing_is_cleared_away() {
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
-/// Row 82: the older checkpoint keeps its bytes under its second name whatever is written under the first.
+/// Row 82: the older checkpoint keeps its bytes under its second name, whatever is written under the first.
 #[test]
 fn a_second_name_keeps_the_older_file() {
     let folder = folder("second");
@@ -246,7 +246,7 @@ fn a_second_name_keeps_the_older_file() {
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
-/// Row 83: of files that belong together all change, or none does.
+/// Row 83: of files that belong together, either all change or none.
 #[test]
 fn files_that_belong_together_change_together() {
     let folder = folder("together");
@@ -281,7 +281,7 @@ fn files_that_belong_together_change_together() {
     together.remove("summary");
     together.finish().expect("named");
     assert_eq!(names(), [pair("state", b"new"), pair("table", b"new")]);
-    // A name that cannot be given: a folder has come to have it.
+    // A name that cannot be given, because a folder now has it.
     let mut together = out.together();
     together.write("table", |w| w.write_all(b"newest")).expect("written");
     together.write("state", |w| w.write_all(b"newest")).expect("written");
@@ -310,7 +310,7 @@ fn output_folders() {
     again.write("final.csv", false, |w| w.write_all(b"y")).expect("replaced");
     drop(again);
 
-    // Folders around it are made, but not within a file.
+    // Parent folders are made, but not within a file.
     drop(OutputFolder::open(&folder.join("around/out"), Existing::Refuse).expect("made"));
     assert_eq!(code(&out.join("final.csv/out"), Existing::Refuse), "write.folder");
     assert_eq!(code(&out.join("final.csv"), Existing::Refuse), "write.folder");
@@ -341,7 +341,7 @@ fn damaged_checkpoints() {
     newer[8] = 9;
     assert_eq!(Checkpoint::read(&newer), Err(CheckpointError::Version { found: 9 }));
     assert_eq!(Checkpoint::read(b"PK\x03\x04"), Err(CheckpointError::NotOne {}));
-    // A head that promises more than memory holds.
+    // A header that announces more than the memory can hold.
     let mut huge = bytes;
     huge[20..28].copy_from_slice(&u64::MAX.to_le_bytes());
     let sum = crc32fast::hash(&huge[..28]).to_le_bytes();

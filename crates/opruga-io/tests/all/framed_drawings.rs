@@ -1,4 +1,4 @@
-//! What lies around the shapes of a drawing: clip paths, style sheets, drawings inside of it; and shapes that draw nothing.
+//! Surroundings of the shapes of a drawing: clip paths, style sheets, inner drawings; and shapes that draw nothing.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 #![allow(clippy::result_large_err, reason = "errors are what is looked at")]
 
@@ -12,7 +12,7 @@ fn drawing(inside: &str) -> String {
     format!("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 100 100\">\n{inside}\n</svg>")
 }
 
-/// The area of a drawing 2 wide, and what is told.
+/// The area of a drawing 2 wide, and the codes of its notices.
 fn area_of(inside: &str) -> Result<(f64, Vec<&'static str>), SceneError> {
     let (mesh, notices) = svg(&drawing(inside)).map_err(|mut errors| errors.remove(0))?;
     Ok((signed_volume(&mesh.facets, &mesh.positions), codes(&notices)))
@@ -22,7 +22,7 @@ fn codes(notices: &[Notice]) -> Vec<&'static str> {
     notices.iter().map(|notice| notice.about.code).collect()
 }
 
-/// Width over height, and the area over both.
+/// Width over height, and the area divided by their product.
 fn box_of(mesh: &Mesh<2>) -> (f64, f64) {
     let side = |axis: usize| {
         let of = || mesh.positions.iter().map(|p| p[axis]);
@@ -32,7 +32,7 @@ fn box_of(mesh: &Mesh<2>) -> (f64, f64) {
     (w / h, signed_volume(&mesh.facets, &mesh.positions) / (w * h))
 }
 
-/// A clip path around the whole shape changes nothing; of one that cuts the share is told.
+/// A clip path around the whole shape changes nothing; for one that cuts, the fraction is reported.
 #[test]
 fn clip_paths_that_cut_nothing_off_are_taken() {
     let clip = |clip: &str| format!("<defs><clipPath id=\"c\">{clip}</clipPath></defs>");
@@ -80,7 +80,7 @@ fn clip_paths_that_cut_nothing_off_are_taken() {
     for (name, inside, message) in [
         ("half", format!("{}{clipped}", clip("<rect width=\"50\" height=\"100\"/>")), "cuts 50 % of what is drawn off"),
         ("all", format!("{}{clipped}", clip("")), "cuts 100 % of what is drawn off"),
-        // A ring of corners inside a star, one of which reaches into it.
+        // A ring of corners inside a star, one of whose tips reaches into the ring.
         (
             "a notch",
             format!("{}{clipped}", clip("<path d=\"M0 0H100V100H0ZM45 45H55V55H45Z\" clip-rule=\"evenodd\"/>")),
@@ -105,7 +105,7 @@ fn clip_paths_that_cut_nothing_off_are_taken() {
         assert!(error.code == "svg.unsupported" && error.message.contains(message), "{name}: {error}");
         assert!(error.value.is_some() && error.line == Some(2), "{name}: {error}");
     }
-    // The same hole is none by the non-zero rule, which holds where a clip path says nothing.
+    // By the non-zero rule, the default for clip paths, the same hole is none.
     assert!(area_of(&format!("{}{clipped}", clip(&format!("{wound}/>")))).is_ok());
     let nobody = area_of(&clipped).expect_err("no such clip path");
     assert_eq!(nobody.code, "svg.unknown_id");
@@ -121,13 +121,13 @@ fn clip_paths_that_cut_nothing_off_are_taken() {
     assert_eq!(chosen("<rect width=\"50\" height=\"50\"/>").expect_err("cut")[0].code, "svg.unsupported");
 }
 
-/// Rules of a sheet hold for the elements that they are about, and for no others; the strongest wins.
+/// Rules of a sheet apply to the matching elements and to no others; the strongest rule wins.
 #[test]
 fn style_sheets_are_followed_where_their_selectors_fit() {
     let square = "<rect x=\"60\" y=\"60\" width=\"20\" height=\"20\"/>";
     let other = "<rect class=\"b\" width=\"50\" height=\"9\"/>";
     for (inside, told) in [
-        // Nothing here has such a class; what has one is not drawn.
+        // No drawn element here has such a class.
         ("<style>.a { display: none; transform: scale(3) }</style>", &[][..]),
         ("<style>.a { transform: scale(3) }</style><defs><rect class=\"a\" width=\"9\" height=\"9\"/></defs>", &[]),
         (
@@ -144,10 +144,10 @@ fn style_sheets_are_followed_where_their_selectors_fit() {
         ("<style media=\"print\">.c { display: none }</style><style>.b { display: none }</style>", &["svg.hidden"]),
         ("<style><![CDATA[.b { display: none }]]></style>", &["svg.hidden"]),
         ("<style>.b { display: none; d: none /* } */ }</style>", &["svg.hidden"]),
-        // Of what is said behind other selectors only that it may be about the square is known.
+        // For rules with other selectors it is only known that they may apply to the square.
         ("<style>.b { display: none } rect:hover { fill: red }</style>", &["svg.hidden", "svg.style"]),
     ] {
-        // What the sheet hides is there where the sheet speaks of it.
+        // The element that the sheet hides exists in the cases in which the sheet names it.
         let hidden = if inside.contains(".b") { format!("<g>{other}</g>") } else { String::new() };
         let (area, codes) = area_of(&format!("{inside}{hidden}{square}")).unwrap_or_else(|e| panic!("{inside}: {e}"));
         assert!((area - 4.0).abs() < 1e-9 && codes == told, "{inside}: {area}, {codes:?}");
@@ -163,7 +163,7 @@ fn style_sheets_are_followed_where_their_selectors_fit() {
         let error = area_of(&format!("{inside}{other}{square}")).expect_err(inside);
         assert!(error.code == code && error.value.is_some() && error.line == Some(2), "{inside}: {error}");
     }
-    // Colours: by class, against an attribute, against a weaker rule before or behind, against one that is important.
+    // Colours: by class, against an attribute, against a weaker rule before or after, against an important one.
     let painted = |inside: &str| {
         let shape = "kind = \"svg\", file = \"a.svg\", spacing = 0.5, size = 4.0, overlap = \"union\", colours = true";
         let (mesh, notices) = plane(shape, "a.svg", drawing(inside).as_bytes()).unwrap_or_else(|e| panic!("{}", e[0]));
@@ -187,14 +187,14 @@ fn style_sheets_are_followed_where_their_selectors_fit() {
     let own = disc.replace("/>", " style=\"fill: lime; fill: red\"/>");
     assert_eq!(painted(&format!("<style>#i {{ fill: lime }}</style>{own}")), (red.clone(), vec![]));
     assert_eq!(painted(&format!("<style>#i {{ fill: lime !important }}</style>{own}")), (lime, vec![]));
-    // What the whole drawing says holds for what is in it.
+    // Properties of the whole drawing apply to its contents.
     let root = "<svg fill=\"red\"><circle r=\"3\"/></svg>";
     let shape = "kind = \"svg\", file = \"a.svg\", spacing = 0.5, size = 4.0, colours = true";
     let (mesh, _) = plane(shape, "a.svg", root.as_bytes()).unwrap_or_else(|e| panic!("{}", e[0]));
     assert_eq!(mesh.skin.as_ref().expect("areas").areas[0].colour, Some(red[0]));
 }
 
-/// By the standard a path without commands, or a polygon without points, draws nothing and is no error.
+/// By the standard, a path without commands or a polygon without points draws nothing and is not an error.
 #[test]
 fn shapes_that_draw_nothing_are_counted() {
     let square = "<rect width=\"20\" height=\"20\"/>";
@@ -207,15 +207,15 @@ fn shapes_that_draw_nothing_are_counted() {
     assert_eq!(area_of(empty).expect_err("nothing").code, "shape.no_area");
 }
 
-/// An <svg> or <symbol> inside the drawing, as wide and high as four tenths and two tenths of it: where a square of half its box comes to lie.
+/// An `<svg>` or `<symbol>` inside the drawing, four tenths of it wide and two tenths high: the position of a square of half its box.
 #[test]
 fn drawings_inside_a_drawing_have_their_place_and_scale() {
-    // A frame around the whole canvas, so that sizes can be seen: the square beside it is measured by its area and its middle.
+    // A frame around the whole canvas makes sizes visible: the square beside it is measured by its area and its centre.
     let measured = |inside: &str| -> Result<[f64; 3], SceneError> {
         let text = drawing(&format!("<path d=\"M0 0H100V100H0Z\"/>{inside}"));
         let shape = "kind = \"svg\", file = \"a.svg\", spacing = 0.2, size = 100.0, overlap = \"even_odd\"";
         let (mesh, _) = plane(shape, "a.svg", text.as_bytes()).map_err(|mut errors| errors.remove(0))?;
-        // The hole has the nodes that do not lie on the frame.
+        // The hole has the nodes that are not on the frame.
         let hole: Vec<[f64; 2]> = mesh
             .positions
             .iter()
@@ -273,7 +273,7 @@ fn drawings_inside_a_drawing_have_their_place_and_scale() {
         let near = found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-6);
         assert!(near, "{name}: {found:?}, not {wanted:?}");
     }
-    // Stretched one way.
+    // Stretched in one direction.
     let text = drawing(
         "<svg width=\"40\" height=\"20\" viewBox=\"0 0 10 10\" preserveAspectRatio=\"none\"><circle cx=\"5\" cy=\"5\" r=\"4\"/></svg>",
     );
@@ -308,7 +308,7 @@ fn drawings_inside_a_drawing_have_their_place_and_scale() {
     }
     let unknown = "<svg><svg viewBox=\"0 0 1 1\"><circle r=\"1\"/></svg></svg>";
     assert_eq!(common::shapes::svg(unknown).expect_err("no size")[0].code, "svg.unsupported");
-    // One without size draws nothing.
+    // One of zero size draws nothing.
     let none = format!("<svg width=\"0\">{square}</svg><rect width=\"9\" height=\"9\"/>");
     assert_eq!(area_of(&none).expect("a square").1, ["svg.hidden"]);
 }

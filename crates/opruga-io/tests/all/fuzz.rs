@@ -1,4 +1,4 @@
-//! Random bytes and mutated scenes: read or refused, never a panic.
+//! Random bytes and mutated scenes are read or refused, and never cause a panic.
 
 use crate::common;
 use common::*;

@@ -1,4 +1,4 @@
-//! Mesh files that contradict themselves: each is refused with its file, its line and the value that cannot be.
+//! Mesh files that contradict themselves: each is refused with its file, its line and the impossible value.
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 use opruga_io::SceneError;
@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 type Outcome = Result<(Mesh<3>, Vec<SceneError>), SceneError>;
 
-/// The body in a file with these contents, which needs no other one.
+/// The body in a file with these contents, which needs no other file.
 fn body(name: &str, text: &str) -> Outcome {
     let mut open = |_: &str| -> Result<Arc<[u8]>, SceneError> { panic!("no other file") };
     read(name, text.as_bytes(), &mut open)?.assemble(Mending::default())
@@ -23,12 +23,12 @@ const MEDIT: &str = "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 0\n
 const NODE: &str = "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n";
 const ELE: &str = "2 4 0\n1 1 2 3 4\n2 2 3 4 5\n";
 
-/// Values of elements in a file of Gmsh.
+/// Values of elements in a Gmsh file.
 fn element_data(first: &str, second: &str) -> String {
     format!("$ElementData\n1\n\"E\"\n1\n0\n3\n0\n1\n2\n{first}\n{second}\n$EndElementData\n")
 }
 
-/// What a file says twice, in parts of numbers, or in numbers that its types cannot hold.
+/// Contradictions within a file: in repeated parts, in parts of numbers, or in numbers that their types cannot represent.
 #[test]
 #[expect(clippy::too_many_lines, reason = "a table: one row for every contradiction")]
 fn files_that_contradict_themselves_are_refused_with_their_line_and_value() {
@@ -53,7 +53,7 @@ fn files_that_contradict_themselves_are_refused_with_their_line_and_value() {
         let (mesh, notices) = body(name, file).unwrap_or_else(|e| panic!("{e}"));
         let volume = mesh.measure().unwrap().value();
         assert!((volume - 0.5).abs() < 1e-12, "{volume}");
-        // Later steps do not take the place of the first in silence.
+        // Later steps do not silently replace the first.
         let told: Vec<&str> = notices.iter().map(|notice| &notice.message[..]).collect();
         assert_eq!(told, if file == steps { vec!["1 later step is left out of the values `E`"] } else { vec![] });
         assert!(file != steps || mesh.cell_values["E"] == [5.0, 6.0]);
@@ -146,7 +146,7 @@ fn files_that_contradict_themselves_are_refused_with_their_line_and_value() {
     }
 }
 
-/// Whichever of TetGen's files is named, an error points at the one where it stands.
+/// Whichever of the TetGen files is named, an error points at the file in which it is.
 #[test]
 fn errors_of_tetgen_point_at_the_file_of_the_nodes_or_of_the_elements() {
     for (node, ele, code, file, line, value) in [
@@ -169,7 +169,7 @@ fn errors_of_tetgen_point_at_the_file_of_the_nodes_or_of_the_elements() {
     }
 }
 
-/// A text without a mark at its end that stops within its last line is refused, however whole the rest of the number looks.
+/// A text without an end mark that stops within its last line is refused, even if the truncated number looks complete.
 #[test]
 fn texts_cut_off_within_their_last_number_are_refused_with_its_line() {
     let mfem = MFEM.replace("1 1 1\n", "1 1 1.75\n");
@@ -177,7 +177,7 @@ fn texts_cut_off_within_their_last_number_are_refused_with_its_line() {
     let attributes =
         ELE.replace("2 4 0", "2 4 1").replace("1 2 3 4\n", "1 2 3 4 7.5\n").replace("3 4 5\n", "3 4 5 125.5\n");
     let coordinates = NODE.replace("1 1 1\n", "1 1 1.75\n");
-    // What is read, TetGen's other file, and the number that is cut.
+    // The file, the other TetGen file, and the number that is truncated.
     for (name, whole, other, number) in [
         ("a.mesh", &mfem[..], "", "1.75"),
         ("a.mfem", &mfem, "", "1.75"),
@@ -208,7 +208,7 @@ fn texts_cut_off_within_their_last_number_are_refused_with_its_line() {
             assert!(hint.starts_with("end the last line with a line break"), "{hint}");
         }
     }
-    // Marks tell that a file is whole, and so does a comment behind the last number.
+    // Marks show that a file is complete, and so does a comment after the last number.
     for (name, text) in [
         ("a.mesh", MFEM.replace("v1.0", "v1.3") + "mfem_mesh_end"),
         ("a.mesh", MFEM.trim_end().to_string() + " # the last"),
@@ -220,7 +220,7 @@ fn texts_cut_off_within_their_last_number_are_refused_with_its_line() {
     }
 }
 
-/// The lowest and the highest number at the head of nodes and elements are those that are there; numbers between may be left out.
+/// The lowest and the highest number announced for nodes and elements must be those that occur; numbers between may be missing.
 #[test]
 fn promised_numbers_of_gmsh_are_those_that_are_there() {
     let error = body("a.msh", include_str!("../data/faults/largest-tag.msh")).expect_err("100 is not there");

@@ -9,7 +9,7 @@ use opruga_mesh::signed_volume;
 const COUNTRIES: &[u8] = include_bytes!("../../../../scenes/shapes/countries-110m.json");
 const LAND: &[u8] = include_bytes!("../../../../scenes/shapes/land-110m.json");
 
-/// Area, closed parts of the outline, and what is told.
+/// Area, closed parts of the outline, and the codes of the notices.
 fn read(map: &[u8], more: &str) -> Result<(f64, usize, Vec<&'static str>), Vec<SceneError>> {
     let (mesh, notices) = plane(&format!("kind = \"map\", file = \"a.json\", {more}"), "a.json", map)?;
     let parts = mesh.components().expect("closed").len();
@@ -53,7 +53,7 @@ fn countries_over_the_antimeridian_are_in_one_piece() {
         let (mesh, notices) = plane(&format!("kind = \"map\", file = \"a.json\", {shape}"), "a.json", COUNTRIES)
             .unwrap_or_else(|e| panic!("{}", e[0]));
         assert!(!notices.is_empty() && notices.iter().all(|n| n.about.code == told), "{name}: {}", notices[0]);
-        // In degrees of the globe Russia is 171° wide and 37° high, not 360° wide.
+        // In degrees of the globe, Russia is 171° wide and 37° high, not 360° wide.
         let extent = |d: usize| {
             let all = mesh.positions.iter().map(|p| p[d]);
             all.clone().fold(f64::NEG_INFINITY, f64::max) - all.fold(f64::INFINITY, f64::min)
@@ -97,11 +97,11 @@ fn a_polygon_cut_at_the_antimeridian_is_one() {
     let (area, parts, told) = read(collection(&[cut]).as_bytes(), SHAPE).expect("one rectangle");
     assert!((area - 32.0).abs() < 1e-6 && parts == 1, "{area}, {parts}");
     assert_eq!(told, ["map.antimeridian", "map.antimeridian"]);
-    // The same as one ring that steps over it.
+    // The same polygon as one ring that crosses it.
     let over = polygon("[[176,-2],[-176,-2],[-176,2],[176,2],[176,-2]]");
     let (area, parts, told) = read(collection(&[&over]).as_bytes(), SHAPE).expect("one rectangle");
     assert!((area - 32.0).abs() < 1e-6 && parts == 1 && told == ["map.antimeridian"], "{area}, {parts}, {told:?}");
-    // Coordinates that are taken as they are mean no globe.
+    // Coordinates that are taken as they are do not mean a globe.
     let flat = read(collection(&[cut]).as_bytes(), "spacing = 2.0, size = 360.0, projection = \"none\"");
     assert_eq!(flat.map(|(_, parts, told)| (parts, told)), Ok((2, vec![])));
 }

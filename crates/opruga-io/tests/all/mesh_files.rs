@@ -1,4 +1,4 @@
-//! Mesh files of other programs: what good ones hold, and that bad ones are refused with their place.
+//! Mesh files of other programs: the contents of good ones, and the locations of errors in bad ones.
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 use opruga_io::SceneError;
@@ -35,7 +35,7 @@ fn close(computed: f64, expected: f64) {
     assert!((computed - expected).abs() <= 1e-9 * (1.0 + expected.abs()), "{computed} is not {expected}");
 }
 
-/// Nodes, cells and volume of files of space.
+/// Nodes, cells and volume of files with meshes in space.
 #[test]
 fn files_of_space_hold_what_their_authors_meshed() {
     for (name, nodes, cells, volume) in [
@@ -62,7 +62,7 @@ fn files_of_space_hold_what_their_authors_meshed() {
         close(mesh.measure().unwrap().value(), volume);
         close(mesh.enclosed_volume(), volume);
     }
-    // One sphere of radius 1 with 30 tetrahedra: the curved one of second order is much nearer to 4π/3.
+    // One sphere of radius 1 with 30 tetrahedra: the curved one of second order is much closer to 4π/3.
     let exact = 4.0 / 3.0 * std::f64::consts::PI;
     let volume = |name| good::<3>(name).measure().unwrap().value() / exact;
     assert!(volume("polyfem/P1.msh") < 0.7 && (volume("polyfem/P2.msh") - 1.0).abs() < 0.02);
@@ -83,7 +83,7 @@ fn files_of_the_plane_hold_what_their_authors_meshed() {
     }
 }
 
-/// One cube in four files, another in four: the same numbers, whatever version and however they are coded.
+/// One cube in four files, another in four: the same numbers in all versions and encodings.
 #[test]
 fn versions_and_codings_give_the_same_mesh() {
     let same = |names: [&str; 4]| {
@@ -100,7 +100,7 @@ fn versions_and_codings_give_the_same_mesh() {
     assert_eq!(cube.positions[0], [-0.5, -0.5, 0.0], "nodes in the order of the file");
     assert_eq!(cube.cells.tetrahedra[0], [9, 8, 11, 10]);
     let names = ["polyfem/22_ascii.msh", "polyfem/22_binary.msh", "polyfem/41_ascii.msh", "polyfem/41_binary.msh"];
-    // Version 4.1 lists nodes by entity, so their order is another one.
+    // Version 4.1 lists nodes by entity, so their order differs.
     let [a, b, c, d] = names.map(good::<3>);
     assert_eq!((&a, &c), (&b, &d));
     for mesh in [a, c] {
@@ -123,7 +123,7 @@ fn named_parts_become_groups_and_scalars_values() {
     assert_eq!(square.cell_groups["surface 2"].len() + square.cell_groups["surface 1"].len(), 16);
 }
 
-/// A plane file of Gmsh with what a writer may put into it.
+/// A plane Gmsh file with many optional parts.
 const RICH: &str = "$MeshFormat\r\n2.2 0 8\r\n$EndMeshFormat\r\n$Comments\r\nby hand\r\n$EndComments\r\n$PhysicalNames\n2\n1 7 \"the floor\"\n2 3 \"steel\"\n$EndPhysicalNames\n$Nodes\n5\n1000000000 0 0 0\n7 1 0 0\n3 1 1 0\n44 0 1 0\n5 0.5 -0.25 0\n$EndNodes\n$Elements\n4\n9 15 2 0 1 7\n1 1 2 7 1 1000000000 7\n2 2 2 3 1 1000000000 7 3\n8 2 2 0 1 1000000000 3 44\n$EndElements\n$ElementData\n1\n\"density\"\n1\n0.0\n3\n0\n1\n2\n8 2.5\n2 -1e3\n$EndElementData\n";
 
 #[test]
@@ -155,7 +155,7 @@ fn the_bytes_of_other_processors_are_read() {
     close(mesh.measure().unwrap().value(), 1.0);
 }
 
-/// Version 4.1 may give nodes coordinates on their curve or surface; physical groups come by entity.
+/// Version 4.1 may give the coordinates of nodes on their curve or surface; physical groups belong to entities.
 #[test]
 fn parametric_nodes_are_read() {
     let file = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 4 \"plate\"\n$EndPhysicalNames\n$Entities\n0 1 1 0\n1 0 0 0 1 0 0 1 -9 0\n1 0 0 0 1 1 0 1 4 1 1\n$EndEntities\n$Nodes\n2 3 1 3\n1 1 1 2\n1\n2\n0 0 0 0\n1 0 0 1\n2 1 1 1\n3\n0 1 0 0.25 0.5\n$EndNodes\n$Elements\n2 2 1 2\n1 1 1 1\n1 1 2\n2 1 2 1\n2 1 2 3\n$EndElements\n";
@@ -188,13 +188,13 @@ fn malformed_files_of_others_are_refused_with_their_line() {
         let error = body::<3>(name, &bytes(name), Mending::default()).unwrap_err();
         assert_eq!((error.code, error.line), (code, place), "{error}");
     }
-    // What is curved is refused with what can be read instead.
+    // A curved mesh is refused, with what can be read instead.
     let curved = body::<3>("mfem/mobius-strip.mesh", &bytes("mfem/mobius-strip.mesh"), Mending::default()).unwrap_err();
     assert_eq!(curved.allowed.as_deref(), Some("`vertices` with coordinates"));
     assert!(curved.hint.is_some_and(|hint| hint.contains("Gmsh and VTK")));
 }
 
-/// Every beginning of every good Gmsh file is refused, with a line of text or a byte of binary files.
+/// Every truncation of every good Gmsh file is refused, with a line of text files or a byte of binary files.
 #[test]
 fn every_truncation_of_good_gmsh_files_is_refused_with_its_place() {
     let mut files: Vec<(String, Vec<u8>)> =
@@ -212,7 +212,7 @@ fn every_truncation_of_good_gmsh_files_is_refused_with_its_place() {
     for (name, bytes) in files {
         let mut refuse = |_: &str| -> Result<Arc<[u8]>, SceneError> { panic!("no other file") };
         assert!(read(&name, &bytes, &mut refuse).is_ok(), "{name}");
-        // What follows the last word is an empty line.
+        // After the last word there is only an empty line.
         for end in 0..bytes.trim_ascii_end().len() {
             let error = match read(&name, &bytes[..end], &mut refuse) {
                 Err(error) => error,
@@ -225,7 +225,7 @@ fn every_truncation_of_good_gmsh_files_is_refused_with_its_place() {
     }
 }
 
-/// Files of other formats that are cut off are refused too, but where the mesh is whole.
+/// Truncated files of other formats are refused as well, unless the mesh is complete.
 #[test]
 fn truncations_of_other_files_are_refused_or_whole() {
     for name in [
@@ -242,7 +242,7 @@ fn truncations_of_other_files_are_refused_or_whole() {
             match body::<3>(name, &bytes[..end], Mending::default()) {
                 Ok((mesh, _)) => {
                     assert_eq!((&mesh.cells, &mesh.facets), (&whole.cells, &whole.facets), "{name}, {end} bytes");
-                    // A last number that has lost digits cannot be told from another one.
+                    // A last number that has lost digits cannot be distinguished from another one.
                     let all = mesh.positions.iter().zip(&whole.positions);
                     assert!(all.filter(|(p, q)| p != q).count() <= 1, "{name}, {end} bytes");
                 }
@@ -300,7 +300,7 @@ fn what_no_body_can_be_made_of_is_refused_with_its_line() {
         assert_eq!((error.code, error.line, error.value.as_deref()), (code, Some(line), Some(value)), "{error}");
         assert!(error.allowed.is_some() || error.hint.is_some(), "{error}");
     }
-    // Two elements of one number, and numbers beyond the promised ones.
+    // Two elements with the same number, and numbers beyond the announced ones.
     let modern = |nodes: &str, elements: &str| {
         format!(
             "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 4 {nodes}\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n$EndNodes\n\
@@ -335,7 +335,7 @@ fn inverted_cells_are_turned_on_request_and_counted() {
     let (mesh, notices) = body::<2>("a.msh", file.as_bytes(), turn).unwrap();
     assert_eq!((notices[0].code, notices[0].value.as_deref()), ("mesh.flipped", Some("1")));
     assert_eq!(mesh.check(), []);
-    // A quadratic triangle that folds at a corner stays refused: turning it would not help.
+    // A quadratic triangle that folds at a corner stays refused: flipping it would not help.
     let file = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0.9 0 0\n5 0.5 0.5 0\n6 0 0.5 0\n$EndNodes\n$Elements\n1\n1 9 0 1 2 3 4 5 6\n$EndElements\n";
     let error = body::<2>("a.msh", file.as_bytes(), turn).unwrap_err();
     assert_eq!(error.code, "mesh.inverted");

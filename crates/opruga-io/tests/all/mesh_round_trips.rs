@@ -1,4 +1,4 @@
-//! Meshes that are written and read again, in every format; the codings of VTK XML; closed surfaces filled by a line of a scene.
+//! Meshes that are written and read again, in every format; the encodings of VTK XML; closed surfaces filled by a line of a scene.
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 use crate::common;
@@ -29,7 +29,7 @@ fn again<const D: usize>(mesh: &Mesh<D>, ending: &str) -> Mesh<D> {
     mesh
 }
 
-/// A box of all that one mesh of space can hold, with groups and values.
+/// A box with everything that a mesh in space can contain, with groups and values.
 fn solid() -> Mesh<3> {
     let mut mesh = Mesh::grid([0.1, -0.2, 1.0 / 3.0], [3.0, 1.0, 2.0], [3, 1, 2]).unwrap();
     mesh.cell_groups.insert("hard rubber".into(), vec![0, 2, 5]);
@@ -77,7 +77,7 @@ fn plate() -> Mesh<2> {
 fn gmsh_keeps_cells_groups_and_values() {
     let solid = solid();
     let mut expected = solid.clone();
-    // Groups of cells bring the groups of their nodes along.
+    // Groups of cells come with the groups of their nodes.
     for (name, cells) in &solid.cell_groups {
         let mut nodes: Vec<u32> = cells.iter().flat_map(|cell| solid.cells.hexahedra[*cell as usize]).collect();
         nodes.sort_unstable();
@@ -109,7 +109,7 @@ fn vtk_keeps_cells_and_values() {
     }
 }
 
-/// Values that some cells do not have are kept where the format knows gaps, and told of elsewhere.
+/// Missing values of some cells are kept in formats that support them, and reported in others.
 #[test]
 fn gaps_in_values_are_kept_or_told_of() {
     let mut mesh = solid().into_simplices().unwrap();
@@ -150,7 +150,7 @@ fn formats_of_straight_cells_keep_them_and_refuse_others() {
     assert!(write(&Mesh::icosphere(1.0, 1).unwrap(), "msh").is_err(), "a surface has no cells");
 }
 
-/// One tetrahedron with a value, as VTK XML: the arrays come from the caller.
+/// One tetrahedron with a value, as VTK XML; the caller gives the arrays.
 fn vtu(attributes: &str, arrays: [&str; 5], appended: &str) -> String {
     let [points, nodes, offsets, types, values] = arrays;
     format!(
@@ -212,7 +212,7 @@ fn compressed(bytes: &[u8]) -> Vec<u8> {
         data.extend(packed);
     }
     let head: Vec<u8> = head.iter().flat_map(|x| x.to_le_bytes()).collect();
-    // Header and data are separate texts of letters, which is seen where the first is filled up.
+    // Header and data are encoded separately, as the padding of the first shows.
     [head, data].concat()
 }
 
@@ -241,7 +241,7 @@ fn all_codings_of_vtk_xml_give_the_same_mesh() {
             [length, bytes].concat()
         })
     };
-    // In one text of letters, in two, highest byte first, with 8 bytes of header, compressed.
+    // Encoded together, separately, big-endian, with a header of 8 bytes, compressed.
     let together = with_length(false).map(|bytes| base64(&bytes));
     let apart = with_length(false).map(|bytes| base64(&bytes[..4]) + &base64(&bytes[4..]));
     let big = with_length(true).map(|bytes| base64(&bytes));
@@ -261,7 +261,7 @@ fn all_codings_of_vtk_xml_give_the_same_mesh() {
         let (mesh, _) = one(file.as_bytes()).unwrap_or_else(|e| panic!("{what}: {e}"));
         assert_eq!(mesh, expected, "{what}");
     }
-    // At the end of the file: letters, and raw bytes.
+    // At the end of the file: base64, and raw bytes.
     let offsets = |parts: &[Vec<u8>]| {
         let mut at = 0;
         let texts: Vec<String> = parts
@@ -318,7 +318,7 @@ fn what_is_wrong_with_vtk_xml_is_told_with_its_line() {
     }
 }
 
-/// A scene whose body has this shape; files lie in memory.
+/// A scene whose body has this shape; the files are in memory.
 fn scene_of(dimension: usize, shape: &str, files: &[(&str, Vec<u8>)]) -> Result<AnyBlueprint, Vec<SceneError>> {
     let head = HEAD.replace("dimension = 2", &format!("dimension = {dimension}"));
     let text = format!("{head}[[body]]\nname = \"it\"\nmass = 1\nshape = {{ {shape} }}\n");
@@ -340,7 +340,7 @@ fn one_line_makes_a_body_of_a_mesh_file_or_of_a_surface() {
     let mesh = space(scene_of(3, "kind = \"mesh\", file = \"a.msh\"", &[("a.msh", file.clone())]).unwrap());
     assert_eq!((mesh.positions, mesh.cells), (solid().positions, solid().cells));
 
-    // TetGen's other file is found beside the one that is named.
+    // TetGen's other file is found next to the one that is named.
     let simplices = solid().into_simplices().unwrap();
     let both: Vec<(&str, Vec<u8>)> = write(&simplices, "ele")
         .unwrap()
@@ -358,7 +358,7 @@ fn one_line_makes_a_body_of_a_mesh_file_or_of_a_surface() {
     let errors = scene_of(2, "kind = \"mesh\", file = \"a.msh\"", &[("a.msh", file)]).unwrap_err();
     assert_eq!((errors[0].code, errors[0].file.as_str()), ("mesh.dimension", "a.msh"), "{}", errors[0]);
 
-    // The triangles of a mesh file are a surface, which tetrahedra fill.
+    // The triangles of a mesh file form a surface, which tetrahedra fill.
     let surface =
         std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/meshes/mujoco/cube_41_binary_surf_gmshApp.msh"));
     let files = [("cube.msh", surface.unwrap())];

@@ -1,4 +1,4 @@
-//! Values of nodes in files of other programs: every format keeps them with their nodes, or says where they are wrong.
+//! Values of nodes in files of other programs: every format keeps them with their nodes, or reports the location of errors.
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 use opruga_io::SceneError;
@@ -11,7 +11,7 @@ fn body<const D: usize>(name: &str, bytes: &[u8]) -> Result<(Mesh<D>, Vec<SceneE
     read(name, bytes, &mut open)?.assemble(Mending { leave_out_unreferenced: true, ..Mending::default() })
 }
 
-/// A triangle and a node of no cell, whose numbers are in no order, in Gmsh 2.2; behind them values of nodes.
+/// A triangle and a node without cells, with unordered numbers, in Gmsh 2.2, followed by values of nodes.
 fn gmsh(values: &str) -> String {
     format!(
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n70 0 0 0\n3 5 5 0\n44 1 0 0\n5 0 1 0\n$EndNodes\n\
@@ -30,12 +30,12 @@ fn gmsh_keeps_values_with_their_nodes_whatever_the_numbers() {
     let text = gmsh(&(node_data("wind speed", 3, &rows) + &node_data("T", 1, &["44 20", "70 10"])));
     let (mesh, notices) = body::<2>("a.msh", text.as_bytes()).unwrap();
     assert_eq!(notices.iter().map(|n| n.code).collect::<Vec<_>>(), ["mesh.unreferenced"]);
-    // The node that no cell names goes, and its values with it.
+    // The node that no cell uses is dropped with its values.
     let wind = &mesh.node_values["wind speed"];
     assert_eq!((wind.components, &wind.values[..]), (3, &[1.0, 2.0, 3.0, -1.0, -2e-3, 4.0, 0.1, 0.2, 0.3][..]));
     let warm = &mesh.node_values["T"].values;
     assert!(warm[..2] == [10.0, 20.0] && warm[2].is_nan(), "a node without a value has none: {warm:?}");
-    // Tensors have no use, and later steps neither.
+    // Tensors are not used, nor are later steps.
     let text = gmsh(
         &(node_data("s", 9, &["5 1 2 3 4 5 6 7 8 9"]) + &node_data("T", 1, &["5 1"]) + &node_data("T", 1, &["5 2"])),
     );
@@ -89,7 +89,7 @@ fn values_of_nodes_that_gmsh_files_get_wrong_are_refused_with_their_line() {
     }
 }
 
-/// A tetrahedron in VTK, with what follows the types of cells.
+/// A tetrahedron in VTK, with further text after the types of cells.
 fn vtk(more: &str) -> String {
     format!(
         "# vtk DataFile Version 3.0\nmade by hand\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n\
@@ -145,7 +145,7 @@ const TWELVE: &str = "1 2 3 4 5 6 7 8 9 10 11 12";
 
 #[test]
 fn vtk_xml_keeps_values_of_points() {
-    // In two pieces, of which the first lacks one quantity and the second another; texts and tensors have no place.
+    // In two pieces: the first lacks one quantity and the second another; texts and tensors cannot be stored.
     let words = "<DataArray type=\"String\" Name=\"names\" NumberOfComponents=\"1\">65 0</DataArray>";
     let tensors = array("stress", "9", &"0 ".repeat(36));
     let first = piece(&(array("v", "3", TWELVE) + words + &tensors));
@@ -171,7 +171,7 @@ fn vtk_xml_keeps_values_of_points() {
     }
 }
 
-/// Names of nodes that few nodes have a value for are counted as those of cells are.
+/// Names of values that few nodes have are counted like those of cells.
 #[test]
 fn values_of_nodes_have_the_budget_of_values() {
     let nodes: String = (0..5_000).map(|k| format!("{} {} {} 0\n", k + 3, k % 71, k / 71 + 1)).collect();

@@ -1,4 +1,4 @@
-//! Surfaces that are read though something about them is odd, and those of other projects that are shipped.
+//! Unusual surfaces that are accepted, and the shipped surfaces of other projects.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use crate::common;
@@ -7,7 +7,7 @@ use opruga_io::SceneError;
 
 const SQUARES: [[usize; 4]; 6] = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];
 
-/// A cube with its lowest corner at a place: vertices as OBJ.
+/// A cube with its lowest corner at a given position: vertices as OBJ.
 fn vertices(low: f64, side: f64) -> String {
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
         .map(|corner| corner.map(|x| (low + side * f64::from(x)).to_string()).join(" "))
@@ -29,8 +29,8 @@ fn refused(text: &str, more: &str) -> SceneError {
     space(&shape, &[("a.obj", text.as_bytes())]).expect_err("refused").remove(0)
 }
 
-/// Torture list, row 31: gas would leak from one cube into the other.
-/// A `\\` at the end of a line lets a statement go on, with either line end; comments end with their line.
+/// Torture list, row 31: gas would leak from one cube into the other. A `\\` at the end of a line continues a statement, with either line end;
+/// comments end with their line.
 #[test]
 fn statements_of_obj_go_on_in_the_next_line() {
     let text = format!("{}{}", vertices(0.0, 1.0), faces(0));
@@ -48,14 +48,14 @@ fn statements_of_obj_go_on_in_the_next_line() {
         assert_ne!(changed, text, "{from}");
         assert_eq!(surface("a.obj", changed.as_bytes()).unwrap_or_else(|e| panic!("{to}: {}", e[0])).0, whole, "{to}");
     }
-    // Errors stand where their word does.
+    // Errors are located at their word.
     let error = refused(&text.replace("f 1 4 3 2\n", "f 1 4 \\\n x 2\n"), "");
     assert_eq!((error.code, error.line, error.value.as_deref()), ("obj.syntax", Some(10), Some("x")));
     let error = refused(&text.replace("f 1 4 3 2\n", "f 1 4 \\ 3 2\n"), "");
     assert_eq!((error.code, error.value.as_deref()), ("obj.syntax", Some("\\")));
 }
 
-/// Keywords of STL in capitals, and bytes behind the length that a GLB says it has.
+/// Keywords of STL in capitals, and bytes beyond the length that a GLB declares.
 #[test]
 fn words_of_stl_are_read_in_any_case_and_a_glb_is_as_long_as_it_says() {
     let text = common::cube::stl_text();
@@ -88,7 +88,7 @@ fn cubes_that_share_a_vertex_are_refused_with_its_place() {
     assert_eq!(told("a.obj", &apart), []);
 }
 
-/// Row 22: corners may name what comes later, but not what never comes.
+/// Row 22: corners may name something that comes later, but not something that never comes.
 #[test]
 fn faces_name_texture_places_and_normals_that_are_there() {
     let face =
@@ -139,7 +139,7 @@ fn normals_of_stl_that_say_otherwise_are_counted() {
     };
     assert_eq!(told("a.stl", &text("0 0 0")), []);
     assert_eq!(told("a.stl", &text("nan nan nan")), [("stl.normal", Some("4".into()))]);
-    // Three sides face down the axes, the fourth along (1, 1, 1).
+    // Three sides face in the negative directions of the axes, the fourth along (1, 1, 1).
     assert_eq!(told("a.stl", &text("1 1 1")), [("stl.normal", Some("3".into()))]);
     assert_eq!(told("a.stl", &text("-1 -1 -1")), [("stl.normal", Some("1".into()))]);
     let mut bytes = vec![0u8; 80];
@@ -162,7 +162,7 @@ fn surfaces_that_are_shipped_have_their_volumes() {
     let cube_5 = include_bytes!("../../../../scenes/shapes/cube_5.obj");
     let sphere = include_bytes!("../../../../scenes/shapes/sphere.obj");
     let torus = include_bytes!("../../../../scenes/shapes/torus.obj");
-    // Balls and tubes of straight edges enclose a little less than 4/3 π and 2 π² R r² = π² / 2.
+    // Balls and tubes with straight edges enclose a little less than 4/3 π and 2 π² R r² = π² / 2.
     let (ball, tube) = (4.188_790_204_786_391, 4.934_802_200_544_679);
     for (name, bytes, nodes, volume, near, euler) in [
         ("cube", &cube[..], 8, 1.0, 1e-12, 2),
@@ -179,7 +179,7 @@ fn surfaces_that_are_shipped_have_their_volumes() {
     }
 }
 
-/// The lengths that the README shows, and coarser ones: the shape stays, or an error says that it would not.
+/// The lengths in the README, and coarser ones: the shape is preserved, or an error says that it would not be.
 #[test]
 fn spot_is_remeshed_where_the_length_keeps_its_shape() {
     let spot = include_bytes!("../../../../scenes/shapes/spot.obj");
@@ -195,8 +195,8 @@ fn spot_is_remeshed_where_the_length_keeps_its_shape() {
     assert!(error.hint.as_deref().is_some_and(|hint| hint.contains("remesh")), "{error}");
 }
 
-/// Tetrahedra cut sharp edges off: what that costs is told with figures and a spacing that does not, and refused where it is much; of surfaces from
-/// files and of those that are made.
+/// Tetrahedra cut off sharp edges. The loss is reported with numbers and with a spacing that avoids it, and is refused if it is large; this holds for
+/// surfaces from files and for generated ones.
 #[test]
 fn what_tetrahedra_lose_of_the_volume_is_told_and_refused_where_it_is_much() {
     let (file, cube) = ("kind = \"surface\", file = \"a.obj\"", format!("{}{}", vertices(0.0, 1.0), faces(0)));

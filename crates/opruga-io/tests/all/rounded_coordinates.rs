@@ -1,11 +1,11 @@
-//! Coordinates that files have rounded away are told or refused with their figure, in every format with numbers of 4 bytes.
+//! The rounding of coordinates in files is reported or refused with a number, in every format with numbers of 4 bytes.
 
 use crate::common;
 use common::cube::{CORNERS, base64, gltf, stl_bytes, triangles};
 use common::shapes::{space, surface};
 use opruga_io::SceneError;
 
-/// What is said of a cube of side 2 moved so far from the origin: the code of an error or of a warning, and its value.
+/// The message about a cube of side 2 at this distance from the origin: the code of an error or of a warning, and its value.
 type Told = Option<(bool, String)>;
 
 fn told<T>(read: Result<(T, Vec<opruga_io::Notice>), Vec<SceneError>>) -> Told {
@@ -111,7 +111,7 @@ fn a_cube_that_the_file_has_made_smaller_is_refused() {
     let errors = surface("a.stl", include_bytes!("../data/faults/stl-f32-offset-1e7.stl")).expect_err("another cube");
     assert_eq!(errors[0].code, "mesh.rounded");
     assert!(errors[0].message.contains("0.5 m") && errors[0].message.contains("4 bytes"), "{}", errors[0]);
-    // At the origin, as a text without normals, it is what it says.
+    // At the origin, as a text without normals, it is read as it is.
     let (cube, notices) = surface("a.stl", include_bytes!("../data/faults/cube.stl")).expect("a cube");
     assert!(notices.is_empty() && (cube.enclosed_volume() - 1.0).abs() < 1e-12);
 }

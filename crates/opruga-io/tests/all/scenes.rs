@@ -1,4 +1,4 @@
-//! What scenes mean: the full scene, copies, selectors, overrides, commands.
+//! The meaning of scenes: the full scene, copies, selectors, overrides, commands.
 
 use crate::common;
 use common::*;
@@ -28,7 +28,7 @@ fn the_full_scene_has_all_its_parts() {
     assert_eq!(scene.bodies[7].pins[0].select, Selector::All);
     assert_eq!(scene.loads[1].body, 4);
     assert_eq!(scene.loads[2].kind, LoadKind::Pressure(10.0));
-    // Commands come in the order of time.
+    // Commands are sorted by time.
     assert_eq!(scene.commands.iter().map(|c| c.at).collect::<Vec<_>>(), [1.0, 1.0, 1.5, 2.0, 2.5, 3.0, 5.0]);
     assert_eq!(
         scene.commands[3].action,
@@ -51,7 +51,7 @@ fn copies_share_their_mesh_and_jitter_by_the_seed() {
     }
     assert_eq!(scene.bodies, plane(FULL).bodies);
     assert_ne!(scene.bodies, plane(&FULL.replace("seed = 7", "seed = 8")).bodies);
-    // Places in selectors move along with every copy.
+    // Positions in selectors move along with every copy.
     let text = format!(
         "{HEAD}[[body]]\nname = \"b\"\nmass = 1\nshape = {{ kind = \"ring\", radius = 1, vertices = 4 }}\n\
         pin = [{{ select = {{ ball = {{ center = [1, 0], radius = 0.1 }} }} }}]\ncopies = {{ count = [3], spacing = [10, 0] }}\n"
@@ -244,7 +244,7 @@ fn lenient_and_strict() {
     let lenient = Options { lenient: true, ..Options::default() };
     let (_, notices) = read_with(&text, &lenient).expect("lenient");
     assert_eq!((notices.len(), notices[0].about.code), (1, "scene.unknown_field"));
-    // A clockwise polygon is turned, and it is said.
+    // A clockwise polygon is reversed, and this is reported.
     let text = format!(
         "{HEAD}[[body]]\nname = \"p\"\nmass = 1\nshape = {{ kind = \"polygon\", points = [[0, 0], [0, 1], [1, 0]] }}\n"
     );
@@ -252,8 +252,8 @@ fn lenient_and_strict() {
     assert!(read_with(&text, &Options { strict: true, ..Options::default() }).is_err());
 }
 
-/// Bodies that commands add are numbered behind the others, in the order of time, whatever the order in the file; loads,
-/// commands, probes and parameters may name them.
+/// Bodies that commands add are numbered after the others, in the order of time, whatever their order in the file; loads, commands, probes and
+/// parameters may name them.
 #[test]
 fn bodies_that_come_later_can_be_named() {
     let add = |name: &str, at: f64| {
@@ -281,7 +281,7 @@ fn bodies_that_come_later_can_be_named() {
     assert_eq!(errors(&misspelt)[0].code, "scene.unknown_parameter");
 }
 
-/// A load, push or pin on a body with copies acts on all of them, its places moved along; on `name[i]` on one.
+/// A load, push or pin on a body with copies acts on all of them, with its positions moved along; on `name[i]` it acts on one.
 #[test]
 fn loads_and_commands_on_all_copies() {
     let on = |body: &str| {
@@ -306,7 +306,7 @@ fn loads_and_commands_on_all_copies() {
     assert_eq!(one.loads[0], all.loads[0]);
 }
 
-/// Commands begin and end with frames, here of 1/60 s: what never acts by that is told of, with its line.
+/// Commands begin and end with frames, here of 1/60 s; a command that therefore never acts is reported with its line.
 #[test]
 fn commands_that_never_act_are_told() {
     let lasting = |what: &str, at: f64, until: f64| {
@@ -345,16 +345,16 @@ fn commands_that_never_act_are_told() {
         let strict = read_with(&text, &Options { strict: true, ..Options::default() });
         assert_eq!(strict.is_err(), !expected.is_empty(), "{text}");
     }
-    // The same of several is counted.
+    // The same notice about several commands is counted.
     let twice = push(0.005, 0.012).repeat(2);
     let (_, notices) = read_text(&format!("{HEAD}{BALL}{twice}")).expect("a scene");
     assert_eq!(notices.iter().map(|n| n.count).collect::<Vec<_>>(), [2]);
-    // An end that the call has set is not that of the scene.
+    // An end that the call has set does not count as that of the scene.
     let options = Options { overrides: vec![("time.seconds".into(), "0.5".into())], ..Options::default() };
     assert_eq!(read_with(&format!("{HEAD}{BALL}{}", remove(0.7)), &options).expect("a scene").1, []);
 }
 
-/// Rings lie apart, or a hole in a ring, or a ring in a hole; others are refused with the numbers of the two.
+/// Two rings are separate, a hole is in a ring, or a ring is in a hole; others are refused with the numbers of the two.
 #[test]
 fn rings_lie_apart_or_inside_one_of_the_other_sign() {
     let meet = |a: u32, b: u32| format!("the rings {a} and {b} cross or touch");
@@ -377,7 +377,7 @@ fn rings_lie_apart_or_inside_one_of_the_other_sign() {
         ("[[0, 0], [1, 0]]", "[1, -0.4]", 40, meet(0, 1)),
         ("[[0, 0], [0.6, 0]]", "[1, -0.4]", 40, meet(0, 1)),
         ("[[0, 0], [3, 0]]", "[1, -0.4]", 40, alone(1)),
-        // The sides of triangles cut their circles short: one in the other, and one across the side of the other.
+        // Triangles are smaller than their circles: one triangle within the other, and one across a side of the other.
         ("[[0, 0], [0, 0]]", "[1, -0.9]", 3, fine()),
         ("[[0, 0], [-0.45, 0]]", "[1, -0.2]", 3, meet(0, 1)),
         ("[[0, 0], [-0.2, 0]]", "[1, -0.2]", 3, fine()),

@@ -1,6 +1,6 @@
-//! Random bytes and tampered files of every format: a mesh that is sound, or an error that names file and value, never a panic.
+//! Random bytes and altered files of every format give a valid mesh, or an error that names file and value, and never a panic.
 //!
-//! `fuzz/` looks for new ones.
+//! `fuzz/` searches for new ones.
 
 use crate::common;
 use common::{HEAD, catalogue};
@@ -15,7 +15,7 @@ use std::sync::{Arc, LazyLock};
 
 include!("../../../../fuzz/src/shape_kinds.rs");
 
-/// Larger files than those of the corpus: what they are read as, and their bytes.
+/// Files larger than those of the corpus: the shapes as which they are read, and their bytes.
 const LARGER: [(u8, &str, &str, &[u8]); 6] = [
     (2, SHAPES[7].1, SHAPES[7].2, include_bytes!("../../../../scenes/shapes/inter-black-subset.otf")),
     (3, SHAPES[17].1, SHAPES[17].2, include_bytes!("../data/meshes/fenris/cube_tet10_24.msh")),
@@ -25,7 +25,7 @@ const LARGER: [(u8, &str, &str, &[u8]); 6] = [
     (3, SHAPES[20].1, SHAPES[20].2, include_bytes!("../data/meshes/mfem/beam-tet.mesh")),
 ];
 
-/// A good file, and what it is read as.
+/// A good file, and the shape as which it is read.
 struct Sample {
     dimension: u8,
     name: &'static str,
@@ -33,7 +33,7 @@ struct Sample {
     bytes: Vec<u8>,
 }
 
-/// What of the corpus is read, or the small files that ask for too much: their names begin with `refused`.
+/// The files of the corpus that can be read, or the small files that ask for too much, whose names begin with `refused`.
 fn corpus(refused: bool) -> Vec<Sample> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/shape_files");
     let entries = std::fs::read_dir(&folder).expect("a corpus");
@@ -49,7 +49,7 @@ fn corpus(refused: bool) -> Vec<Sample> {
     paths.iter().map(sample).collect()
 }
 
-/// The corpus that fuzzing begins from, in the order of its names, and larger files.
+/// The corpus from which fuzzing starts, in the order of its names, and larger files.
 static SAMPLES: LazyLock<Vec<Sample>> = LazyLock::new(|| {
     let corpus = corpus(false).into_iter();
     let larger = LARGER.iter().map(|(dimension, name, shape, bytes)| Sample {
@@ -61,7 +61,7 @@ static SAMPLES: LazyLock<Vec<Sample>> = LazyLock::new(|| {
     corpus.chain(larger).collect()
 });
 
-/// Any of the samples by any number.
+/// The sample of a number, whatever the number is.
 fn sample(number: usize) -> &'static Sample {
     &SAMPLES[number % SAMPLES.len()]
 }
@@ -69,7 +69,7 @@ fn sample(number: usize) -> &'static Sample {
 fn sound<const D: usize>(mesh: &Mesh<D>) {
     mesh.validate().expect("a valid mesh");
     assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
-    // Cells may touch along an edge, which is sound for elements, but bounds no chamber.
+    // Cells may touch along an edge. This is valid for elements, but bounds no chamber.
     if mesh.cells.is_empty() {
         mesh.chambers().expect("closed chambers, or none");
     }
@@ -86,10 +86,10 @@ fn sound<const D: usize>(mesh: &Mesh<D>) {
     assert!(upright && mesh.unreferenced_nodes().is_empty());
 }
 
-/// Whether the file is read; what is read must be sound.
+/// Whether the file is accepted; an accepted file must give a valid mesh.
 fn survives(&Sample { dimension, name, shape, .. }: &Sample, bytes: &[u8]) -> bool {
     let head = HEAD.replace("dimension = 2", &format!("dimension = {dimension}"));
-    // Of a pair of files the cells are what a scene names.
+    // Of a pair of files, the scene names the one with the cells.
     let named = name.replace(".node", ".ele");
     let text = format!("{head}[[body]]\nname = \"it\"\nmass = 1\nshape = {{ file = \"{named}\", {shape} }}\n");
     let limits = Limits { nodes: 20_000, memory_bytes: 64 << 20, ..Limits::default() };
@@ -110,7 +110,7 @@ fn survives(&Sample { dimension, name, shape, .. }: &Sample, bytes: &[u8]) -> bo
     true
 }
 
-/// Fuzzing that begins nowhere finds little: every shape has a sample, and every ending that can be read a shape.
+/// Fuzzing without good samples finds little: every shape must have a sample, and every readable ending a shape.
 #[test]
 fn the_samples_reach_every_reader() {
     for (number, (_, name, shape)) in SHAPES.iter().enumerate() {
@@ -120,7 +120,7 @@ fn the_samples_reach_every_reader() {
     for ending in endings.split(' ') {
         assert!(SAMPLES.iter().any(|s| s.name == format!("a.{ending}")), "no sample ends in .{ending}");
     }
-    // Of formats with several kinds each is there.
+    // For formats with several variants, each must occur.
     let begin = |ending: &str, head: &[u8]| {
         SAMPLES.iter().any(|s| s.name.ends_with(ending) && s.bytes.windows(head.len()).take(400).any(|w| w == head))
     };
@@ -153,7 +153,7 @@ fn small_files_that_ask_for_much_are_refused() {
     }
 }
 
-/// What a tampered byte becomes.
+/// The replacements of an altered byte.
 const BYTES: &[u8] = b"\0\xff09-.eM,[]{}\"<>/ \n1";
 
 proptest! {
@@ -178,12 +178,12 @@ proptest! {
     #[test]
     fn random_files(number in any::<usize>(), bytes in proptest::collection::vec(any::<u8>(), 0..300), keep in 0..60usize) {
         let sample = sample(number);
-        // A good beginning leads deeper.
+        // A valid beginning leads deeper into the reader.
         let bytes = [&sample.bytes[..keep.min(sample.bytes.len())], &bytes[..]].concat();
         survives(sample, &bytes);
     }
 
-    /// Other digits: files that are well formed, of shapes that nobody drew.
+    /// Other digits: well-formed files with shapes that nobody drew.
     #[test]
     fn files_with_other_numbers(number in any::<usize>(), changes in proptest::collection::vec((any::<u32>(), b'0'..=b'9'), 1..8)) {
         let sample = sample(number);

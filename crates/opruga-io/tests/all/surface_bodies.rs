@@ -1,5 +1,5 @@
-//! What becomes of a surface from a file: its size and place, what is mended and told, chambers, crossings, lattices, remeshing
-//! (torture list, section 2). The formats: surfaces.rs.
+//! Bodies from surfaces of files: size and position, repairs and notices, chambers, crossings, lattices, remeshing (torture list, section 2). The
+//! formats: surfaces.rs.
 
 use crate::common;
 use common::cube::*;
@@ -29,7 +29,7 @@ fn what_is_mended_is_counted() {
         ((*mesh).clone(), told)
     };
     let told = |code: &'static str, value: &str| vec![(code, value.to_string())];
-    // One square turned, all squares turned, a vertex that nobody names.
+    // One square reversed, all squares reversed, a vertex that nothing uses.
     let (mesh, notices) = codes(&obj().replace("f 5/1 6//1 7/1/1 8", "f 8 7 6 5"), "");
     is_cube(&mesh);
     assert_eq!(notices, told("mesh.flipped", "2"));
@@ -54,7 +54,7 @@ fn what_is_mended_is_counted() {
     assert_eq!(notices, told("mesh.capped", "1"));
     let (mesh, notices) = codes(&open, ", open = \"sheet\"");
     assert_eq!((mesh.facets.len(), mesh.sheets.len(), notices.len()), (0, 10, 0));
-    // Every triangle with vertices of its own: in pieces, until they are welded.
+    // Every triangle has separate vertices: the surface is in pieces until they are welded.
     let mut soup = String::new();
     for (k, corners) in triangles().into_iter().enumerate() {
         corners.iter().for_each(|c| soup += &format!("v {} {} {}\n", CORNERS[*c][0], CORNERS[*c][1], CORNERS[*c][2]));
@@ -71,7 +71,7 @@ fn what_is_mended_is_counted() {
     assert_eq!(notices, told("mesh.welded", "28"));
 }
 
-/// Rows 26 and 38: what is odd but can be meant is counted, with the worst of it and a guess at the unit.
+/// Rows 26 and 38: unusual things that may be intended are counted, with the worst of them and a guess at the unit.
 #[test]
 fn slivers_and_odd_scales_are_told() {
     let codes = |text: &str, more: &str| -> Vec<(&'static str, Option<String>)> {
@@ -108,7 +108,7 @@ fn slivers_and_odd_scales_are_told() {
     }
 }
 
-/// Row 35: a shell inside another is a cavity of one chamber, shells beside one another are chambers each.
+/// Row 35: a shell inside another one is a cavity of the same chamber; separate shells are separate chambers.
 #[test]
 fn shells_are_chambers_and_shells_in_them_cavities() {
     let cubes = |scales: [f64; 2], apart: f64| {
@@ -170,8 +170,8 @@ fn a_million_triangles_are_read_within_two_seconds() {
     assert!(seconds < 2.0, "{seconds} s");
 }
 
-/// Row 35: a closed surface that crosses itself is refused with two triangles and a place, in every format; on request it
-/// is taken as it is, and counted.
+/// Row 35: a closed surface that crosses itself is refused with two triangles and a position, in every format; on request it is accepted, and the
+/// crossings are counted.
 #[test]
 fn surfaces_that_meet_themselves_are_refused_with_their_place() {
     // A second cube, moved by half of its side: it begins at vertex 9, face 7.
@@ -191,7 +191,7 @@ fn surfaces_that_meet_themselves_are_refused_with_their_place() {
     assert_eq!(mesh.facets.len(), 24);
     assert!(notices.iter().any(|n| n.about.code == "mesh.self_intersection"), "{notices:?}");
 
-    // The same as bytes: each triangle of a binary STL, each face of a PLY, each primitive of a glTF has its place.
+    // The same as bytes: each triangle of a binary STL, each face of a PLY and each primitive of a glTF has its location.
     let mut stl = stl_bytes();
     stl[80..84].copy_from_slice(&24u32.to_le_bytes());
     let second: Vec<u8> = stl[84..].to_vec();
@@ -211,7 +211,7 @@ fn surfaces_that_meet_themselves_are_refused_with_their_place() {
     assert!(byte >= 84 + 12 * 50 && (byte - 84).is_multiple_of(50), "{error}");
 }
 
-/// A surface is made anew of triangles of a wanted size; a cloth is not.
+/// A surface is remeshed with triangles of a desired size; a cloth is not.
 #[test]
 fn surfaces_are_remeshed_to_a_length() {
     let text = obj();
@@ -231,7 +231,7 @@ fn surfaces_are_remeshed_to_a_length() {
     assert!(error.code.starts_with("limit.") || error.code.starts_with("scene."), "{error}");
 }
 
-/// A size that is too coarse is refused with one that works, which is told to the digit at which it was tried.
+/// If a size is too coarse, the error gives one that works, rounded as it was tried.
 #[test]
 fn a_size_that_is_too_coarse_is_answered_by_one_that_works() {
     const SPOT: &[u8] = include_bytes!("../../../../scenes/shapes/spot.obj");
@@ -246,6 +246,6 @@ fn a_size_that_is_too_coarse_is_answered_by_one_that_works() {
     assert!(length < 0.6 && length > 0.05, "{hint}");
     let (mesh, _) = of(works).unwrap_or_else(|errors| panic!("{works}: {}", errors[0]));
     assert!(mesh.check().is_empty());
-    // The next coarser one that was tried does not.
+    // The next coarser one that was tried does not work.
     assert!(of(&format!("{:.1e}", length / 0.9)).is_err(), "{works} is the coarsest");
 }

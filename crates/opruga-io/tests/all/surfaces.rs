@@ -1,5 +1,5 @@
-//! Surfaces from files: the same body from every format, and what is wrong with bad files (torture list, section 2). What
-//! becomes of sound ones: surface_bodies.rs.
+//! Surfaces from files: the same body from every format, and the errors of bad files (torture list, section 2). Bodies made from good files:
+//! surface_bodies.rs.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use crate::common;
@@ -29,7 +29,7 @@ fn every_format_gives_the_same_cube() {
     is_cube(&space("kind = \"surface\", file = \"m/a.gltf\"", &files).expect("with its buffer").0);
 }
 
-/// What a file holds besides its triangles and a body cannot have: how the cube changes, what is told, how often.
+/// Contents of a file besides triangles that a body cannot have: the change of the cube, the notice, its count.
 #[test]
 fn what_surfaces_cannot_have_is_left_out_and_counted() {
     let cube = gltf(&format!("\"uri\":\"data:;base64,{}\",", base64(&buffer())));
@@ -65,7 +65,8 @@ fn named_parts_are_groups() {
     assert!(surface("a.glb", &glb()).expect("a cube").0.groups.contains_key("cube"));
 }
 
-/// A prism over an outline, counter-clockwise, one unit high: its lids are faces with all corners of it, the lower one begun at a corner of it.
+/// A prism over a counter-clockwise outline, one unit high. Its lids are faces with all corners of the outline; the lower one begins at corner
+/// `from`.
 fn prism(outline: &[[f64; 2]], from: usize) -> String {
     let (n, mut text) = (outline.len(), String::new());
     for z in [0, 1] {
@@ -78,7 +79,7 @@ fn prism(outline: &[[f64; 2]], from: usize) -> String {
     text
 }
 
-/// Row 25: concave faces, from every corner on. None of the triangles lies outside, none is turned, and their areas sum to that of the face.
+/// Row 25: concave faces, beginning at every corner. No triangle is outside the face or reversed, and their areas sum to that of the face.
 #[test]
 fn polygons_are_cut_inside_and_concave_and_bent_ones_counted() {
     let dart = vec![[0.0, 0.0], [2.0, 1.0], [0.0, 2.0], [0.7, 1.0]];
@@ -111,7 +112,7 @@ fn polygons_are_cut_inside_and_concave_and_bent_ones_counted() {
                 })
                 .sum();
             assert!((whole - 2.0 * area).abs() < 1e-12, "{whole}, not twice {area}");
-            // Both lids, and nothing else: no triangle had to be turned afterwards.
+            // Both lids, and nothing else: no triangle had to be flipped afterwards.
             let told: Vec<_> = notices.iter().map(|n| (n.about.code, n.about.value.as_deref())).collect();
             assert_eq!(told, [("mesh.concave_face", Some("2"))]);
             let faces = outline.len() + 2;
@@ -122,7 +123,7 @@ fn polygons_are_cut_inside_and_concave_and_bent_ones_counted() {
             );
         }
     }
-    // Indices that count from the end mean the same.
+    // Indices that count from the end have the same meaning.
     let text = prism(&dart, 0);
     let relative = text.replace("f 4 3 2 1", "f -5 -6 -7 -8").replace("f 5 6 7 8", "f -4 -3 -2 -1");
     assert_ne!(text, relative);
@@ -138,7 +139,7 @@ fn polygons_are_cut_inside_and_concave_and_bent_ones_counted() {
     let (from_ply, notices) = surface("a.ply", format!("{header}{places}{faces}").as_bytes()).expect("a prism");
     assert_eq!((from_ply.facets.len(), notices[0].about.code), (12, "mesh.concave_face"));
     assert!((from_ply.enclosed_volume() - 1.3).abs() < 1e-12);
-    // A cube with two opposite corners of its upper side lifted: that side is bent, by half of that over its size.
+    // A cube with two opposite corners of its upper side lifted: that side is bent, by half of the lift over its size.
     let lifted = |by: f64| {
         let up = 1.0 + by;
         obj().replace("v 1 1\t1\r", &format!("v 1 1 {up}")).replace("v -1 -1\t1\r", &format!("v -1 -1 {up}"))
@@ -154,7 +155,7 @@ fn polygons_are_cut_inside_and_concave_and_bent_ones_counted() {
     assert!(error.message.starts_with("a face is far from flat: a corner lies 0.5 of its size"), "{error}");
 }
 
-/// Rows 22, 24, 25, 26, 30, 31, 33, 37, 38 in OBJ: what is changed in the cube, the code, the line, the value.
+/// Rows 22, 24, 25, 26, 30, 31, 33, 37, 38 in OBJ: the change of the cube, the code, the line, the value.
 #[test]
 fn bad_obj_files_are_refused_with_their_line() {
     let first = "f 1/1 4//1 3/1/1 2";
@@ -183,7 +184,7 @@ fn bad_obj_files_are_refused_with_their_line() {
         let text = obj().replace(from, to);
         assert_ne!(text, obj());
         let error = refused("a.obj", text.as_bytes());
-        // A quad may be cut along either diagonal: a repeated triangle is found as one or the other.
+        // A quadrilateral may be divided along either diagonal: a repeated triangle is found as one error or the other.
         let twice = code == "mesh.duplicate_element" && error.code == "mesh.non_manifold";
         assert!(error.code == code || twice, "{to}: {error}");
         if !twice && line.is_some() {
@@ -215,7 +216,7 @@ fn bad_obj_files_are_refused_with_their_line() {
     assert_eq!(refused("a.obj", band.as_bytes()).code, "mesh.non_orientable");
 }
 
-/// Row 23: headers that promise more than the file holds, before anything is allocated.
+/// Row 23: headers that announce more than the file contains are refused before anything is allocated.
 #[test]
 fn sizes_are_compared_before_memory_is_asked_for() {
     let mut stl = stl_bytes();
@@ -242,7 +243,7 @@ fn sizes_are_compared_before_memory_is_asked_for() {
 
 #[test]
 fn files_that_are_cut_off_anywhere_are_refused() {
-    // A text may lack its last line end, and the name behind `endsolid`.
+    // A text may lack its last line end, and the name after `endsolid`.
     for (name, bytes, spare) in [
         ("a.stl", stl_bytes(), 0),
         ("a.stl", stl_text().into_bytes(), 6),
@@ -339,10 +340,10 @@ fn bad_gltf_files_are_refused_with_their_place() {
     }
 }
 
-/// What only the whole surface shows is told with the byte or line of a triangle, in formats without lines too.
+/// Errors that only the whole surface shows are reported with the byte or line of a triangle, also in formats without lines.
 #[test]
 fn late_errors_have_a_place_in_every_format() {
-    // The last face once more.
+    // The last face again.
     for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
         let text = String::from_utf8_lossy(&ply(format)).into_owned();
         let good = ply(format);

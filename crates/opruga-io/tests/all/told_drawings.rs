@@ -1,4 +1,4 @@
-//! What drawings lose on their way to a body is told: what an outline cannot have, detail finer than the spacing, good angles.
+//! Losses between a drawing and its body are reported: parts without an outline, detail finer than the spacing, bad angles.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use crate::common;
@@ -14,7 +14,7 @@ fn drawing(inside: &str) -> String {
     format!("<svg xmlns=\"http://www.w3.org/2000/svg\">\n{inside}\n</svg>")
 }
 
-/// What a drawing program would draw, and an outline cannot have: what is in the drawing, what is told, how often.
+/// Parts that a drawing program would draw but that have no outline: the contents of the drawing, the notice, its count.
 #[test]
 fn what_changes_a_drawing_without_an_outline_is_counted() {
     let path = |more: &str| format!("<path d=\"M0 0H4V4H0Z\" {more}/>");
@@ -45,7 +45,7 @@ fn what_changes_a_drawing_without_an_outline_is_counted() {
     }
 }
 
-/// Inkscape and Illustrator write into drawings what only they read; a browser draws none of it either.
+/// Inkscape and Illustrator store data of their own in drawings; browsers do not draw them either.
 #[test]
 fn elements_of_other_languages_are_no_part_of_a_drawing() {
     let document = |inside: &str| {
@@ -75,7 +75,7 @@ fn elements_of_other_languages_are_no_part_of_a_drawing() {
     }
 }
 
-/// How much of its area an outline loses to its spacing, and how many of its points: corners and ends of curves count once each.
+/// The fraction of its area that an outline loses because of its spacing, and of its points: corners and ends of curves count once each.
 #[test]
 fn what_an_outline_loses_to_its_spacing_is_told_in_figures() {
     let of = |inside: &str, spacing: f64| {
@@ -103,16 +103,16 @@ fn what_an_outline_loses_to_its_spacing_is_told_in_figures() {
         assert!(message.contains(" m² (0.1") && message.ends_with(" m² lost"), "{message}");
         assert!((left / PI - 1.0).abs() < 2e-3);
     }
-    // Five points are not many, but a triangle of a circle has lost more than half of it.
+    // Five points are not many, but a triangle made from a circle has lost more than half of its area.
     let (left, told) = of("<circle r=\"1\"/>", 2.0);
     let [(code, value, message)] = &told[..] else { panic!("{told:?}") };
     assert!(*code == "shape.thinned" && message.contains("3 nodes 2 m apart leave "), "{message}");
-    // The circle was followed by lines within a part of the spacing, which lose a little too.
+    // The circle was approximated by lines within a fraction of the spacing, which lose a little, too.
     assert!((value.parse::<f64>().expect("a number") - left / PI).abs() < 5e-3, "{value}: {left}");
     assert!(of("<circle r=\"1\"/>", 0.3).1.is_empty(), "{:?}", of("<circle r=\"1\"/>", 0.3).1);
 }
 
-/// A wedge is filled with thin triangles, since nothing else fits into it: told with the angle and the reason.
+/// A wedge is filled with thin triangles, because nothing else fits into it; this is reported with the angle and the reason.
 #[test]
 fn thin_triangles_of_fillings_are_told() {
     let of = |inside: &str| {
@@ -125,7 +125,7 @@ fn thin_triangles_of_fillings_are_told() {
     assert!(angle <= 15.0 + 1e-6 && about.code == "shape.thin_triangles", "{angle}: {}", notices[0]);
     assert!((about.value.as_deref().and_then(|v| v.parse::<f64>().ok()).expect("an angle") / angle - 1.0).abs() < 0.01);
     assert!(about.message.contains("the outline itself has a corner of 15° there"), "{}", about.message);
-    // Two squares and a neck between them that is a fifth of the spacing wide.
+    // Two squares, and a neck between them whose width is a fifth of the spacing.
     let (angle, notices) = of("<path d=\"M0 0H4V4.95H6V0H10V10H6V5.05H4V10H0Z\"/>");
     assert!(
         angle < 25.0 && notices[0].about.message.contains("the outline is finer there than `spacing`"),
@@ -136,8 +136,8 @@ fn thin_triangles_of_fillings_are_told() {
     assert!(angle >= 25.0 && notices.is_empty(), "{angle}");
 }
 
-/// A disc that another element paints on a square is seen as a disc on a square, and taken for a hole: told, unless the scene says which of
-/// the two is meant. A ring whose hole is its own, and an island in a hole of another, are no such thing.
+/// A disc that another element paints on a square looks like a disc on a square, but is read as a hole. This is reported, unless the scene says which
+/// of the two is meant. It does not apply to a ring with its own hole, or to an island in a hole of another element.
 #[test]
 fn an_element_painted_within_another_is_a_hole_and_counted() {
     let square = "<rect width=\"10\" height=\"10\"/>";

@@ -1,4 +1,4 @@
-//! Bad scenes, row by row: every one is refused with a stable code and a place, none panics.
+//! Bad scenes, row by row: every one is refused with a stable code and a location, and none causes a panic.
 
 use crate::common;
 use common::*;
@@ -36,7 +36,7 @@ fn empty_and_foreign_encodings() {
     assert_eq!(codes(format!("\u{feff}\u{feff}{HEAD}").as_bytes()), ["scene.encoding"]);
 }
 
-/// Row 2: every prefix of a full scene is read whole or refused with line and column.
+/// Row 2: every prefix of a full scene is accepted or refused with line and column.
 #[test]
 fn every_prefix() {
     let mut whole = 0;
@@ -52,7 +52,7 @@ fn every_prefix() {
             }
         }
     }
-    // Cut at the end of a table the rest is a smaller scene.
+    // If it is cut at the end of a table, the rest is a smaller scene.
     assert!(whole > 0 && whole < FULL.len() / 20, "{whole} prefixes are scenes");
 }
 
@@ -78,7 +78,7 @@ fn deep_nesting() {
         let short: String = text.chars().take(20).collect();
         assert_eq!(codes(text.as_bytes()), ["scene.depth"], "{short}");
     }
-    // What looks deep in texts and comments is not.
+    // Brackets in texts and comments do not count as depth.
     let text = format!("{HEAD}# {}\n[world]\ndrag = 1 # {}\n", "[".repeat(1000), "{".repeat(1000));
     assert!(codes(text.as_bytes()).is_empty());
     let text = format!("title = \"{}\"\n{HEAD}", "[".repeat(200));
@@ -113,7 +113,7 @@ fn files_that_are_none() {
     }
 }
 
-/// Rows 5 to 11, 16, and those of section 3 that are about parameters: what is added to a good scene, and its errors.
+/// Rows 5 to 11, 16, and those of section 3 about parameters: additions to a good scene, and their errors.
 #[test]
 #[expect(clippy::too_many_lines, reason = "a table: one row for every error")]
 fn one_error_each() {
@@ -126,7 +126,7 @@ fn one_error_each() {
         // 5: unknown fields
         (model("stifness = 1"), "scene.unknown_field"),
         (format!("{HEAD}[tiem]\n"), "scene.unknown_field"),
-        // 6: twice
+        // 6: duplicates
         (format!("{HEAD}{BALL}mass = 2\n"), "scene.duplicate_key"),
         (format!("{HEAD}[time]\nframe = 1\n"), "scene.duplicate_key"),
         (model("stiffness = 1, stiffness = 2"), "scene.duplicate_key"),
@@ -138,7 +138,7 @@ fn one_error_each() {
         (HEAD.replace("dimension = 2", "dimension = 4"), "scene.dimension"),
         (HEAD.replace("dimension = 2", "dimension = 2.0"), "scene.dimension"),
         (HEAD.replace("dimension = 2\n", ""), "scene.missing"),
-        // 8: numbers that are none
+        // 8: not numbers
         (model("stiffness = nan"), "scene.not_finite"),
         (model("stiffness = inf"), "scene.not_finite"),
         (model("stiffness = -inf"), "scene.not_finite"),
@@ -170,7 +170,7 @@ fn one_error_each() {
         (format!("{HEAD}{BALL}[[load]]\nkind = \"force\"\nbody = 1\nvalue = [1, 0]\n"), "scene.unknown_name"),
         (format!("{HEAD}{BALL}[[load]]\nkind = \"force\"\nbody = 0.0\nvalue = [1, 0]\n"), "scene.type"),
         (format!("{HEAD}{BALL}[[command]]\ndo = \"remove\"\nat = 0\nbody = \"b\"\n"), "scene.unknown_name"),
-        // 16: odd names
+        // 16: unusual names
         (format!("{HEAD}{}", BALL.replace("\"ball\"", "\"a\\nb\"")), "scene.name"),
         (format!("{HEAD}{}", BALL.replace("\"ball\"", "\"\\u001b[31m\"")), "scene.name"),
         (format!("{HEAD}{}", BALL.replace("\"ball\"", "\"\\u0000\"")), "scene.name"),
@@ -291,13 +291,13 @@ fn one_error_each() {
         for key in ["code", "message", "file", "line", "column", "path", "value", "allowed", "hint"] {
             assert!(json.get(key).is_some(), "{key}");
         }
-        // Nothing that could drive a terminal comes out.
+        // No control sequences for a terminal are printed.
         assert!(error.to_string().chars().all(|c| c == '\n' || !c.is_control()), "{error:?}");
         assert!(error.to_string().len() < 3000, "{error}");
     }
 }
 
-/// Row 8: what may be written.
+/// Row 8: numbers that are accepted.
 #[test]
 fn numbers_that_are_fine() {
     for (text, value) in [
@@ -338,13 +338,13 @@ fn all_errors_at_once() {
             ("scene.unknown_name", 26),
         ]
     );
-    // Very many errors are cut, and it is said.
+    // Very many errors are cut off, and this is reported.
     let many: String = (0..500).map(|k| format!("x{k} = 1\n")).collect();
     let found = errors(&format!("{many}{HEAD}"));
     assert_eq!((found.len(), found[50].code, found[50].message.as_str()), (51, "scene.more", "and 450 more"));
 }
 
-/// Whatever fills a scene, it is refused before a parser takes memory for it: here is what took 0.4 to 1.4 GB.
+/// Whatever a scene contains, it is refused before a parser takes much memory for it. These scenes took 0.4 to 1.4 GB.
 #[test]
 fn the_memory_of_a_parser_is_bounded() {
     let many: [(&str, String); 9] = [
@@ -363,19 +363,19 @@ fn the_memory_of_a_parser_is_bounded() {
         let found: Vec<&str> = errors.expect_err(what).iter().map(|error| error.code).collect();
         assert_eq!(found, ["scene.too_large"], "{what}");
     }
-    // As many unknown keys as are read are told by the first fifty, as errors and as warnings.
+    // However many unknown keys are read, only the first fifty are listed, as errors and as warnings.
     let text = (0..300_000).map(|k| format!("k{k} = 1\n")).collect::<String>() + HEAD;
     let found = errors(&text);
     assert_eq!((found.len(), found[50].code, found[50].message.as_str()), (51, "scene.more", "and 299950 more"));
     let lenient = Options { lenient: true, ..Options::default() };
     let (_, notices) = read(text.as_bytes(), "scene.toml", &catalogue(), &lenient).expect("a scene");
     assert_eq!((notices.len(), notices[50].about.message.as_str()), (51, "and 299950 more"));
-    // Keys that are there twice too; the first of them is no field.
+    // The same for duplicate keys; the first of them is not a field.
     let found = errors(&format!("{HEAD}{}", "a = 1\n".repeat(1_000)));
     assert_eq!((found.len(), found[50].message.as_str()), (51, "and 950 more"));
 }
 
-/// A value of the command line is as deep and as large as one of a scene.
+/// The limits of depth and size are the same for values of the command line and of a scene.
 #[test]
 fn overrides_have_the_limits_of_scenes() {
     let with = |value: String| {
@@ -390,11 +390,11 @@ fn overrides_have_the_limits_of_scenes() {
     assert_eq!(with(format!("{}1{}", "[".repeat(10_000), "]".repeat(10_000))).0, "scene.depth");
     assert_eq!(with(format!("{{{}a = 1}}", "a.".repeat(10_000))).0, "scene.depth");
     assert_eq!(with(format!("[{}]", "1,".repeat(5_000_000))).0, "scene.too_large");
-    // What a scene may hold is no error of depth here.
+    // A depth that a scene may have is not an error here.
     assert_eq!(with(format!("{}1{}", "[".repeat(100), "]".repeat(100))).0, "scene.length");
 }
 
-/// Names that print alike and differ by their code points: nobody could tell which body is meant.
+/// Names that look the same in print but differ in their code points are refused, because nobody could know which body is meant.
 #[test]
 fn names_that_print_alike_are_refused() {
     let named = |name: &str| BALL.replace("\"ball\"", &format!("\"{name}\""));
@@ -414,7 +414,7 @@ fn names_that_print_alike_are_refused() {
     assert_eq!(errors(&text).iter().map(|e| e.code).collect::<Vec<_>>(), ["scene.duplicate_name"]);
 }
 
-/// A misspelt name is one slip: what it stands for is not said to be missing too. Where unknown fields pass, it is.
+/// A misspelt name is one error: the field that it probably means is not reported as missing. If unknown fields are accepted, it is.
 #[test]
 fn a_misspelt_name_is_one_error() {
     for (right, wrong) in [("vertices", "vertces"), ("radius", "radus"), ("mass = 1.0", "mas = 1.0"), ("name", "nme")] {
@@ -425,7 +425,7 @@ fn a_misspelt_name_is_one_error() {
     }
 }
 
-/// Errors in the fields of a body do not hide those of what selects its nodes, wherever that stands.
+/// Errors in the fields of a body do not hide those of selectors of its nodes, wherever these are.
 #[test]
 fn wrong_numbers_of_nodes_are_found_beside_wrong_fields() {
     let text = format!(
@@ -446,14 +446,14 @@ fn wrong_numbers_of_nodes_are_found_beside_wrong_fields() {
         ("scene.range", "96"),
     ];
     assert_eq!(found, expected.map(|(code, value)| (code, Some(value.to_string()))));
-    // Where the nodes themselves are in doubt, nothing is said about them.
+    // If the nodes themselves are in doubt, nothing is reported about selectors.
     for (good, bad) in [("vertices = 8", "vertices = 2"), ("radius = 1", "radius = -1"), ("mass = -1", "scale = 0")] {
         let text = text.replace(good, bad);
         assert!(errors(&text).iter().all(|e| !matches!(e.value.as_deref(), Some("99" | "98" | "97" | "96"))), "{bad}");
     }
 }
 
-/// What is left of a scene with errors are its parts without errors of their own.
+/// The rest of a scene with errors consists of its parts without errors of their own.
 #[test]
 fn what_is_left_of_a_scene_with_errors() {
     use opruga_world::blueprint::AnyBlueprint;
@@ -489,14 +489,14 @@ fn what_is_left_of_a_scene_with_errors() {
     assert!(survey(&format!("{HEAD}{BALL}")).errors.is_empty());
 }
 
-/// Row 18: what is large but fine.
+/// Row 18: large, but accepted.
 #[test]
 fn many_bodies() {
     let text = format!("{HEAD}{}copies = {{ count = [1000, 100], spacing = [3, 3] }}\n", BALL);
     assert_eq!(plane(&text).bodies.len(), 100_000);
 }
 
-/// Rows 18 and 46: what commands add counts too, and thin bodies of a density need a thickness.
+/// Rows 18 and 46: bodies that commands add count as well, and thin bodies with a density need a thickness.
 #[test]
 fn added_bodies_count_and_thin_ones_need_a_thickness() {
     let add = |k: usize| {
@@ -512,7 +512,7 @@ fn added_bodies_count_and_thin_ones_need_a_thickness() {
             Err(errors) => errors.iter().map(|e| format!("{}@{}", e.code, e.line.unwrap_or(0))).collect(),
         }
     };
-    // 8 nodes of the ball and 40 of every other.
+    // 8 nodes of the ball and 40 of every other body.
     assert_eq!(codes(3, limits(4, 128)), Vec::<String>::new());
     assert_eq!(codes(3, limits(4, 127)), ["limit.nodes@23"]);
     assert_eq!(codes(3, limits(3, 1000)), ["limit.bodies@23"]);

@@ -1,7 +1,7 @@
-//! Small files that ask for much: each is read or refused within seconds, with the count and what is allowed.
+//! Small files that ask for a lot: each is read or refused within seconds, with the count and what is allowed.
 //!
-//! Most of these took minutes or gigabytes. What grows is counted before it is made, so these tests need no clock; the fence of time is for those that
-//! are read.
+//! Most of these took minutes or gigabytes. The quantities that grow are counted before they are made, so these tests need no clock; the time limit
+//! is for the files that are accepted.
 
 #![allow(clippy::disallowed_methods, reason = "what tests make needs no equal bits")]
 
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// No error.
 const READ: &str = "";
 
-/// The code of the first error, which says what there may be.
+/// The code of the first error, which gives the limit.
 fn code<T>(read: Result<T, Vec<SceneError>>) -> &'static str {
     let Err(errors) = read else { return READ };
     let error = &errors[0];
@@ -27,7 +27,7 @@ fn svg(shape: &str, text: &str) -> &'static str {
     code(plane(&format!("kind = \"svg\", file = \"a.svg\", {shape}"), "a.svg", text.as_bytes()))
 }
 
-/// What took minutes ends long before this, on a slow machine that does other things too.
+/// The cases that took minutes end long before this limit, even on a slow and busy machine.
 fn soon<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let begun = Instant::now();
     let done = work();
@@ -42,7 +42,7 @@ fn bitmap(bytes: &[u8]) -> &'static str {
 
 #[test]
 fn chessboards_of_pixels_are_read_or_refused() {
-    // Fields are 20,000 diamonds, then more than a body has parts, then more points than that.
+    // The fields are 20,000 diamonds, then more than the parts allowed in a body, then more points than allowed.
     let cases: [(&[u8], &str); 4] = [
         (include_bytes!("../data/faults/checker200.png"), READ),
         (include_bytes!("../data/faults/checker400.png"), "limit.outlines"),
@@ -73,13 +73,13 @@ fn noise_and_large_white_pictures_are_refused_and_nested_frames_read() {
         (mixed >> 24) as u8
     };
     assert_eq!(soon("noise", || bitmap(&png(1500, 1500, noise))), "limit.points");
-    // The head alone promises so many pixels.
+    // The header alone announces this many pixels.
     let mut white = png(1, 1, |_, _| 255);
     white[16..24].copy_from_slice(&[9000u32.to_be_bytes(), 9000u32.to_be_bytes()].concat());
     let check = crc32fast::hash(&white[12..29]);
     white[29..33].copy_from_slice(&check.to_be_bytes());
     assert_eq!(bitmap(&white), "limit.pixels");
-    // Frames in frames: every ring but the outermost lies inside of all those around it.
+    // Nested frames: every ring except the outermost is inside all of those around it.
     let frames = png(1200, 1200, |x, y| {
         let edge = x.min(y).min(1199 - x).min(1199 - y);
         if edge / 2 % 2 == 0 { 0 } else { 255 }
@@ -132,11 +132,11 @@ fn entities_and_use_do_not_multiply_a_drawing() {
     let shape = "spacing = 5.0, size = 50.0, overlap = \"union\"";
     assert_eq!(svg(shape, &entity(4_000, 4_000)), "limit.expansion");
     assert_eq!(svg(shape, &entity(1, 3)), READ);
-    // What drawing programs declare for their own names is short.
+    // The entities that drawing programs declare for their own namespaces are short.
     let spaces =
         format!("<!DOCTYPE svg [<!ENTITY ns \"http://a/\">]><svg {head} xmlns:x=\"&ns;\"><path d=\"{square}\"/></svg>");
     assert_eq!(svg(shape, &spaces), READ);
-    // Two of two of two … that draw nothing.
+    // Groups that each use another one twice, and draw nothing.
     let mut doubled = String::from("<g id=\"u0\"/>");
     for k in 1..60 {
         doubled += &format!("<g id=\"u{k}\"><use href=\"#u{0}\"/><use href=\"#u{0}\"/></g>", k - 1);
@@ -147,13 +147,13 @@ fn entities_and_use_do_not_multiply_a_drawing() {
     let long = format!("<path id=\"p\" d=\"M0 0{}\"/>", "l1 1l-1 2".repeat(5_000));
     let many = format!("<svg {head}>{long}{}</svg>", "<use href=\"#p\"/>".repeat(1_000));
     assert_eq!(soon("a path", || svg(shape, &many)), "limit.points");
-    // Rules that all elements have to be compared with.
+    // Rules with which all elements must be compared.
     let rules: String = (0..8_000).map(|k| format!(".c{k} .d{k}{{fill:red}}")).collect();
     let styled = format!("<svg {head}><style>{rules}</style>{}</svg>", "<g/>".repeat(8_000));
     assert_eq!(svg(shape, &styled), "limit.rules");
 }
 
-/// A long style of a group is asked for by every element in it, and every `use` looks for its id.
+/// The long style of a group is looked up by every element in it, and every `use` looks up its id.
 #[test]
 fn long_styles_and_many_ids_are_looked_up_once() {
     let style: String = (0..20_000).map(|k| format!("a{k}:1;")).collect();
@@ -171,11 +171,11 @@ fn a_spacing_that_makes_too_many_nodes_is_refused_before_they_are_made() {
     let shape = "kind = \"svg\", file = \"a.svg\", spacing = 1e-6, size = 1.0, filling = \"triangles\"";
     let errors = plane(shape, "a.svg", square.as_bytes()).expect_err("too fine");
     assert_eq!((errors[0].code, &errors[0].path[..]), ("limit.nodes", "body.0.shape.spacing"));
-    // With the spacing that is offered there are as many nodes as there may be.
+    // With the suggested spacing there are as many nodes as allowed.
     let allowed = errors[0].allowed.as_deref().expect("what is allowed");
     let least: f64 = allowed.split(' ').nth(1).and_then(|word| word.parse().ok()).expect("a number");
     assert!((1.0 / (0.866 * least * least) / (1u64 << 25) as f64 - 1.0).abs() < 0.01, "{allowed}");
-    // Curves are cut as finely as the spacing says.
+    // Curves are divided as finely as the spacing requires.
     let circles = "<circle r=\"1\"/>".repeat(1_000);
     assert_eq!(
         svg("spacing = 1e-9, size = 1.0, filling = \"lattice\"", &format!("<svg>{circles}</svg>")),
@@ -203,7 +203,7 @@ fn nodes_of_gltf_have_one_parent_and_meshes_are_drawn_some_million_times_at_most
     let file = include_bytes!("../data/faults/dag40.gltf");
     let error = &surface("a.gltf", file).expect_err("two parents")[0];
     assert_eq!((error.code, error.value.as_deref(), error.line), ("gltf.tree", Some("40"), Some(1)));
-    // A circle of nodes, and a root that is named twice.
+    // A cycle of nodes, and a root that is named twice.
     let text = std::str::from_utf8(file).expect("a text");
     let (children, leaf) = (text.find("\"nodes\": [{").expect("nodes"), text.find(", \"scenes\"").expect("scenes"));
     let tree = |nodes: &str, roots: &str| {
@@ -215,7 +215,7 @@ fn nodes_of_gltf_have_one_parent_and_meshes_are_drawn_some_million_times_at_most
     assert_eq!(of("{\"mesh\": 0}", "0"), READ);
     assert_eq!(of("{\"mesh\": 0}", "0, 0"), "gltf.tree");
     assert_eq!(of("{\"children\": [1]}, {\"children\": [0]}", "0"), "gltf.tree");
-    // A hundred thousand nodes with a mesh of thousands of vertices: placed beside one another, but too many.
+    // A hundred thousand nodes with a mesh of thousands of vertices: too many, although they are placed next to one another.
     let many = 100_000;
     let nodes: Vec<String> = (0..many).map(|k| format!("{{\"mesh\":0,\"translation\":[{},0,0]}}", 2 * k)).collect();
     let roots: Vec<String> = (0..many).map(|k| k.to_string()).collect();
@@ -284,7 +284,7 @@ fn compressed_zeros_and_values_of_few_cells_do_not_fill_the_memory() {
     let mesh = "kind = \"mesh\", file = \"a.vtu\"";
     assert_eq!(code(space(mesh, &[("a.vtu", text.as_bytes())])), "limit.numbers");
 
-    // Two thousand pieces, each with values of a name of its own: four million places for two thousand numbers, and so on.
+    // Two thousand pieces, each with values of a separate name: four million entries for two thousand numbers, and so on.
     let piece = |k: usize| {
         format!(
             "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><Points><DataArray type=\"Float64\">{k} 0 0 {k} 1 0 {k} 0 1 {k}.5 0 0</DataArray></Points>\

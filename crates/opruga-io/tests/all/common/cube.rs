@@ -1,4 +1,4 @@
-//! A cube in every format that surfaces can have.
+//! A cube in every surface format.
 
 use super::shapes::surface;
 use opruga_io::SceneError;

@@ -96,10 +96,10 @@ pub(crate) fn errors(text: &str) -> Vec<SceneError> {
 pub(crate) const HEAD: &str =
     "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\n[integrator]\nkind = \"symplectic_euler\"\n";
 
-/// A body to hang things on.
+/// A body to which other things can be added.
 pub(crate) const BALL: &str = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 1.0, vertices = 8 }\nmass = 1.0\nmodels = [{ kind = \"mass_spring\", stiffness = 10 }]\n";
 
-/// A scene with everything in it.
+/// A scene with all features.
 pub(crate) const FULL: &str = r#"format = "opruga-1"
 dimension = 2
 seed = 7

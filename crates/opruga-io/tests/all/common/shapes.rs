@@ -1,4 +1,4 @@
-//! Shapes from files that are held in memory.
+//! Shapes from files in memory.
 
 use super::{HEAD, catalogue};
 use opruga_io::scene::{Options, read};
@@ -24,7 +24,7 @@ pub(crate) fn plane(shape: &str, file: &str, bytes: &[u8]) -> Read<2> {
     }
 }
 
-/// The mesh of a shape of space.
+/// The mesh of a shape in space.
 pub(crate) fn space(shape: &str, files: &[(&str, &[u8])]) -> Read<3> {
     match any(3, shape, files)? {
         (AnyBlueprint::Space(b), notices) => Ok((b.bodies[0].mesh.clone(), notices)),
@@ -32,7 +32,7 @@ pub(crate) fn space(shape: &str, files: &[(&str, &[u8])]) -> Read<3> {
     }
 }
 
-/// A drawing with nodes 0.1 apart, 2 wide.
+/// A drawing that is 2 wide, with nodes 0.1 apart.
 pub(crate) fn svg(text: &str) -> Read<2> {
     plane("kind = \"svg\", file = \"a.svg\", spacing = 0.1, size = 2.0", "a.svg", text.as_bytes())
 }

@@ -1,4 +1,4 @@
-//! Recordings on a disk: one that is full, one that has another file there, one that takes places beyond 4 GiB.
+//! Recordings on a disk: a full one, one with another file of the same name, and one with offsets beyond 4 GiB.
 
 use super::*;
 use opruga_io::recording::RecordingFile;
@@ -14,8 +14,7 @@ fn folder(name: &str) -> PathBuf {
     path
 }
 
-/// Row 83: the disk fails at any byte, or only when the bytes shall last: an error with the number of bytes, and a file
-/// whose frames are right.
+/// Row 83: the disk fails at any byte, or only when it is synced. The result is an error with the number of bytes, and a file whose frames are right.
 #[test]
 fn a_disk_that_fails_at_any_byte_leaves_whole_frames() {
     let folder = folder("failing");
@@ -40,7 +39,7 @@ fn a_disk_that_fails_at_any_byte_leaves_whole_frames() {
         let error = outcome.expect_err("the disk is full");
         assert_eq!((error.code(), error.exit_code(), &error.path), ("write.failed", 4, &path), "{k}");
         match File::open(&path) {
-            // It does not get its name before its head is whole.
+            // The file does not get its name before its header is complete.
             Err(_) => assert!(k < 300 && std::fs::read_dir(&folder).expect("a folder").count() == 0, "{k}"),
             Ok(file) => {
                 assert_eq!(error.bytes, k);
@@ -53,7 +52,7 @@ fn a_disk_that_fails_at_any_byte_leaves_whole_frames() {
         }
     }
     std::fs::remove_file(&path).expect("the last one");
-    // A disk on which nothing lasts: what would take the place of another file is refused at once, a new one at its end.
+    // A disk that cannot be synced: a recording that would replace another file is refused at once, a new one at its end.
     let fails = |force| RecordingFile::create_through(&path, force, &header(), |file| Failing::at_sync(5, file));
     let error = fails(false).and_then(RecordingFile::finish).expect_err("it does not last");
     assert!(error.code() == "write.failed" && path.exists(), "{error}");
@@ -63,7 +62,7 @@ fn a_disk_that_fails_at_any_byte_leaves_whole_frames() {
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
-/// Rows 84 to 86: what is there stays, unless it shall be replaced; nobody else's recording is taken over; no device.
+/// Rows 84 to 86: an existing file stays unless it is to be replaced; a recording that another process writes, or a device, is not replaced.
 #[test]
 fn an_earlier_file_stays_until_the_new_one_has_begun() {
     let folder = folder("earlier");
@@ -97,7 +96,7 @@ fn an_earlier_file_stays_until_the_new_one_has_begun() {
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
-/// A file whose bytes from a place on lie 6 GiB farther: a hole that takes no room on the disk.
+/// A file whose bytes from some offset on are moved by 6 GiB: a hole that takes no space on the disk.
 struct Sparse {
     file: File,
     at: u64,
@@ -126,7 +125,7 @@ impl Target for &mut Sparse {
     }
 }
 
-/// Row 89: places beyond 4 GiB and frames beyond 2³² are found. One chunk is 6 GiB long, most of it a hole.
+/// Row 89: offsets beyond 4 GiB and frames beyond 2³² are found. One chunk is 6 GiB long, most of it a hole.
 #[test]
 fn places_and_frames_beyond_32_bits_are_found() {
     let folder = folder("sparse");
@@ -139,7 +138,7 @@ fn places_and_frames_beyond_32_bits_are_found() {
     writer.flush().expect("memory does not fail");
     let second = writer.bytes();
     drop(writer);
-    // The head of the first chunk, made to say that its payload is longer by the hole.
+    // The head of the first chunk, changed so that its payload is longer by the hole.
     let identity = crc32fast::hash(&plain.0[24..start as usize - 4]);
     let head = &mut plain.0[start as usize..];
     let payload = second - start - 48 + GAP;
@@ -168,7 +167,7 @@ fn places_and_frames_beyond_32_bits_are_found() {
     for k in [129, 64, 100, 65] {
         assert_eq!(recording.read(first + k), Ok(&state(60 + k)[..]), "frame {k} behind the first");
     }
-    // With its end the same file is read by its index.
+    // With its end, the same file is read by its index.
     let mut pairs = Vec::new();
     let end = file.seek(SeekFrom::End(0)).expect("a place");
     let mut place = start;

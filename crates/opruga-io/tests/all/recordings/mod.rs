@@ -1,5 +1,5 @@
-//! Recordings: every frame comes back, a cut costs its chunk at most, and no damage goes unnoticed. The numbers are rows of
-//! a list of torments.
+//! Recordings: every frame can be read again, a truncation costs at most its chunk, and no damage goes unnoticed. The numbers are rows of the torture
+//! list.
 
 mod files;
 mod together;
@@ -43,7 +43,7 @@ fn header() -> Header {
     }
 }
 
-/// The state of a frame: numbers that move; a body comes at frame 70, and a text of five bytes at frame 90.
+/// The state of a frame: numbers that change; a body is added at frame 70, and a text of five bytes at frame 90.
 fn state(frame: u64) -> Vec<u8> {
     let nodes = if frame < 70 { 6 } else { 9 };
     let mut out: Vec<u8> = frame.to_le_bytes().to_vec();
@@ -54,17 +54,17 @@ fn state(frame: u64) -> Vec<u8> {
     out
 }
 
-/// The hash that a program gives a frame.
+/// The hash that a program computes for a frame.
 fn hash(frame: u64) -> u64 {
     (frame + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
 
-/// Adds a frame with its state, or without.
+/// Adds a frame with or without its state.
 fn add(writer: &mut Writer<impl Target>, frame: u64, kept: bool) -> std::io::Result<()> {
     if kept { writer.keep(frame, hash(frame), &mut state(frame)) } else { writer.push(frame, hash(frame)) }
 }
 
-/// What a program did before a frame: nothing, mostly.
+/// The actions of a program before a frame: usually none.
 fn inputs(frame: u64) -> Vec<Vec<u8>> {
     match frame {
         66 => vec![b"drag".to_vec(), Vec::new()],
@@ -73,7 +73,7 @@ fn inputs(frame: u64) -> Vec<Vec<u8>> {
     }
 }
 
-/// The bytes of a recording of some frames, with its end or without.
+/// The bytes of a recording of some frames, with or without its end.
 fn recorded(frames: core::ops::Range<u64>, closed: bool) -> Vec<u8> {
     let mut memory = Memory::default();
     let mut writer = Writer::new(&mut memory, &header()).expect("memory does not fail");
@@ -142,7 +142,7 @@ fn frames_out_of_order_are_refused_and_left_out() {
     assert_eq!(open(&memory.0).expect("a recording").frames(), 3..5);
 }
 
-/// One state in five, and the last; every frame has its hash. What lies between is told from what is not there; inputs keep
+/// One state in five, and the last; every frame has its hash. States that are not kept are distinguished from frames that do not exist; inputs keep
 /// their frames.
 #[test]
 fn states_are_kept_as_far_apart_as_the_header_says() {
@@ -154,7 +154,7 @@ fn states_are_kept_as_far_apart_as_the_header_says() {
             inputs(frame).iter().for_each(|input| writer.input(frame, input).expect("before its frame"));
             let kept = (frame - frames.start).is_multiple_of(5);
             add(&mut writer, frame, kept).expect("in order");
-            // The run ends: the state of its last frame comes behind that.
+            // The run ends: the state of its last frame follows that frame.
             if frame + 1 == frames.end && !kept {
                 add(&mut writer, frame, true).expect("the last state");
                 assert!(writer.push(frames.end, 0).is_err(), "it was the last");
@@ -187,7 +187,7 @@ fn states_are_kept_as_far_apart_as_the_header_says() {
             assert!(inputs(frame).contains(&recording.input(number).expect("an input")));
         }
     }
-    // Cut off anywhere it ends with a frame whose hash is there, though its state may not be: it follows from the one before.
+    // Truncated anywhere, it ends with a frame whose hash exists, though its state may not: it can be computed from the previous one.
     let whole = written(60..93, false);
     let (mut reached, mut without) = (0, 0);
     for length in 400..whole.len() {
@@ -203,7 +203,7 @@ fn states_are_kept_as_far_apart_as_the_header_says() {
     assert!(reached == 92 && without > 100, "{reached}, {without}");
 }
 
-/// Row 79: cut off at any byte, as by a kill, a recording loses the chunk that was cut and nothing else.
+/// Row 79: truncated at any byte, as by a kill, a recording loses the truncated chunk and nothing else.
 #[test]
 fn a_recording_that_is_cut_anywhere_keeps_all_frames_before() {
     for closed in [true, false] {
@@ -234,7 +234,7 @@ fn a_recording_that_is_cut_anywhere_keeps_all_frames_before() {
     }
 }
 
-/// Row 82: one flipped bit anywhere, of any byte, is an error, or (where the end is gone) said; no frame is ever wrong.
+/// Row 82: any single flipped bit is an error or, if the end is gone, is reported; no frame is ever wrong.
 #[test]
 fn a_flipped_bit_anywhere_is_found() {
     let good = recorded(60..75, true);
@@ -279,7 +279,7 @@ fn a_flipped_bit_anywhere_is_found() {
     assert!(matches!(open(&other).expect("whole frames").ending(), Ending::Damaged(_)), "something follows the end");
 }
 
-/// A chunk of another recording, whole in itself, does not fit.
+/// A chunk of another recording is refused although it is intact.
 #[test]
 fn chunks_of_another_recording_are_refused() {
     let mine = recorded(0..4, false);
@@ -288,7 +288,7 @@ fn chunks_of_another_recording_are_refused() {
     let mut writer = Writer::new(&mut memory, &foreign).expect("memory does not fail");
     (0..8).for_each(|frame| add(&mut writer, frame, true).expect("in order"));
     writer.flush().expect("memory does not fail");
-    // Names of the same length: the chunks lie at the same places.
+    // The names have the same length, so the chunks have the same offsets.
     let joined = [&mine[..], &memory.0[mine.len()..]].concat();
     let recording = open(&joined).expect("the head is whole");
     assert_eq!(recording.frames(), 0..4);
@@ -300,7 +300,7 @@ fn other_files_and_other_versions_are_refused() {
     for bytes in [&b""[..], b"PK\x03\x04 this is an archive", b"OPRUGA\x1a\n and so on", &[0; 300]] {
         assert_eq!(open(bytes).err(), Some(RecordingError::NotOne {}));
     }
-    // Older ones lack the hashes of frames.
+    // Older versions lack the hashes of frames.
     for version in [1, 2, 3, 4, 7, 99] {
         let mut other = recorded(0..2, true);
         other[8] = version;

@@ -1,10 +1,10 @@
-//! Frames without their states that go to the system together: one chunk, so that a kill costs one at most.
+//! Frames without states that go to the system together form one chunk, so that a kill costs at most one chunk.
 
 use super::*;
 use opruga_io::recording::RecordingFile;
 use std::sync::{Arc, Mutex};
 
-/// Every how many frames a state is kept, and the others are given to the system.
+/// The number of frames after which a state is kept and the others are given to the system.
 const EVERY: u64 = 7;
 const TOGETHER: u64 = 3;
 
@@ -61,7 +61,7 @@ fn hashes_come_back_in_any_order() {
                 assert_eq!(recording.read(kept), Ok(&state(kept)[..]), "frame {frame}");
             }
         }
-        // Cut off at any byte it ends with a whole chunk, and every frame up to there has its hash.
+        // Truncated at any byte, it ends with a complete chunk, and every frame up to there has its hash.
         let whole = open(&bytes).expect("a recording");
         for length in (300..bytes.len()).rev().filter(|length| bytes.len() - length < 3000) {
             let Ok(mut cut) = open(&bytes[..length]) else { continue };
@@ -74,7 +74,7 @@ fn hashes_come_back_in_any_order() {
     }
 }
 
-/// Row 82: as for states.
+/// Row 82: the same for hashes.
 #[test]
 fn a_flipped_bit_among_hashes_is_found() {
     let good = in_memory(60..77);
@@ -100,7 +100,7 @@ fn a_flipped_bit_among_hashes_is_found() {
     }
 }
 
-/// What the system was given, piece by piece.
+/// The data that the system was given, piece by piece.
 #[derive(Clone, Default)]
 struct Given(Arc<Mutex<Vec<Vec<u8>>>>);
 
@@ -120,8 +120,8 @@ impl Target for Given {
     }
 }
 
-/// Row 79, what a kill costs: every chunk is given to the system alone, in one piece, before anything of the next one is begun. So at any moment no
-/// more than one chunk is not there: the one that frames are still joining, or that is just being written.
+/// Row 79, the cost of a kill: every chunk is given to the system separately, in one piece, before the next one begins. At any moment at most one
+/// chunk is therefore missing: the one to which frames are still being added, or that is being written.
 #[test]
 fn every_chunk_is_given_to_the_system_before_the_next_is_begun() {
     let folder = std::env::temp_dir().join(format!("opruga-recordings-together-{}", std::process::id()));
@@ -132,7 +132,7 @@ fn every_chunk_is_given_to_the_system_before_the_next_is_begun() {
     let begun = RecordingFile::create_through(&folder.join("r"), true, &head, move |_| wrap).expect("a file");
     let there = || given.0.lock().expect("nobody has failed").concat();
     let missing = |_: &RecordingFile, frame: u64| {
-        // Frames that are not there yet are those of one chunk.
+        // The missing frames belong to one chunk.
         let bytes = there();
         let last = open(&bytes).expect("a recording").frames().end - 1;
         assert!(frame - last < TOGETHER, "frame {frame} was added, {last} are there");
@@ -153,7 +153,7 @@ fn every_chunk_is_given_to_the_system_before_the_next_is_begun() {
     file.keep(93, hash(93), |out| out.extend(state(93))).expect("the last state");
     let pieces = given.0.lock().expect("nobody has failed").clone();
     let mut together = 0;
-    // Behind the beginning of the file.
+    // After the beginning of the file.
     for piece in &pieces[1..] {
         let payload = piece[24..32].iter().rev().fold(0, |all, byte| all << 8 | usize::from(*byte));
         assert_eq!(piece.len(), 48 + payload, "one chunk, and all of it");
