@@ -1,4 +1,4 @@
-//! The window: what is where, shortcuts, messages.
+//! The window: its layout, shortcuts and messages.
 
 mod arrivals;
 #[cfg(not(target_arch = "wasm32"))]
@@ -24,15 +24,15 @@ use egui::{Align2, Color32, FontId, Frame, Margin, Panel, Theme, Ui};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The scene that comes first.
+/// The scene that is opened first.
 pub const FIRST_SCENE: &str = "ball";
 
-/// The width up to which the properties are in a drawer [points]: a phone held upright.
+/// The width up to which the properties are in a drawer [points], as on a phone held upright.
 const NARROW: f32 = 700.0;
 
-/// The time between two pictures from which on they do not follow one another, unless time passes [s].
+/// Two pictures at least this far apart [s] do not count as consecutive, unless time passes in the simulation.
 const IDLE: f64 = 0.25;
-/// How long a frame is computed before what is shown counts as old.
+/// How long a frame is computed before the picture counts as outdated.
 const STALE: Duration = Duration::from_millis(700);
 
 /// The whole window.
@@ -44,49 +44,49 @@ pub struct Studio {
     gallery: Gallery,
     keeping: Keeping,
     hand: Hand,
-    /// Shapes that wait for the pointer.
+    /// Shapes that wait for the position of the pointer.
     landing: arrivals::Waiting,
     /// The language of the interface.
     pub language: Language,
     theme: Theme,
-    /// Where language and theme are kept.
+    /// Where language and theme are stored.
     store: Store,
     show: Show,
     plots_open: bool,
-    /// Whether the properties are open in a window that is too narrow to show them always.
+    /// Whether the properties are open in a window that is too narrow to show them permanently.
     drawer_open: bool,
-    /// Whether the properties are those of the right side alone.
+    /// Whether the properties are those of the right side only.
     right_only: bool,
-    /// A difference of the right side that waits until the hand lets go: both sides are computed anew for it.
+    /// A difference of the right side that is applied when the pointer is released, because both sides must be computed again for it.
     difference: Option<Request>,
     help_open: bool,
-    /// How often the pointer was pressed.
+    /// The number of presses of the pointer so far.
     presses: u64,
-    /// The message that was closed.
+    /// The number of the message that was closed.
     closed: u64,
-    /// Who spoke last.
+    /// The last source of a message.
     heard: message::Heard,
-    /// The last message, since when it is shown, and where: it goes by itself.
+    /// The last message, the time since which it is shown, and where; it disappears by itself.
     last_message: (String, f64, message::Placement),
-    /// Pictures of the interface in a second.
+    /// Pictures of the interface per second.
     rate: f64,
-    /// Whether time passed in the last picture.
+    /// Whether time passed in the previous picture.
     played: bool,
-    /// What draws, and on which device, where there is a choice.
+    /// The renderer and its device, if there is a choice.
     drawn_by: Option<[String; 2]>,
-    /// Where what is done is kept against the loss of the window.
+    /// Where the work is saved in case the window is lost.
     #[cfg(not(target_arch = "wasm32"))]
     rescue: Option<crate::rescue::Rescue>,
-    /// Whether the window is about to close.
+    /// The state of closing the window.
     #[cfg(not(target_arch = "wasm32"))]
     closing: closing::Closing,
 }
 
 impl Studio {
-    /// The window on a session.
+    /// Makes the window of a session.
     ///
     /// # Errors
-    /// Where the system gives no thread.
+    /// The system provides no thread.
     pub fn new(session: Session, context: &egui::Context) -> std::io::Result<Studio> {
         crate::theme::apply(context);
         context.add_plugin(crate::taps::Taps::default());
@@ -125,7 +125,7 @@ impl Studio {
         })
     }
 
-    /// Takes over what a person prefers from where it is kept, and keeps there what they choose from now on.
+    /// Restores the user's preferences from a store, and saves further choices there.
     pub fn prefer(&mut self, store: Store, context: &egui::Context) {
         let kept = store.read();
         (self.language, self.theme) = (kept.language, kept.theme);
@@ -133,20 +133,20 @@ impl Studio {
         self.store = store;
     }
 
-    /// Keeps pictures of scenes in this folder, which need not be drawn again then.
+    /// Saves pictures of scenes in this folder, so that they need not be drawn again.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn keep_pictures_in(&mut self, folder: std::path::PathBuf) {
         self.gallery.cache = Some(folder);
     }
 
-    /// Keeps what is done there, against the loss of the window.
+    /// Saves the work there in case the window is lost.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn keep_at(&mut self, rescue: crate::rescue::Rescue) {
         self.rescue = Some(rescue);
     }
 
-    /// Goes on in another context, on another device: pictures that were handed to the last one are handed over anew.
-    /// `drawn_by` says what draws there, and on which device.
+    /// Continues in another context, on another device; pictures that were uploaded to the last one are uploaded again. `drawn_by` names the renderer
+    /// and its device.
     #[cfg(target_arch = "wasm32")]
     pub fn move_to(&mut self, context: &egui::Context, drawn_by: [String; 2]) {
         self.drawn_by = Some(drawn_by);
@@ -164,12 +164,12 @@ impl Studio {
         self.link.shown()
     }
 
-    /// Asks the session for something.
+    /// Sends a request to the session.
     pub fn ask(&self, request: Request) {
         self.link.ask(request);
     }
 
-    /// Reports something to the person.
+    /// Reports something to the user.
     pub fn report(&mut self, severity: Severity, report: Report) {
         self.keeping.report(severity, report);
     }
@@ -189,7 +189,7 @@ impl Studio {
         self.canvas.is_drawing() || self.gallery.is_drawing() || self.keeping.is_working()
     }
 
-    /// Whether a question stands before everything else.
+    /// Whether a modal question is open.
     fn is_asking(&self) -> bool {
         #[cfg(target_arch = "wasm32")]
         return false;
@@ -201,13 +201,13 @@ impl Studio {
     pub fn show(&mut self, ui: &mut Ui) {
         let shown = self.link.shown();
         let seconds = f64::from(ui.input(|i| i.unstable_dt)).max(1e-4);
-        // Between pictures that do not follow one another nothing was drawn, and nobody waited for it.
+        // If pictures are not consecutive, nothing was drawn between them, and nobody waited for it.
         let follows = seconds < IDLE || shown.playing && self.played;
         self.played = shown.playing;
         if follows {
             self.rate += 0.05 * (1.0 / seconds - self.rate);
         }
-        // What is done is told by this picture: it may be the last one for long.
+        // This picture reports what was done: it may be the last one for a long time.
         self.keeping.poll(&self.link);
         self.canvas.follow_names(&shown);
         let mut asks = Vec::new();
@@ -245,8 +245,8 @@ impl Studio {
             Panel::bottom("plots").frame(side).resizable(true).default_size(210.0).size_range(200.0..=420.0).show(
                 ui,
                 |ui| {
-                    // On a narrow window curves keep their width and are pushed along.
-                    // Below them is room for the bar by which they are pushed, which is seen before it is looked for.
+                    // In a narrow window curves keep their width and are scrolled. The space below them is for the scroll bar, which is visible
+                    // without searching for it.
                     let available = ui.available_size() - egui::vec2(0.0, 10.0);
                     ui.spacing_mut().scroll = egui::style::ScrollStyle::thin();
                     egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
@@ -262,7 +262,7 @@ impl Studio {
             self.on_canvas(ui, rect, &shown, &mut asks);
         });
         self.windows(ui, &shown, &mut asks);
-        // What nobody looks at is not computed.
+        // Hidden values are not computed.
         if self.properties.hash != self.show.hash {
             asks.push(Request::Show(Show { hash: self.properties.hash, ..self.show }));
         }
@@ -276,7 +276,7 @@ impl Studio {
         });
         self.presses += u64::from(pressed);
         for ask in asks {
-            // What a hand that is down sets is undone as one.
+            // All changes during one press of the pointer are undone together.
             let ask = match ask {
                 Request::Set(path, value) if is_down => Request::Draw(self.presses, path, value),
                 ask => ask,
@@ -292,13 +292,13 @@ impl Studio {
         if self.gallery.is_drawing() || self.keeping.is_working() {
             ui.ctx().request_repaint_after(Duration::from_millis(100));
         }
-        // A frame that takes long is told of while it is computed.
+        // A frame that takes long is reported while it is computed.
         if shown.playing || self.link.busy().is_some() {
             ui.ctx().request_repaint_after(STALE);
         }
     }
 
-    /// The panel of properties; side by side, those of both sides or of the right one.
+    /// The panel of properties; side by side, of both sides or of the right one.
     fn properties(&mut self, ui: &mut Ui, shown: &Arc<Shown>, asks: &mut Vec<Request>) {
         let words = self.language;
         let Some(beside) = &shown.beside else {
@@ -323,7 +323,7 @@ impl Studio {
         for ask in wanted {
             match difference(&ask, &beside.right) {
                 Some(difference) => self.difference = Some(Request::Differ(difference)),
-                // Where bodies are and how many there are is common to both sides.
+                // The positions and the number of bodies are common to both sides.
                 None => asks.push(ask),
             }
         }
@@ -358,7 +358,7 @@ impl Studio {
         }
     }
 
-    /// The toolbar, the palette and the colours, over the scene.
+    /// The toolbar, the palette and the colour settings, over the scene.
     fn on_canvas(&mut self, ui: &mut Ui, rect: egui::Rect, shown: &Arc<Shown>, asks: &mut Vec<Request>) {
         let words = self.language;
         let spot = rect.min + egui::vec2(10.0, 10.0);
@@ -384,7 +384,7 @@ impl Studio {
                         if ui.button(words.fit()).on_hover_text(format!("{}  (F)", words.fit_hint())).clicked() {
                             self.canvas.fit();
                         }
-                        // A part of the row by itself would not go to the next row where it finds no room.
+                        // A nested layout would not wrap to the next row if it did not fit.
                         let focus = ui.add_enabled(self.canvas.selected.is_some(), egui::Button::new(words.focus()));
                         if focus.on_hover_text(format!("{}  (C)", words.focus_hint())).clicked() {
                             self.canvas.focus(shown);
@@ -415,7 +415,7 @@ impl Studio {
     }
 }
 
-/// What is asked of both sides, as a difference of the right one; none where it concerns both.
+/// Converts a request about both sides to a difference of the right one; none if it must concern both.
 fn difference(ask: &Request, shown: &Shown) -> Option<Difference> {
     let name = |number: usize| shown.bodies.iter().find(|body| body.number == number).map(|body| body.name.clone());
     Some(match ask {

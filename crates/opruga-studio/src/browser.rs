@@ -1,4 +1,4 @@
-//! What a browser gives: its clock, its address, downloads and files.
+//! The services of a browser: its clock, its address, downloads and files.
 
 use crate::report::Report;
 use js_sys::{Array, Promise, Uint8Array};
@@ -7,7 +7,7 @@ use wasm_bindgen::prelude::*;
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
-/// A file that a person has chosen: its name and its bytes.
+/// A file that the user has chosen: its name and its bytes.
 pub(crate) type Chosen = Result<(String, Vec<u8>), Report>;
 
 fn window() -> Option<web_sys::Window> {
@@ -19,14 +19,14 @@ pub(crate) fn milliseconds() -> f64 {
     window().and_then(|window| window.performance()).map_or(0.0, |clock| clock.now())
 }
 
-/// Comes back when the browser has done what waited: events, and the next picture if it is due.
+/// Returns after the browser has handled pending work: events, and the next picture if it is due.
 pub(crate) async fn next_turn() {
     let promise = Promise::new(&mut |resolve, _| {
         if let Some(window) = window() {
             let _ = window.set_timeout_with_callback_and_timeout_and_arguments_0(&resolve, 0);
         }
     });
-    // A timer does not fail.
+    // A timer cannot fail.
     let _ = JsFuture::from(promise).await;
 }
 
@@ -38,12 +38,12 @@ pub(crate) fn report_lost_device() {
     }
 }
 
-/// The part of the address behind its `#`.
+/// The part of the address after its `#`.
 pub(crate) fn fragment() -> String {
     window().and_then(|window| window.location().hash().ok()).unwrap_or_default()
 }
 
-/// Puts this behind the `#` of the address, without a new entry in the history; the whole address.
+/// Replaces the part of the address after the `#` without a new entry in the history; returns the whole address.
 pub(crate) fn set_fragment(fragment: &str) -> Result<String, Report> {
     let failed = || Report::AddressStays;
     let window = window().ok_or_else(failed)?;
@@ -52,19 +52,19 @@ pub(crate) fn set_fragment(fragment: &str) -> Result<String, Report> {
     window.location().href().map_err(|_| failed())
 }
 
-/// What the browser keeps for this page under a name; none where it keeps nothing, as in a private window.
+/// The text that the browser stores for this page under a name; none if it stores nothing, as in a private window.
 pub(crate) fn stored(name: &str) -> Option<String> {
     window()?.local_storage().ok()??.get_item(name).ok()?
 }
 
-/// Keeps a text there. Where the browser keeps nothing it is gone with the page.
+/// Stores a text there. If the browser does not support this, the text is lost with the page.
 pub(crate) fn store(name: &str, text: &str) {
     if let Some(Ok(Some(storage))) = window().map(|window| window.local_storage()) {
         let _ = storage.set_item(name, text);
     }
 }
 
-/// Hands a file to the person as a download.
+/// Gives a file to the user as a download.
 pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), Report> {
     let failed = |_: JsValue| Report::NoDownload(name.into());
     let parts = Array::of1(&Uint8Array::from(bytes));
@@ -75,7 +75,7 @@ pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), Report> {
     anchor.set_href(&address);
     anchor.set_download(name);
     anchor.click();
-    // The download has begun; what it reads must live until it has ended.
+    // The download has begun; its data must live until it has ended.
     let forget = Closure::once_into_js(move || {
         let _ = web_sys::Url::revoke_object_url(&address);
     });
@@ -96,7 +96,7 @@ pub(crate) async fn read(file: &web_sys::File, most: u64) -> Chosen {
     Ok((name, Uint8Array::new(&buffer).to_vec()))
 }
 
-/// Lets a person choose a file; on a phone nothing can be dropped.
+/// Lets the user choose a file, because files cannot be dropped on a phone.
 pub(crate) fn choose(endings: &str, most: u64) -> Receiver<Chosen> {
     let (sender, receiver) = channel();
     let page = window().and_then(|window| window.document());

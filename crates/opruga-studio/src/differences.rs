@@ -1,4 +1,4 @@
-//! In what the scene on the right differs from the one on the left, and that scene itself.
+//! The differences of the right scene from the left one, and the right scene itself.
 
 use crate::document::read;
 use crate::document::{Document, kind_table, toml};
@@ -10,7 +10,7 @@ use opruga::io::Files;
 use std::collections::{BTreeMap, BTreeSet};
 use toml_edit::Value as Toml;
 
-/// In what the right one differs from the left one, from the start on.
+/// A difference of the right scene from the left one, from the start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Difference {
     /// A parameter by its path.
@@ -24,7 +24,7 @@ pub enum Difference {
 }
 
 impl Difference {
-    /// What it is about: a later one about the same replaces an earlier one.
+    /// Its subject: a later difference with the same subject replaces an earlier one.
     pub fn about(&self) -> String {
         match self {
             Difference::Set(path, _) => path.clone(),
@@ -36,7 +36,7 @@ impl Difference {
     }
 }
 
-/// Adds a difference to those that there are. Another kind of model or integrator takes the values of the former one away.
+/// Adds a difference to a list. Another kind of model or integrator removes the values of the former one.
 pub fn add_difference(differences: &mut Vec<Difference>, new: Difference) {
     let about = new.about();
     let below = format!("{about}.");
@@ -45,28 +45,28 @@ pub fn add_difference(differences: &mut Vec<Difference>, new: Difference) {
     differences.push(new);
 }
 
-/// Which node of a body on one side stands for which on the other: that which lies nearest at rest. Bodies that have the same
-/// nodes on both sides are not in it.
+/// The correspondence of nodes of a body on the two sides: each corresponds to the nearest one at rest. Bodies with the same nodes on both sides are
+/// not included.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Twins(BTreeMap<usize, [Vec<u32>; 2]>);
 
 impl Twins {
-    /// The node on the right for one on the left.
+    /// The node on the right that corresponds to one on the left.
     pub fn on_right(&self, body: usize, node: u32) -> u32 {
         self.0.get(&body).and_then(|both| both[0].get(node as usize)).copied().unwrap_or(node)
     }
 
-    /// The node on the left for one on the right.
+    /// The node on the left that corresponds to one on the right.
     pub fn on_left(&self, body: usize, node: u32) -> u32 {
         self.0.get(&body).and_then(|both| both[1].get(node as usize)).copied().unwrap_or(node)
     }
 }
 
-/// The scene on the right: that on the left with the differences written into it. Where a body has other nodes there, what
-/// names nodes names those that lie nearest at rest.
+/// Makes the right scene: the left one with the differences written into it. If a body has other nodes there, references to nodes are changed to the
+/// nearest ones at rest.
 ///
 /// # Errors
-/// [`Report`] where a difference has no place in the scene, or all that is wrong with a shape.
+/// [`Report`] if a difference cannot be written into the scene, or all errors of a shape.
 pub fn right_of(
     document: &Document,
     differences: &[Difference],
@@ -103,7 +103,7 @@ pub fn right_of(
     Ok((right, twins))
 }
 
-/// Writes a difference into a scene; `false` where there is no place for it.
+/// Writes a difference into a scene; `false` if that is not possible.
 fn write(scene: &mut Document, difference: &Difference) -> bool {
     let (name, mut table) = match difference {
         Difference::Set(path, value) => return scene.set(path, value),
@@ -133,14 +133,14 @@ fn write(scene: &mut Document, difference: &Difference) -> bool {
     scene.replace_body(name, &table)
 }
 
-/// The names of the bodies of a scene and where their nodes are at rest [m].
+/// The names of the bodies of a scene and the positions of their nodes at rest [m].
 fn rest_positions(blueprint: &AnyBlueprint) -> Vec<(String, Vec<[f64; 3]>)> {
     blueprint.scene().bodies().map(|body| (body.name().into(), body.rest_positions())).collect()
 }
 
-/// For every point the number of the nearest of others; of several the first.
+/// For every point, the index of the nearest of others; if several are equally near, the first.
 fn nearest(of: &[[f64; 3]], among: &[[f64; 3]]) -> Vec<u32> {
-    // In the order of x, the search ends where x alone is farther than the best.
+    // Sorted by x, the search ends when the difference in x alone exceeds the best distance.
     let mut order: Vec<u32> = (0..among.len() as u32).collect();
     order.sort_by(|a, b| among[*a as usize][0].total_cmp(&among[*b as usize][0]).then(a.cmp(b)));
     let find = |point: &[f64; 3]| {

@@ -1,5 +1,5 @@
-//! The scene as its text: what a person does is written into it, so that saving is writing the text and the command line
-//! runs what was done here.
+//! The scene as its text. The actions of the user are written into it, so that saving means writing the text, and the command line can repeat what
+//! was done here.
 
 mod overrides;
 mod taken_over;
@@ -20,11 +20,11 @@ pub struct Document {
     text: DocumentMut,
 }
 
-/// Reads the text of a document, which names models and integrators of these registries; what is odd about it and its files is counted,
-/// but for what it asks for itself.
+/// Reads the text of a document, which names models and integrators of these registries. Notices about it and its files are counted, except those
+/// about things that it asks for itself.
 ///
 /// # Errors
-/// Everything that is wrong with it.
+/// All errors in the text.
 pub fn read(
     document: &Document,
     files: &Files,
@@ -35,20 +35,20 @@ pub fn read(
     let read = scene::read(document.text().as_bytes(), &file, &catalogue_of(registries), &reading);
     // The text has changed since anybody has seen it.
     let (blueprint, notices) = read.map_err(|errors| without_lines(errors, &document.name, ""))?;
-    // Time goes on behind the end that the scene states for a run: every command comes about here.
+    // Time continues after the end that the scene gives for a run, so every command is executed here.
     let is_reported = |code: &str| !Notice::is_asked_for(code) && code != "command.never";
     let warnings = notices.into_iter().filter(|notice| is_reported(notice.about.code));
     Ok((blueprint, warnings.map(Warning::from).collect()))
 }
 
-/// The time of the last moment that a command without an end names [s].
+/// The end time that is written for a command without an end [s].
 pub const FOR_EVER: f64 = 1e9;
 
 impl Document {
-    /// Takes a text that the reader of scenes has accepted.
+    /// Makes a document from a text that the scene reader has accepted.
     ///
     /// # Errors
-    /// [`Report::Scene`] where it is not TOML.
+    /// [`Report::Scene`] if it is not TOML.
     pub fn new(name: impl Into<String>, text: &str) -> Result<Document, Report> {
         let name = name.into();
         let text = text.parse::<DocumentMut>().map_err(|error| {
@@ -58,11 +58,11 @@ impl Document {
         Ok(Document { name, text })
     }
 
-    /// Takes a text that nobody has read yet: that of a file, whose lines are told, or one that was made around the file of this
-    /// name and has none that anybody knows.
+    /// Makes a document from a text that has not been read yet. It is either the text of a file, whose lines are reported, or a text made around the
+    /// file of this name, whose lines nobody knows.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// All errors in the text.
     pub fn unread(
         name: &str,
         text: &str,
@@ -70,7 +70,7 @@ impl Document {
         registries: &Registries,
         around: Option<&str>,
     ) -> Result<Document, Report> {
-        // The reader of scenes knows more of what can be wrong than the parser of documents.
+        // The scene reader detects more errors than the parser of documents.
         let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
         let read = scene::read(text.as_bytes(), &format!("{name}.toml"), &catalogue_of(registries), &reading);
         read.map_err(|errors| match around {
@@ -91,7 +91,7 @@ impl Document {
         item.as_array_of_tables().map(ArrayOfTables::len).or(item.as_array().map(Array::len)).unwrap_or(0)
     }
 
-    /// Writes a command behind the others; its number, for [`Document::end_command`].
+    /// Adds a command at the end; returns its number, for [`Document::end_command`].
     pub fn push_command(&mut self, table: Table) -> usize {
         let item = self.text.entry("command").or_insert_with(|| Item::ArrayOfTables(ArrayOfTables::new()));
         match tables(item) {
@@ -103,7 +103,7 @@ impl Document {
         }
     }
 
-    /// Takes the last command back.
+    /// Removes the last command.
     pub fn pop_command(&mut self) {
         if let Some(tables) = self.text.get_mut("command").and_then(Item::as_array_of_tables_mut)
             && !tables.is_empty()
@@ -112,7 +112,7 @@ impl Document {
         }
     }
 
-    /// The last command, if it sets this parameter at this time: a slider writes one value and not every one on its way.
+    /// The last command, if it sets this parameter at this time: a slider writes one value and not every intermediate one.
     pub fn last_set(&mut self, at: f64, path: &str) -> Option<&mut Table> {
         let tables = self.text.get_mut("command")?.as_array_of_tables_mut()?;
         let last = tables.len().checked_sub(1)?;
@@ -131,7 +131,7 @@ impl Document {
         }
     }
 
-    /// Writes when a command ends [s].
+    /// Writes the end time of a command [s].
     pub fn end_command(&mut self, number: usize, until: f64) {
         if let Some(table) = self.command(number) {
             table["until"] = toml_edit::value(until);
@@ -142,8 +142,8 @@ impl Document {
         self.text.get_mut("command")?.as_array_of_tables_mut()?.get_mut(number)
     }
 
-    /// Takes back what was recorded from a time on [s]: commands behind the first `kept` that begin then or later go,
-    /// those that act then end, and points that are pinned then stay so.
+    /// Removes what was recorded from a time on [s]. Of the commands after the first `kept`, those that begin then or later are removed, and those
+    /// that are active then end; points that are pinned then stay pinned.
     pub fn cut(&mut self, kept: usize, time: f64) {
         let Some(tables) = self.text.get_mut("command").and_then(Item::as_array_of_tables_mut) else { return };
         for number in (kept..tables.len()).rev() {
@@ -160,21 +160,21 @@ impl Document {
         }
     }
 
-    /// Takes commands back behind the first `kept`.
+    /// Removes the commands after the first `kept`.
     pub fn keep_commands(&mut self, kept: usize) {
         while self.commands() > kept {
             self.pop_command();
         }
     }
 
-    /// How long the scene lasts [s].
+    /// Sets the duration of the scene [s].
     pub fn set_seconds(&mut self, seconds: f64) {
         if let Some(time) = self.text.get_mut("time") {
             time["seconds"] = toml_edit::value(seconds);
         }
     }
 
-    /// The names of all bodies, those that commands add included.
+    /// The names of all bodies, including those that commands add.
     pub fn body_names(&self) -> Vec<String> {
         let name = |item: Option<&Item>| item.and_then(Item::as_str).map(String::from);
         let tables = |key: &str| self.text.get(key).and_then(Item::as_array_of_tables).into_iter().flatten();
@@ -185,7 +185,7 @@ impl Document {
         present.chain(added).collect()
     }
 
-    /// A name like this one that no body has: `ball`, `ball-2`, `ball-3` …
+    /// A name similar to `like` that no body has: `ball`, `ball-2`, `ball-3` …
     pub fn free_name(&self, like: &str) -> String {
         let taken = self.body_names();
         let stem = like.split('[').next().unwrap_or(like);
@@ -199,7 +199,7 @@ impl Document {
         (2..).map(|n| format!("{stem}-{n}")).find(|name| !taken.contains(name)).unwrap_or_default()
     }
 
-    /// The table of a body, of the scene or of a command that adds it; none for one of several copies.
+    /// The table of a body of the scene or of a command that adds it; none for one of several copies.
     pub fn body(&self, name: &str) -> Option<InlineTable> {
         let tables = |key: &str| self.text.get(key).and_then(Item::as_array_of_tables).into_iter().flatten();
         let named = |table: &dyn toml_edit::TableLike| table.get("name").and_then(Item::as_str) == Some(name);
@@ -221,14 +221,14 @@ impl Document {
         let mut values = Values::defaults(spec, dimension);
         for (field, value) in shape.iter().filter(|(field, _)| *field != "kind") {
             if let Some(value) = plain(value) {
-                // What the reader has taken is allowed; a list of another kind stays unseen.
+                // The reader has accepted these values; lists of other types are ignored.
                 let _ = values.set(spec, field, value, dimension);
             }
         }
         Some(values)
     }
 
-    /// Replaces the table of a body of the scene; `false` where there is none of its own.
+    /// Replaces the table of a body of the scene; `false` if the body does not have its own table.
     pub fn replace_body(&mut self, name: &str, body: &InlineTable) -> bool {
         let Some(table) = self.own_body(name) else { return false };
         let decor = table.decor().clone();
@@ -247,7 +247,7 @@ impl Document {
         }
     }
 
-    /// Takes a body out of the scene with all that names it; `false` where it has no table of its own.
+    /// Removes a body from the scene with everything that names it; `false` if it does not have its own table.
     pub fn remove_body(&mut self, name: &str) -> bool {
         if self.own_body(name).is_none() {
             return false;
@@ -261,7 +261,7 @@ impl Document {
         true
     }
 
-    /// The bodies at the start alone, without anything that names one of their nodes.
+    /// The scene with only the initial bodies, without anything that names one of their nodes.
     pub fn without_nodes(&self) -> Document {
         let mut bare = self.clone();
         for key in ["command", "load", "probe"] {
@@ -275,20 +275,20 @@ impl Document {
         bare
     }
 
-    /// The scene with this body alone, and without anything that names a body.
+    /// The scene with only this body, and without anything that names a body.
     pub fn alone(&self, body: &InlineTable) -> Document {
         let mut alone = self.clone();
         for key in ["body", "command", "load", "probe"] {
             alone.text.remove(key);
         }
         let mut body = body.clone();
-        // Which nodes it has pinned does not matter.
+        // Its pinned nodes do not matter.
         body.remove("pin");
         alone.push_body(&body);
         alone
     }
 
-    /// Gives the nodes of a body other numbers wherever they are named.
+    /// Replaces the indices of a body's nodes wherever they occur.
     pub fn rename_nodes(&mut self, name: &str, other: &dyn Fn(u32) -> u32) {
         let renamed = |number: i64| u32::try_from(number).map_or(number, |node| i64::from(other(node)));
         for key in ["body", "command", "load", "probe"] {
@@ -318,7 +318,7 @@ impl Document {
         tables.iter_mut().find(found).filter(|table| !table.contains_key("copies"))
     }
 
-    /// Writes a parameter into the scene itself; `false` where the path leads to nothing that is written there.
+    /// Writes a parameter into the scene itself; `false` if the path names nothing that is written there.
     pub fn set(&mut self, path: &str, value: &Value) -> bool {
         let parts: Vec<&str> = path.split('.').collect();
         let put = |table: &mut dyn toml_edit::TableLike, field: &str| {
@@ -375,7 +375,7 @@ impl Document {
         }
     }
 
-    /// Lets bodies touch one another with all that contact assumes, or takes the section out.
+    /// Enables contact between bodies with its defaults, or removes the section.
     pub fn set_contact(&mut self, touch: bool) {
         if touch {
             self.text.entry("contact").or_insert_with(|| {
@@ -388,7 +388,7 @@ impl Document {
         }
     }
 
-    /// Takes a field of an obstacle or of contact out of the scene itself; `false` where it is not written there.
+    /// Removes a field of an obstacle or of contact from the scene itself; `false` if it is not written there.
     pub fn unset(&mut self, path: &str) -> bool {
         if let Some(field) = path.strip_prefix("contact.") {
             let table = self.text.get_mut("contact").and_then(Item::as_table_like_mut);
@@ -400,7 +400,7 @@ impl Document {
         table.is_some_and(|table| table.remove(field).is_some())
     }
 
-    /// Of how many dimensions the scene is.
+    /// The dimension of the scene.
     pub fn dimension(&self) -> usize {
         let written = self.text.get("dimension").and_then(Item::as_integer);
         written.and_then(|dimension| usize::try_from(dimension).ok()).unwrap_or(2)
@@ -418,8 +418,8 @@ impl Document {
     }
 }
 
-/// What is wrong with the text of a scene that nobody sees: its lines say nothing to anybody. In their place stands
-/// what it is about, where there is a file; the lines of other files stay.
+/// Errors in the text of a scene that nobody sees, without its lines, which would mean nothing to the user. They are replaced by the subject of the
+/// error or, if there is one, the file; lines of other files are kept.
 pub(crate) fn without_lines(errors: Vec<SceneError>, scene: &str, file: &str) -> Vec<SceneError> {
     let own = format!("{scene}.toml");
     let without_own_lines = |error: SceneError| match error.file == own {
@@ -429,7 +429,7 @@ pub(crate) fn without_lines(errors: Vec<SceneError>, scene: &str, file: &str) ->
     errors.into_iter().map(without_own_lines).collect()
 }
 
-/// The tables of a list; `command = [{ … }]` becomes `[[command]]`, which can be added to.
+/// The tables of a list; `command = [{ … }]` becomes `[[command]]`, which can be extended.
 fn tables(item: &mut Item) -> Option<&mut ArrayOfTables> {
     if let Some(inline) = item.as_array().cloned() {
         let tables = inline.iter().filter_map(Toml::as_inline_table).map(|t| t.clone().into_table());
@@ -438,7 +438,7 @@ fn tables(item: &mut Item) -> Option<&mut ArrayOfTables> {
     item.as_array_of_tables_mut()
 }
 
-/// Gives the nodes of a selection other numbers; several that come to the same one are named once.
+/// Replaces the indices of the nodes of a selection; if several become the same, it occurs once.
 fn rename_selected(select: &mut dyn toml_edit::TableLike, renamed: &dyn Fn(i64) -> i64) {
     if let Some(node) = select.get("node").and_then(Item::as_integer) {
         select.insert("node", toml_edit::value(renamed(node)));
@@ -449,7 +449,7 @@ fn rename_selected(select: &mut dyn toml_edit::TableLike, renamed: &dyn Fn(i64) 
     }
 }
 
-/// A value of TOML that is one value of a parameter; points and paths are none.
+/// A TOML value as a single value of a parameter; none for points and paths.
 fn plain(value: &Toml) -> Option<Value> {
     match value {
         Toml::Float(x) => Some(Value::Number(*x.value())),

@@ -1,4 +1,4 @@
-//! What becomes of a file that is dropped on the window.
+//! Handles files that are dropped on the window.
 
 use crate::report::Report;
 use crate::session::Request;
@@ -6,7 +6,7 @@ use crate::shape_file::Shape;
 use opruga::io::{Files, SceneError, scene, shapes};
 use std::path::Path;
 
-/// Endings of files that become bodies, with the fields of their shape.
+/// Endings of files that become bodies, with the fields of their shapes.
 const SHAPES: [(&str, &str, bool); 6] = [
     ("svg", "spacing = 0.05, size = 1.0, filling = \"triangles\"", false),
     ("obj", "size = 1.0", true),
@@ -16,8 +16,8 @@ const SHAPES: [(&str, &str, bool); 6] = [
     ("glb", "size = 1.0", true),
 ];
 
-/// What is asked for: a scene to open, or the shape of the file to be taken into the scene. A file that is no scene and no shape,
-/// or too large to be one, is refused before it is read.
+/// Returns the request for a dropped file: to open a scene, or to add the shape in the file to the scene. A file that is neither, or that is too
+/// large, is refused before it is read.
 ///
 /// # Errors
 /// Why it is refused.
@@ -28,7 +28,7 @@ pub fn take(path: &Path) -> Result<Request, Report> {
     request(&file, bytes, || Files::beside(path))
 }
 
-/// The same for a file of this name, whatever holds it: its bytes are read where it is a scene.
+/// Does the same for a file of this name from any source; its bytes are read if it is a scene.
 pub(crate) fn request(
     file: &str,
     bytes: impl FnOnce() -> Result<Vec<u8>, Report>,

@@ -1,4 +1,4 @@
-//! A world of either dimension behind one face: what a person does to it, as commands of the scene file.
+//! A world of either dimension behind a common interface: actions of the user become commands of the scene file.
 
 mod arrows;
 mod exploded;
@@ -16,7 +16,7 @@ use opruga::world::PathFault;
 use opruga::{AnyBody, AnyWorld, Warning, WorldError};
 use toml_edit::Table;
 
-/// A command that was given: its number in the world, and how the scene file writes it.
+/// A command that was given: its number in the world, and its table in the scene file.
 pub struct Given {
     /// Its number in the world.
     pub number: usize,
@@ -24,26 +24,26 @@ pub struct Given {
     pub table: Table,
 }
 
-/// What scenes have in common whatever their nodes are.
+/// Quantities that can be compared between scenes with different nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Common {
     /// The centre of mass of all bodies \[m\].
     pub center: [f64; 3],
-    /// What closed outlines and surfaces enclose \[m³, m² in the plane\]; none where there are none.
+    /// The volume within closed surfaces \[m³\] or the area within closed outlines \[m²\]; none if there are none.
     pub volume: Option<f64>,
 }
 
-/// The state of an engine, to go back to.
+/// The state of an engine, to which it can return.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// The snapshot of its world.
     pub world: Vec<u8>,
-    /// Side by side, the state on the right, and why that one has stopped.
+    /// Side by side, the state of the right side, and why that one has stopped.
     pub right: Option<(Box<State>, Option<Report>)>,
 }
 
 impl State {
-    /// The memory that it takes [bytes].
+    /// Its memory [bytes].
     pub fn bytes(&self) -> usize {
         self.world.len() + self.right.as_ref().map_or(0, |(right, _)| right.bytes())
     }
@@ -59,9 +59,9 @@ impl From<Vec<u8>> for State {
 pub trait Engine: Send {
     /// Steps through one frame.
     fn frame(&mut self) -> Result<(), WorldError>;
-    /// Begins and ends commands that are due now.
+    /// Begins and ends the commands that are due now.
     fn begin_what_is_due(&mut self) -> Result<(), WorldError>;
-    /// Frames since the start.
+    /// The number of frames since the start.
     fn frames(&self) -> u64;
     /// The length of a frame [s].
     fn frame_seconds(&self) -> f64;
@@ -69,39 +69,39 @@ pub trait Engine: Send {
     fn time(&self) -> f64;
     /// The dimension.
     fn dimension(&self) -> usize;
-    /// Substeps of a frame.
+    /// The number of substeps per frame.
     fn substeps(&self) -> u32;
     /// The whole state.
     fn snapshot(&self) -> State;
-    /// Back to a state of the same past.
+    /// Returns to an earlier state of the same run.
     fn rewind(&mut self, state: &State) -> Result<(), WorldError>;
-    /// What attracted attention.
+    /// The warnings so far.
     fn warnings(&self) -> Vec<Warning>;
-    /// Frames up to the end of the scene for the command line.
+    /// The number of frames up to the end of the scene on the command line.
     fn end(&self) -> u64;
-    /// The warnings about the present state, also about shapes, which are looked at anew by every call.
+    /// The warnings about the present state, including those about shapes, which are checked again at every call.
     fn warnings_at_the_end(&mut self) -> Vec<Warning>;
-    /// The first body that has grown beyond every measure of the scene.
+    /// The first body that has grown beyond all proportions.
     fn exploded(&mut self) -> Option<Exploded>;
     /// The hash of the state.
     fn hash(&self) -> u64;
-    /// Pulls a node of a body toward a pointer that is led.
+    /// Pulls a node of a body towards a moving pointer.
     fn pull(&mut self, body: usize, node: u32, pointer: [f64; 3]) -> Result<Given, WorldError>;
     /// The stiffness [N/m] and the largest force [N] of such a pull.
     fn usual_pull(&self, body: usize) -> Option<[f64; 2]>;
-    /// Leads the pointer of a pull two frames ahead; the row of its path.
+    /// Moves the pointer of a pull two frames ahead; returns the row of its path.
     fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError>;
-    /// Ends a command now; the time of its end [s].
+    /// Ends a command now; returns the time of its end [s].
     fn finish(&mut self, number: usize) -> Result<f64, WorldError>;
-    /// Pushes a node until it is told otherwise.
+    /// Pushes a node until the command is ended.
     fn push(&mut self, body: usize, node: u32, force: [f64; 3]) -> Result<Given, WorldError>;
     /// Pins a node.
     fn pin(&mut self, body: usize, node: u32) -> Result<Given, WorldError>;
-    /// Lets go of a node that is held.
+    /// Releases a pinned node.
     fn free(&mut self, body: usize, node: u32) -> Result<Given, WorldError>;
     /// Sets a parameter.
     fn set(&mut self, path: &str, value: Value) -> Result<Given, WorldError>;
-    /// Takes a body away.
+    /// Removes a body.
     fn remove(&mut self, name: &str) -> Result<Given, WorldError>;
     /// Gives a body other models or another integrator.
     fn change(
@@ -110,45 +110,45 @@ pub trait Engine: Send {
         models: Option<Vec<Values>>,
         integrator: Option<Values>,
     ) -> Result<Given, WorldError>;
-    /// Gives the last command of a scene that begins now and adds a body, and the warnings about that scene.
+    /// Executes the last command of a scene, which begins now and adds a body, and adds the warnings about that scene.
     fn add_from(&mut self, scene: AnyBlueprint, scene_warnings: Vec<Warning>) -> Result<(), WorldError>;
     /// The node of a body nearest to a point.
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32>;
-    /// The node for which the one nearest to a point in the scene beside it stands; none where there is but one scene.
+    /// The node that corresponds to the one nearest to a point in the scene beside it; none if there is only one scene.
     fn nearest_beside(&self, _body: usize, _point: [f64; 3]) -> Option<u32> {
         None
     }
-    /// The position of what stands for a node in the scene beside it [m].
+    /// The position of the corresponding point in the scene beside it [m].
     fn position_beside(&self, _body: usize, _node: u32) -> Option<[f64; 3]> {
         None
     }
-    /// What scenes have in common whatever their nodes are.
+    /// Quantities that can be compared between scenes with different nodes.
     fn common(&self) -> Common;
     /// The position of a node [m].
     fn position(&self, body: usize, node: u32) -> Option<[f64; 3]>;
-    /// The positions of all nodes of the bodies that are there [m].
+    /// The positions of all nodes of the existing bodies [m].
     fn positions(&self) -> Vec<[f64; 3]>;
-    /// The names of the bodies that are there.
+    /// The names of the existing bodies.
     fn names(&self) -> Vec<String>;
     /// The name of a body.
     fn name(&self, body: usize) -> Option<String>;
-    /// The middle of a body's mesh as its shape was turned and scaled, and where that is moved to [m].
+    /// The centre of a body's mesh after its shape is rotated and scaled, and the position to which it is then moved [m].
     fn rest_center(&self, body: usize) -> Option<([f64; 3], [f64; 3])>;
-    /// All there is to see.
+    /// Everything that can be displayed.
     fn shown(&mut self, show: &Show) -> Shown;
-    /// The numbers of the curves for the present state.
+    /// The values of the curves for the present state.
     fn sample(&mut self) -> Sample;
     /// The columns and the row of a table for the present state.
     fn row(&mut self) -> Vec<(String, f64)>;
-    /// What a film needs.
+    /// The picture of the present state for a film.
     fn moment(&mut self, show: &Show) -> opruga::draw::Picture;
 }
 
-/// A world and what stays the same from picture to picture.
+/// A world and the data that stay the same from picture to picture.
 struct Living {
     world: Box<dyn AnyWorld>,
     scenery: Scenery,
-    /// How many bodies the scenery knows.
+    /// The number of bodies that the scenery knows.
     known: usize,
     /// The warnings about the scene and its files.
     scene_warnings: Vec<Warning>,
@@ -156,10 +156,10 @@ struct Living {
     size: f64,
 }
 
-/// Builds the world of a scene, about which there are these warnings.
+/// Builds the world of a scene; `scene_warnings` are the warnings about it.
 ///
 /// # Errors
-/// What the world refuses.
+/// Those of the world.
 pub fn build(
     blueprint: AnyBlueprint,
     scene_warnings: Vec<Warning>,
@@ -171,7 +171,7 @@ pub fn build(
     Ok(Box::new(Living { world, scenery, known, scene_warnings, size }))
 }
 
-/// Whether bodies carry drawings with colours of their own.
+/// Whether bodies carry drawings with colours.
 fn has_drawings(world: &dyn AnyWorld) -> bool {
     let skins = world.bodies().into_iter().filter_map(|body| world.scene().body(body)?.skin());
     world.scene().dimension() == 2 && skins.flat_map(|skin| &skin.areas).any(|area| area.colour.is_some())
@@ -195,12 +195,12 @@ impl Living {
         Ok(self.present(body).ok_or_else(|| no_body(body))?.name().to_string())
     }
 
-    /// A body that is there.
+    /// A body, if it exists now.
     fn present(&self, body: usize) -> Option<&dyn AnyBody> {
         self.world.handle(body).and_then(|_| self.world.scene().body(body))
     }
 
-    /// The time of a coming frame [s], as the world counts it.
+    /// The time of a future frame [s], as counted by the world.
     fn time_of(&self, frames: u64) -> f64 {
         frames as f64 * self.frame_seconds()
     }
@@ -273,7 +273,7 @@ impl Engine for Living {
     }
 
     fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError> {
-        // Stages at the end of the coming frame look behind it: the path is known a frame farther.
+        // Stages at the end of the next frame look beyond it, so the path extends one frame farther.
         let row = self.row_of(self.world.frames() + 2, pointer);
         self.world.lead(number, row.clone())?;
         Ok(row)
@@ -284,7 +284,7 @@ impl Engine for Living {
         if self.world.finish(number, until).is_ok() {
             return Ok(until);
         }
-        // It has just begun: it acts for one frame.
+        // It has just begun, so it acts for one frame.
         let until = self.time_of(self.world.frames() + 1);
         self.world.finish(number, until).map(|()| until)
     }
@@ -387,7 +387,7 @@ impl Engine for Living {
         let numbers = self.world.bodies();
         let mut bodies = Vec::with_capacity(numbers.len());
         for &number in &numbers {
-            // What a crowd says of itself is read by nobody.
+            // Nobody reads the values of single bodies in a crowd.
             let readings = if numbers.len() <= 64 { self.world.readings(number) } else { Vec::new() };
             let Some(body) = self.world.scene().body(number) else { continue };
             bodies.push(BodyShown {

@@ -1,4 +1,4 @@
-//! What is told of a body that has exploded.
+//! The report of a body that has exploded.
 
 /// A body that has exploded.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -7,6 +7,6 @@ pub struct Exploded {
     pub body: String,
     /// The kind of its integrator.
     pub integrator: String,
-    /// Whether that integrator is unstable at this step, as far as the world can tell.
+    /// Whether that integrator is unstable with this step, as far as the world can decide.
     pub unstable: bool,
 }

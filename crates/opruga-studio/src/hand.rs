@@ -1,5 +1,4 @@
-//! What is handed to the studio and from it beside saving: files that were dropped or chosen, and on a page the address that
-//! holds the scene.
+//! Ways into and out of the studio other than saving: files that were dropped or chosen and, on a web page, the address that contains the scene.
 
 use crate::report::Report;
 use crate::runner::Link;
@@ -9,9 +8,9 @@ use egui::Ui;
 
 /// What has arrived.
 pub(crate) enum Arrived {
-    /// Something to ask the session for.
+    /// A request for the session.
     Request(Request),
-    /// Something to report to the person.
+    /// A report for the user.
     Message(Severity, Report),
 }
 
@@ -30,7 +29,7 @@ pub(crate) use window::Hand;
 mod window {
     use super::*;
 
-    /// A window takes files from the system, and knows no address.
+    /// A desktop window gets files from the system, and has no address.
     #[derive(Debug, Default)]
     pub(crate) struct Hand {}
 
@@ -57,14 +56,14 @@ mod page {
     use std::sync::Arc;
     use std::sync::mpsc::{Receiver, TryRecvError};
 
-    /// What a file of the browser asks for: see [`crate::dropping`].
+    /// The request for a file of the browser: see [`crate::dropping`].
     fn request_of(file: &str, bytes: Vec<u8>) -> Result<Request, Report> {
         let content: Arc<[u8]> = bytes.as_slice().into();
         let files = || opruga::scenes::files().with([(file.to_string(), content)]);
         crate::dropping::request(file, || Ok(bytes), files)
     }
 
-    /// A page reads files beside the interface, and holds the scene in its address.
+    /// A web page reads files in parallel to the interface, and stores the scene in its address.
     #[derive(Debug, Default)]
     pub(crate) struct Hand {
         linked: Option<Receiver<Copied>>,

@@ -1,5 +1,5 @@
-//! Where files go: a window writes them into the folder `out/studio`, a page hands them over as downloads. A scene goes with the
-//! files that it names, so that it runs from where it lies.
+//! The destination of files: a desktop window writes them to the folder `out/studio`, a web page gives them as downloads. A scene is written together
+//! with the files that it names, so that it can be run from there.
 
 use crate::report::Report;
 use opruga::io::{Files, scene};
@@ -7,7 +7,7 @@ use opruga::{Registries, catalogue_of};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The files that a scene names, by those names.
+/// The files that a scene names, by name.
 pub fn named_files(name: &str, text: &str, files: &Files, registries: &Registries) -> BTreeMap<String, Arc<[u8]>> {
     let options = scene::Options { files: files.clone(), ..scene::Options::default() };
     scene::survey(text.as_bytes(), &format!("{name}.toml"), &catalogue_of(registries), &options).files
@@ -38,7 +38,7 @@ mod window {
     }
 
     impl Folder {
-        /// A folder at this place; it is made when the first file comes.
+        /// A folder at this path; it is made when the first file is written.
         pub fn at(path: impl Into<PathBuf>) -> Folder {
             Folder(path.into())
         }
@@ -54,10 +54,10 @@ mod window {
             free.ok_or_else(|| Report::FolderFull(self.0.display().to_string()))
         }
 
-        /// Writes a file that is not there yet; where it is.
+        /// Writes a file under a name that does not exist yet; returns its path.
         ///
         /// # Errors
-        /// What the system refuses.
+        /// Those of the system.
         pub fn file(&self, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, Report> {
             self.made()?;
             let path = self.free(|name| format!("{name}.{ending}"), name)?;
@@ -65,10 +65,10 @@ mod window {
             Ok(path)
         }
 
-        /// Writes a scene; one that names files goes into a folder of its own together with them. The scene is told first.
+        /// Writes a scene; if it names files, it goes to a folder of its own together with them. The path of the scene comes first.
         ///
         /// # Errors
-        /// What the system refuses: then nothing is left of it.
+        /// Those of the system; nothing is left behind then.
         pub fn scene(
             &self,
             name: &str,
@@ -84,7 +84,7 @@ mod window {
             let own = Folder(self.free(|name| name, name)?);
             let outcome = own.fill(name, text, &named);
             if outcome.is_err() {
-                // It was made for this alone.
+                // The folder was made only for this scene.
                 let _ = std::fs::remove_dir_all(&own.0);
             }
             outcome
@@ -95,7 +95,7 @@ mod window {
             let mut written = vec![self.0.join(format!("{name}.toml"))];
             for (name, bytes) in named {
                 let path = self.0.join(name);
-                // A scene cannot name what lies outside of its folder.
+                // A scene cannot name files outside its folder.
                 Folder(path.parent().unwrap_or(&self.0).to_path_buf()).made()?;
                 write(&path, bytes)?;
                 written.push(path);
@@ -110,18 +110,18 @@ mod window {
         Ok(())
     }
 
-    /// Writes a file into `out/studio`; where it is.
+    /// Writes a file to `out/studio`; returns its path.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// Those of the system.
     pub fn file(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Report> {
         Folder::default().file(name, ending, bytes).map(|path| path.display().to_string())
     }
 
-    /// Writes a scene and the files that it names into `out/studio`; where they are.
+    /// Writes a scene and the files that it names to `out/studio`; returns their paths.
     ///
     /// # Errors
-    /// What the system refuses.
+    /// Those of the system.
     pub fn scene_with_files(
         name: &str,
         text: &str,
@@ -137,13 +137,13 @@ mod window {
 mod page {
     use super::*;
 
-    /// A download; its name.
+    /// Starts a download; returns its name.
     pub(crate) fn file(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Report> {
         let name = format!("{name}.{ending}");
         crate::browser::download(&name, bytes).map(|()| name)
     }
 
-    /// A scene and the files that it names, each as a download. A browser puts them all into one folder: there the scene names them.
+    /// Downloads a scene and the files that it names, each separately. A browser puts them all into one folder, where the scene finds them.
     pub(crate) fn scene_with_files(
         name: &str,
         text: &str,

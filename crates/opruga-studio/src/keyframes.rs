@@ -1,4 +1,4 @@
-//! States to go back to, within a budget of memory: where they would take more, every second one goes.
+//! Earlier states to which a session can return, within a memory budget. If they exceed it, every second one is dropped.
 
 use crate::engine::State;
 
@@ -6,17 +6,17 @@ use crate::engine::State;
 #[derive(Debug)]
 pub struct Keyframes {
     kept: Vec<(u64, State)>,
-    /// Frames between two of them.
+    /// The number of frames between two of them.
     every: u64,
     bytes: usize,
     budget: usize,
 }
 
-/// Frames between two keyframes while memory allows.
+/// The number of frames between two keyframes while memory allows.
 const FIRST_INTERVAL: u64 = 10;
 
 impl Keyframes {
-    /// None yet, and room for so many bytes.
+    /// No keyframes yet, with a budget of this many bytes.
     pub fn new(budget: usize) -> Keyframes {
         Keyframes { kept: Vec::new(), every: FIRST_INTERVAL, bytes: 0, budget }
     }
@@ -26,7 +26,7 @@ impl Keyframes {
         frame.is_multiple_of(self.every) && self.kept.last().is_none_or(|(last, _)| *last < frame)
     }
 
-    /// Keeps a state. The first one is never given up: from it everything can be computed.
+    /// Keeps a state. The first one is never dropped, because everything can be computed from it.
     pub fn keep(&mut self, frame: u64, state: impl Into<State>) {
         let state = state.into();
         self.bytes += state.bytes();
@@ -45,13 +45,13 @@ impl Keyframes {
         index.checked_sub(1).map(|index| (self.kept[index].0, &self.kept[index].1))
     }
 
-    /// Gives up what comes after a frame: that future is another one now.
+    /// Drops the states after a frame, because the run now continues differently.
     pub fn forget_after(&mut self, frame: u64) {
         self.kept.retain(|(kept, _)| *kept <= frame);
         self.bytes = self.kept.iter().map(|(_, state)| state.bytes()).sum();
     }
 
-    /// What they take [bytes].
+    /// Their memory [bytes].
     pub fn bytes(&self) -> usize {
         self.bytes
     }

@@ -1,7 +1,7 @@
-//! Opruga Studio: a window on a scene that runs while a person pulls its bodies, draws new ones and changes their physics.
+//! Opruga Studio: a window on a running scene, in which the user pulls bodies, draws new ones and changes their physics.
 //!
-//! [`session`] is the whole of it without a window; the rest shows it and asks of it.
-// No physics here: pictures and clocks may differ in a last bit.
+//! [`session`] is the complete studio without a window; the rest displays it and sends requests to it.
+// No physics here: pictures and clocks may differ in the last bit.
 #![allow(clippy::disallowed_methods)]
 
 pub mod differences;

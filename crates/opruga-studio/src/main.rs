@@ -18,17 +18,17 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How the program is called.
+/// The usage text.
 const USAGE: &str = "opruga-studio [SCENE]\n\nSCENE is a scene file, the name of a scene that comes with the program, a recorded run, \
                      or the file of a shape (.svg, .obj, .stl, .ply, .gltf, .glb).";
 
-/// Reports what is wrong with the call, and how the program is called.
+/// Reports an error in the call, and the usage.
 fn refuse_call(error: StartError) {
     watch::print(error);
     eprintln!("\n{USAGE}");
 }
 
-/// The arguments as texts. One that is none is reported.
+/// The arguments as texts. An argument that is not text is reported.
 fn texts(arguments: impl Iterator<Item = OsString>) -> Result<Vec<String>, ()> {
     let text = |argument: OsString| {
         argument.into_string().map_err(|argument| {
@@ -41,7 +41,7 @@ fn texts(arguments: impl Iterator<Item = OsString>) -> Result<Vec<String>, ()> {
 
 fn main() -> ExitCode {
     let Ok(mut arguments) = texts(std::env::args_os().skip(1)) else { return ExitCode::from(2) };
-    // Not for every day: how long frames of the window take.
+    // For developers: measures the time of frames of the window.
     let measured = arguments.iter().position(|word| word == "--measure-frames").map(|index| {
         let count = arguments.get(index + 1).and_then(|word| word.parse::<usize>().ok());
         arguments.drain(index..(index + 2).min(arguments.len()));
@@ -108,7 +108,7 @@ fn main() -> ExitCode {
                 return Ok(Box::new(Measured::new(studio, &creation.egui_ctx, count, &report)) as Box<dyn eframe::App>);
             }
             match lost {
-                // Time stands where the window before was lost.
+                // Time is stopped where the previous window was lost.
                 Some(saved) => studio.report(Severity::Refused, Report::WindowLost(saved)),
                 None => studio.ask(Request::Play(true)),
             }
@@ -126,7 +126,7 @@ fn main() -> ExitCode {
             }
             ExitCode::SUCCESS
         }
-        // What watches over it saves what was done.
+        // The supervising process saves the work.
         Err(error) if opened.load(Ordering::Relaxed) => {
             eprintln!("the window has failed: {error}");
             ExitCode::from(watch::LOST)
@@ -138,7 +138,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// One processor is for the interface.
+/// One processor is left for the interface.
 fn options() -> Options {
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get().saturating_sub(1).clamp(1, 8));
     let most_bytes = Some(opruga::io::scene::Limits::default().memory_bytes);

@@ -1,27 +1,27 @@
-//! How long frames of the window take: `opruga-studio SCENE --measure-frames N` shows them, prints what it has seen and ends;
-//! a page is asked by `opruga.measure(N)`, or opened with `?measure=N`.
+//! Measures how long frames of the window take. `opruga-studio SCENE --measure-frames N` shows N frames, prints the result and ends; on a web page,
+//! use `opruga.measure(N)`, or open it with `?measure=N`.
 
 use crate::shown::Shown;
 
-/// Frames before any is counted: fonts, textures and the first build of everything.
+/// The number of frames before the first that counts, for fonts, textures and other preparations.
 const WARM_UP: usize = 60;
 
-/// What was measured of one frame [ms].
+/// The measurements of one frame [ms].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Frame {
-    /// What passes from the beginning of the frame before to that of this one.
+    /// From the beginning of the previous frame to that of this one.
     whole: f64,
-    /// Panels and scene, up to the shapes that are to be drawn.
+    /// Panels and scene, up to the shapes to be drawn.
     interface: f64,
-    /// The triangles made of these shapes, where that was measured by itself.
+    /// The triangulation of these shapes, if it was measured separately.
     triangles: f64,
-    /// The simulation, where it has no thread of its own.
+    /// The simulation, if it does not have a thread of its own.
     simulation: f64,
-    /// The whole thread: these, the triangles made of the shapes, and what the driver does in it.
+    /// The whole thread: the above, and the work of the driver in this thread.
     thread: f64,
 }
 
-/// The times of so many frames.
+/// The measurements of a number of frames.
 #[derive(Clone, Debug)]
 pub struct Watch {
     frames: Vec<Frame>,
@@ -30,12 +30,12 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// A watch for so many frames, and those before them that are not counted.
+    /// Measures `wanted` frames after the warm-up.
     pub fn new(wanted: usize) -> Watch {
         Watch { frames: Vec::new(), wanted: wanted.max(1), last: None }
     }
 
-    /// A frame that began at this time; what its interface and its simulation took, and for the last frame the triangles and the
+    /// Adds a frame that began at this time, with the times of its interface and its simulation and, for the previous frame, of the triangles and the
     /// thread [ms].
     pub fn add(&mut self, begin: f64, interface: f64, triangles: f64, simulation: f64, thread: f64) {
         if let Some(last) = self.last.replace(begin) {
@@ -43,12 +43,12 @@ impl Watch {
         }
     }
 
-    /// Whether all were seen.
+    /// Whether all frames have been measured.
     pub fn is_done(&self) -> bool {
         self.frames.len() >= self.wanted + WARM_UP
     }
 
-    /// Median and 99th percentile of what was seen.
+    /// Median and 99th percentile of the measurements.
     pub fn report(&self, shown: &Shown) -> String {
         let nodes: usize = shown.bodies.iter().map(|body| body.nodes).sum();
         let counted = self.frames.get(WARM_UP..).unwrap_or_default();
@@ -91,7 +91,7 @@ mod native {
     use std::sync::{Arc, Mutex, PoisonError};
     use std::time::Instant;
 
-    /// The name of the graphics driver, which the painter of the window tells its log and nobody else.
+    /// The name of the graphics driver, which the painter of the window reports only to the log.
     static ADAPTER: Mutex<String> = Mutex::new(String::new());
 
     struct Ear;
@@ -109,23 +109,23 @@ mod native {
         fn flush(&self) {}
     }
 
-    /// Begins to listen for the name of the graphics driver.
+    /// Begins to watch the log for the name of the graphics driver.
     pub fn listen() {
         if log::set_logger(&Ear).is_ok() {
             log::set_max_level(log::LevelFilter::Debug);
         }
     }
 
-    /// The processor time of this thread [ms]; where the system does not tell it, the time that has passed.
+    /// The processor time of this thread [ms]; if the system does not provide it, the elapsed time.
     fn processor_time(begin: Instant) -> f64 {
-        // The system counts when a thread gives way.
+        // The system updates the count when a thread yields.
         std::thread::yield_now();
         let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
         let nanoseconds = statistics.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
         nanoseconds.map_or_else(|| 1e3 * begin.elapsed().as_secs_f64(), |ns| 1e-6 * ns)
     }
 
-    /// Makes the triangles of every frame once more than needed, to see what that takes [ms].
+    /// Triangulates every frame once more than necessary, to measure the time of that [ms].
     struct Triangles(Arc<Mutex<f64>>, Instant);
 
     impl Plugin for Triangles {
@@ -141,20 +141,20 @@ mod native {
         }
     }
 
-    /// The window, with a watch in its hand.
+    /// The window with its measurements.
     pub struct Measured {
         studio: Studio,
         watch: Watch,
         begin: Instant,
         /// Processor time of the thread when the last frame began [ms].
         last: f64,
-        /// What the triangles of the last frame took [ms].
+        /// The time of the triangulation of the last frame [ms].
         triangles: Arc<Mutex<f64>>,
         report: Arc<Mutex<String>>,
     }
 
     impl Measured {
-        /// Measures so many frames while time passes; the report is there when the window has closed.
+        /// Measures a number of frames while the simulation plays; the report is available when the window has closed.
         pub fn new(studio: Studio, context: &Context, wanted: usize, report: &Arc<Mutex<String>>) -> Measured {
             studio.ask(Request::Play(true));
             let (report, triangles, begin) = (Arc::clone(report), Arc::default(), Instant::now());

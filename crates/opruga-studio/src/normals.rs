@@ -1,8 +1,8 @@
-//! Which way surfaces face.
+//! The orientation of surfaces.
 
 use opruga::draw::Facets;
 
-/// The outward unit normals at the nodes of a surface: the mean of those of the facets around, by their size.
+/// The outward unit normals at the nodes of a surface: the mean of the normals of the adjacent facets, weighted by their area.
 pub(crate) fn normals(body: &opruga::draw::BodyPicture) -> Vec<[f64; 3]> {
     let mut sum = vec![[0.0; 3]; body.positions.len()];
     let at = |node: u32| body.positions[node as usize];

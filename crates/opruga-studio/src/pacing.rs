@@ -1,21 +1,21 @@
-//! Simulated time follows the clock, and where it cannot it slows down and says by how much.
+//! Simulated time follows the clock. If it cannot, it slows down, and the ratio is reported.
 
 use std::time::Duration;
 
-/// The longest real time that is made up for: after a pause of ten minutes nothing leaps.
+/// The longest delay that is caught up, so that the simulation does not leap after a pause of ten minutes.
 const LONGEST: f64 = 0.1;
-/// The share of the last frame in what a frame takes.
+/// The weight of the last frame in the mean time of a frame.
 const FRESH: f64 = 0.1;
-/// The time after which what was no longer counts much in what is shown [s].
+/// The time constant of the displayed ratio: older values hardly count [s].
 const MEMORY: f64 = 0.3;
 
-/// How much simulated time is owed.
+/// The simulated time that is still owed.
 #[derive(Clone, Debug)]
 pub struct Pacing {
     owed: f64,
-    /// The simulated time that has passed of late over that which was asked for.
+    /// The ratio of recent simulated time to the requested one.
     ratio: f64,
-    /// What a frame took of late [s].
+    /// The recent mean time of a frame [s].
     cost: f64,
 }
 
@@ -26,16 +26,16 @@ impl Default for Pacing {
 }
 
 impl Pacing {
-    /// Forgets what is owed: after a pause, or a leap in time.
+    /// Forgets the owed time, after a pause or a leap in time.
     pub fn rest(&mut self) {
         self.owed = 0.0;
     }
 
-    /// Frames to compute now, of a length [s], at so many simulated seconds a second, after so much real time; `frame`
-    /// computes one and says how long it took, or that it failed. At most `budget` is spent.
+    /// Computes the frames that are due after some real time, given the length of a frame [s] and the number of simulated seconds per second; `frame`
+    /// computes one and returns how long it took, or an error. Spends at most `budget`.
     ///
     /// # Errors
-    /// What `frame` returns: nothing is owed then.
+    /// Those of `frame`; no time is owed then.
     pub fn run<E>(
         &mut self,
         elapsed: Duration,
@@ -61,10 +61,10 @@ impl Pacing {
             self.owed -= length;
             done += 1;
         }
-        // What cannot be made up for is given up: time goes more slowly.
+        // Time that cannot be caught up is dropped: simulated time slows down.
         let lost = (self.owed - length).max(0.0);
         self.owed -= lost;
-        // What was not even owed, because the last picture was long ago, is lost too.
+        // Time that was not even owed, because the last picture was long ago, is lost, too.
         let passed = elapsed.as_secs_f64();
         let asked = passed * speed;
         if asked > 0.0 {
@@ -74,12 +74,12 @@ impl Pacing {
         Ok(done)
     }
 
-    /// The simulated time that has passed of late over that which was asked for: 1 where it keeps up.
+    /// The ratio of recent simulated time to the requested one: 1 if the simulation keeps up.
     pub fn ratio(&self) -> f64 {
         self.ratio
     }
 
-    /// What a frame took of late [s].
+    /// The recent mean time of a frame [s].
     pub fn cost(&self) -> f64 {
         self.cost
     }
@@ -95,7 +95,7 @@ mod tests {
 
     const FRAME: f64 = 1.0 / 60.0;
 
-    /// The number of frames in ten seconds, at a rate of calls, of frames that take so long.
+    /// The number of frames in ten seconds, for a rate of calls and a time per frame.
     fn ten_seconds(calls_per_second: u32, milliseconds: u64) -> (u32, Pacing) {
         let (mut pacing, mut frames) = (Pacing::default(), 0);
         let mut real = Duration::ZERO;
@@ -129,7 +129,7 @@ mod tests {
     fn a_simulation_that_cannot_keep_up_slows_down_and_says_by_how_much() {
         let mut pacing = Pacing::default();
         for _ in 0..200 {
-            // Every call comes 50 ms after the last and has time for one frame of 60 ms: a third of real time.
+            // A call comes every 50 ms and has time for one frame of 60 ms: a third of real time.
             let budget = Duration::from_millis(12);
             let done = pacing.run(Duration::from_millis(50), 1.0, FRAME, budget, took(60)).expect("frames");
             assert_eq!(done, 1, "no spiral");
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn what_is_told_of_a_slow_window_and_of_another_speed_is_what_has_passed() {
-        // A picture every 350 ms, and one frame with each.
+        // A picture every 350 ms, with one frame each.
         let mut pacing = Pacing::default();
         let mut simulated = 0.0;
         for _ in 0..40 {

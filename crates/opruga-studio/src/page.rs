@@ -1,4 +1,4 @@
-//! The studio on a web page: how it begins, and what a page around it can ask.
+//! The studio on a web page: how it starts, and what the page around it can request.
 
 use crate::app::{FIRST_SCENE, Studio};
 use crate::document::Document;
@@ -22,11 +22,11 @@ use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 use wasm_bindgen::prelude::*;
 
-/// How long a frame may take before the person is asked whether it shall be waited for [s]: browsers offer to end pages that hear nothing
-/// for some five seconds.
+/// How long a frame may take before the user is asked whether to wait for it [s]: browsers offer to close pages that do not respond for about five
+/// seconds.
 const PATIENCE: f64 = 2.0;
 
-/// The studio on a canvas of a page. It outlives what it is drawn on: a graphics device may be lost.
+/// The studio on a canvas of a page. It outlives its graphics device, which may be lost.
 #[wasm_bindgen]
 pub struct Page {
     studio: Shared,
@@ -40,13 +40,13 @@ impl core::fmt::Debug for Page {
     }
 }
 
-/// What the studio is drawn on.
+/// The surface and device on which the studio is drawn.
 struct Screen {
     runner: WebRunner,
     context: Context,
 }
 
-/// The studio and the watch that is held to its pictures, on whatever they are drawn.
+/// The studio and the measurement of its pictures, independent of the device.
 #[derive(Clone)]
 struct Shared(Rc<RefCell<(Studio, Option<Watch>)>>);
 
@@ -66,7 +66,7 @@ impl eframe::App for Shared {
     }
 }
 
-/// Where everything is that has a name, as it is reported to screen readers.
+/// The bounds of all controls with names, as reported to screen readers.
 #[derive(Clone, Default)]
 struct NamedNodes(Arc<Mutex<HashMap<egui::accesskit::NodeId, Node>>>);
 
@@ -82,11 +82,11 @@ impl egui::Plugin for NamedNodes {
     }
 }
 
-/// Opens the studio on a canvas: the scene of the address, or the first one where there is none or it is refused. It is drawn
-/// by `webgpu` or by `webgl`, on a device of this name.
+/// Opens the studio on a canvas, with the scene of the address, or with the first scene if there is none or it is refused. The renderer is `webgpu`
+/// or `webgl`, on a device of this name.
 ///
 /// # Errors
-/// Where the browser gives no such device.
+/// The browser provides no such device.
 #[wasm_bindgen]
 pub async fn open(canvas: web_sys::HtmlCanvasElement, drawn_by: String, device: String) -> Result<Page, JsValue> {
     let (session, refused) = first_session().map_err(|error| JsValue::from_str(&error.to_string()))?;
@@ -103,7 +103,7 @@ pub async fn open(canvas: web_sys::HtmlCanvasElement, drawn_by: String, device: 
 }
 
 impl Screen {
-    /// Begins to draw a studio on a canvas, by what and on which device.
+    /// Begins to draw a studio on a canvas, with this renderer and device.
     async fn begin(
         canvas: web_sys::HtmlCanvasElement,
         [drawn_by, device]: [&str; 2],
@@ -118,7 +118,7 @@ impl Screen {
             studio.0.try_borrow_mut()?.0.move_to(&creation.egui_ctx, drawn_by);
             if let Some(state) = &creation.wgpu_render_state {
                 state.device.set_device_lost_callback(|reason, _| {
-                    // A device that was given back is no loss.
+                    // A device that was released on purpose is not a loss.
                     if reason != wgpu::DeviceLostReason::Destroyed {
                         browser::report_lost_device();
                     }
@@ -134,7 +134,7 @@ impl Screen {
     }
 }
 
-/// The scene of the address; where that is refused, the first scene, and why.
+/// The scene of the address; if it is refused, the first scene and the reason.
 fn first_session() -> Result<(Session, Option<Report>), Report> {
     let open = |name: &str, text: &str, files| {
         let most_bytes = Some(scene::Limits::default().memory_bytes);
@@ -157,7 +157,7 @@ fn first_session() -> Result<(Session, Option<Report>), Report> {
 }
 
 impl Page {
-    /// The studio, as long as it has not stopped.
+    /// The studio, unless it has stopped.
     fn studio(&self) -> Option<RefMut<'_, (Studio, Option<Watch>)>> {
         if self.screen.borrow().runner.has_panicked() { None } else { self.studio.0.try_borrow_mut().ok() }
     }
@@ -169,10 +169,10 @@ impl Page {
 
 #[wasm_bindgen]
 impl Page {
-    /// Goes on, with everything as it was, on another canvas: the device of the first one was lost.
+    /// Continues on another canvas in the same state, after the device of the first one was lost.
     ///
     /// # Errors
-    /// Where the browser gives no such device.
+    /// The browser provides no such device.
     pub async fn go_on(
         &self,
         canvas: web_sys::HtmlCanvasElement,
@@ -185,7 +185,7 @@ impl Page {
         Ok(())
     }
 
-    /// Writes the whole scene into the address, so that loading the page again opens it; false where it is too large for that.
+    /// Writes the whole scene to the address, so that reloading the page opens it; false if it is too large.
     pub fn keep(&self) -> bool {
         let Ok(studio) = self.studio.0.try_borrow() else { return false };
         let copied = studio.0.link().with_session(Copied::of);
@@ -204,7 +204,7 @@ impl Page {
         self.repaint();
     }
 
-    /// Opens a scene by its text; what is wrong with it is shown as a message.
+    /// Opens a scene from its text; errors in it are shown as a message.
     pub fn show(&self, name: String, text: String) {
         if let Some(studio) = self.studio() {
             studio.0.ask(Request::Open { name, text, files: opruga::scenes::files() });
@@ -212,7 +212,7 @@ impl Page {
         self.repaint();
     }
 
-    /// Begins to measure so many pictures of the window.
+    /// Begins to measure a number of pictures of the window.
     pub fn measure(&self, pictures: usize) {
         if let Some(mut studio) = self.studio() {
             studio.1 = Some(Watch::new(pictures));
@@ -220,16 +220,15 @@ impl Page {
         self.repaint();
     }
 
-    /// What was measured, once it is done: median and 99th percentile in milliseconds.
+    /// The measurements once they are complete: median and 99th percentile in milliseconds.
     pub fn measured(&self) -> Option<String> {
         let studio = self.studio()?;
         let watch = studio.1.as_ref().filter(|watch| watch.is_done())?;
         Some(watch.report(&studio.0.shown()))
     }
 
-    /// What the simulation says of itself, as JSON: `name`, `time` \[s\], `frames`, `latest`, `playing`, `bodies`, `nodes`,
-    /// `models` of the first body, `pulls`, `recorded`, `real_time` (simulated over real time), `frame_milliseconds`,
-    /// `message`, `state_hash`.
+    /// The state of the simulation as JSON: `name`, `time` \[s\], `frames`, `latest`, `playing`, `bodies`, `nodes`, `models` of the first body,
+    /// `pulls`, `recorded`, `real_time` (simulated over real time), `frame_milliseconds`, `message`, `state_hash`.
     pub fn state(&self) -> String {
         let Some(studio) = self.studio() else {
             let why = self.screen.borrow().runner.panic_summary().map(|summary| summary.message());
@@ -250,12 +249,12 @@ impl Page {
         .to_string()
     }
 
-    /// The scene with all that was done, as `Save` writes it.
+    /// The scene with everything that was done, as `Save` writes it.
     pub fn scene(&self) -> Option<String> {
         Some(self.studio()?.0.link().with_session(|session| Copied::of(session).text))
     }
 
-    /// Goes to a frame of the scene, back or forth.
+    /// Goes to a frame of the scene, backwards or forwards.
     pub fn seek(&self, frame: u32) {
         if let Some(studio) = self.studio() {
             studio.0.ask(Request::Play(false));
@@ -263,7 +262,7 @@ impl Page {
         }
     }
 
-    /// Where the highest node of a body is on the canvas: x, y \[CSS pixels\]; empty where it is not seen.
+    /// The position of the highest node of a body on the canvas: x, y \[CSS pixels\]; empty if it is not visible.
     pub fn top_of(&self, body: usize) -> Vec<f32> {
         let Some(studio) = self.studio() else { return Vec::new() };
         let shown = studio.0.shown();
@@ -274,8 +273,8 @@ impl Page {
         spot.map_or_else(Vec::new, |spot| vec![spot.x, spot.y])
     }
 
-    /// Where a button, a slider or a text of this name is: its left, top, width and height \[CSS pixels\]; empty where there
-    /// is none. Names are known from the picture after the first question on.
+    /// The bounds of a button, a slider or a text of this name: left, top, width and height \[CSS pixels\]; empty if it does not exist. Names are
+    /// known from the next picture after the first call.
     pub fn find(&self, name: &str) -> Vec<f32> {
         let context = self.screen.borrow().context.clone();
         context.enable_accesskit();
@@ -288,11 +287,10 @@ impl Page {
     }
 }
 
-/// The hash of the state to which a scene comes after so many frames, without a window: a scene that comes with the program,
-/// or a text.
+/// The hash of the state of a scene after a number of frames, computed without a window. The scene is one that comes with the program, or a text.
 ///
 /// # Errors
-/// What is wrong with the scene, or why it does not run.
+/// The errors of the scene, or why it does not run.
 #[wasm_bindgen]
 pub fn hash_after(scene_or_text: &str, frames: u32) -> Result<String, String> {
     let text = opruga::scenes::find(scene_or_text).unwrap_or(scene_or_text);

@@ -1,4 +1,4 @@
-//! A scene under two configurations in lock step: what is done to the one on the left is done to the one on the right.
+//! A scene in two configurations in lockstep: everything that is done to the left one is also done to the right one.
 
 use crate::differences::{Difference, Twins, right_of};
 use crate::document::{Document, read};
@@ -15,10 +15,10 @@ use opruga::world::SnapshotFault;
 use opruga::{Warning, WorldError};
 use std::sync::Arc;
 
-/// Builds the engine of a scene; with differences, also the one on its right.
+/// Builds the engine of a scene and, if there are differences, that of the right scene.
 ///
 /// # Errors
-/// [`Report`] where either of the two scenes cannot be.
+/// [`Report`] if one of the two scenes cannot be built.
 pub fn build(
     document: &Document,
     differences: Option<&[Difference]>,
@@ -41,18 +41,18 @@ pub fn build(
 struct Pair {
     left: Box<dyn Engine>,
     right: Box<dyn Engine>,
-    /// In what the right one differs.
+    /// The differences of the right one.
     differences: Vec<Difference>,
-    /// Which node on the right stands for one on the left, where bodies have other nodes.
+    /// The correspondence of nodes, for bodies with different nodes.
     twins: Twins,
-    /// Why the right one does not go on.
+    /// Why the right one has stopped.
     stopped: Option<Report>,
-    /// Whether the right one has missed a command: only one that is built anew can go on then.
+    /// Whether the right one has missed a command; it can then only be rebuilt.
     behind: bool,
 }
 
 impl Pair {
-    /// Does to the right one what the left one has accepted.
+    /// Repeats on the right side what the left one has accepted.
     fn follow<T>(&mut self, act: impl FnOnce(&mut dyn Engine) -> Result<T, WorldError>) {
         if self.stopped.is_none()
             && let Err(error) = act(&mut *self.right)
@@ -62,7 +62,7 @@ impl Pair {
         self.behind |= self.stopped.is_some();
     }
 
-    /// The distance between the centres of mass [m], and by how much the right one encloses more [m³, m² in the plane].
+    /// The distance between the centres of mass [m], and the difference of the enclosed volumes, right minus left [m³, m² in the plane].
     fn in_common(&self) -> [Option<f64>; 2] {
         if self.stopped.is_some() {
             return [None; 2];
@@ -73,7 +73,7 @@ impl Pair {
         [Some(square.sqrt()).filter(|far| far.is_finite()), volume]
     }
 
-    /// The mean square root and the largest distance between the nodes of both [m]; none where the bodies differ.
+    /// The root mean square and the largest distance between the nodes of both [m]; none if the bodies differ.
     fn distances(&self) -> Option<[f64; 2]> {
         let (left, right) = (self.left.positions(), self.right.positions());
         if self.stopped.is_some() || left.len() != right.len() || left.is_empty() {
@@ -88,7 +88,7 @@ impl Pair {
 
 impl Engine for Pair {
     fn frame(&mut self) -> Result<(), WorldError> {
-        // Where the right one is broken off, both go back.
+        // If the right one is interrupted, both return to the previous state.
         let before = self.left.snapshot();
         self.left.frame()?;
         if self.stopped.is_some() {
@@ -281,7 +281,7 @@ impl Engine for Pair {
             let stocks = ["kinetic", "elastic", "gas", "gravity"];
             row.iter().filter(|(name, _)| stocks.contains(&name.as_str())).map(|(_, x)| x).sum()
         };
-        // Where the right one has stopped, there is nothing to compare.
+        // If the right one has stopped, there is nothing to compare.
         if self.stopped.is_none() {
             let energy = stored(&right) - stored(&row);
             row.extend(right.into_iter().skip(1).map(|(name, x)| (format!("right.{name}"), x)));

@@ -1,15 +1,15 @@
-//! What a person prefers, kept from one start to the next: a window keeps it in a file of the person, a page in the browser.
+//! The user's preferences, stored between starts: a desktop window stores them in a file of the user, a web page in the browser.
 
 use crate::words::Language;
 use egui::Theme;
 use toml_edit::{DocumentMut, value};
 
-/// What is preferred.
+/// The preferences.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Preferences {
     /// The language of the interface.
     pub language: Language,
-    /// Whether it is dark or light.
+    /// The theme: dark or light.
     pub theme: Theme,
 }
 
@@ -19,10 +19,10 @@ impl Default for Preferences {
     }
 }
 
-/// Where preferences are kept.
+/// Where preferences are stored.
 #[derive(Clone, Debug, Default)]
 pub enum Store {
-    /// Nowhere: they end with the window.
+    /// Nowhere: they are lost with the window.
     #[default]
     Nowhere,
     /// In this file.
@@ -34,7 +34,7 @@ pub enum Store {
 }
 
 impl Preferences {
-    /// Those of a text. What it does not say, or says in words that nobody knows, is as where nobody has chosen yet.
+    /// The preferences in a text. Missing or unknown ones have their defaults.
     pub fn of(text: &str) -> Preferences {
         let mut preferences = Preferences::default();
         let Ok(document) = text.parse::<DocumentMut>() else { return preferences };
@@ -49,7 +49,7 @@ impl Preferences {
         preferences
     }
 
-    /// The text with these preferences; whatever else stands in it stays.
+    /// The text with these preferences; the rest of it stays.
     fn written_into(self, text: &str) -> String {
         let mut document = text.parse::<DocumentMut>().unwrap_or_default();
         document["language"] = value(self.language.code());
@@ -59,19 +59,19 @@ impl Preferences {
 }
 
 impl Store {
-    /// That of the person at this machine; nowhere where the system names no folder for it.
+    /// The store of the user on this machine; nowhere if the system names no folder for it.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn of_the_person() -> Store {
         let folder = folders::preferences(|name| std::env::var_os(name));
         folder.map_or(Store::Nowhere, |folder| Store::File(folder.join("studio.toml")))
     }
 
-    /// What is kept there.
+    /// The stored preferences.
     pub fn read(&self) -> Preferences {
         Preferences::of(&self.text())
     }
 
-    /// Keeps preferences. Where that is refused, they end with the window: nothing that a person works on depends on them.
+    /// Stores preferences. If that fails, they are lost with the window; no work of the user depends on them.
     pub fn write(&self, preferences: Preferences) {
         let text = preferences.written_into(&self.text());
         match self {
@@ -97,11 +97,11 @@ impl Store {
     }
 }
 
-/// The name under which a browser keeps them.
+/// The key under which a browser stores them.
 #[cfg(target_arch = "wasm32")]
 const KEY: &str = "opruga-studio";
 
-/// The folders in which the system lets programs keep what is the person's.
+/// The folders in which the system lets programs store data of the user.
 #[cfg(not(target_arch = "wasm32"))]
 pub mod folders {
     use std::ffi::OsString;
@@ -112,7 +112,7 @@ pub mod folders {
         own(&variable, "XDG_CONFIG_HOME", &[".config"], "APPDATA", &["Library", "Application Support"])
     }
 
-    /// The folder for what can be made again.
+    /// The folder for data that can be made again.
     pub fn cache(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
         own(&variable, "XDG_CACHE_HOME", &[".cache"], "LOCALAPPDATA", &["Library", "Caches"])
     }
@@ -124,7 +124,7 @@ pub mod folders {
         on_windows: &str,
         on_macos: &[&str],
     ) -> Option<PathBuf> {
-        // A relative one is to be ignored, says the specification of these variables.
+        // According to the specification of these variables, relative paths are to be ignored.
         let absolute = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
         let below_home = |parts: &[&str]| absolute("HOME").map(|home| home.join(parts.iter().collect::<PathBuf>()));
         let folder = if cfg!(windows) {
@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(store.read(), chosen);
         store.write(Preferences::default());
         assert_eq!(store.read(), Preferences::default());
-        // A file stands where the folder should be.
+        // There is a file in place of the folder.
         std::fs::remove_dir_all(&folder).expect("it goes");
         std::fs::write(&folder, b"").expect("a file");
         store.write(chosen);

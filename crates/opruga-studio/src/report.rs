@@ -1,4 +1,4 @@
-//! What is reported to the person, as data: the interface puts it into words of its language ([`crate::words`]).
+//! Reports to the user, as data: the interface puts them into words of its language ([`crate::words`]).
 
 use crate::exploded::Exploded;
 use crate::view_errors::ViewError;
@@ -8,14 +8,14 @@ use opruga::io::SceneError;
 use opruga::io::safe_write::WriteError;
 use opruga::{Warning, WorldError};
 
-/// A thing that was done and can be undone.
+/// An action that can be undone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Step {
     /// A parameter was set, by its path.
     Set(String),
-    /// A body has other models.
+    /// The models of a body were changed.
     Models,
-    /// The scene or a body has another integrator.
+    /// The integrator of the scene or of a body was changed.
     Integrator,
     /// A body was added.
     Add,
@@ -23,7 +23,7 @@ pub enum Step {
     Duplicate,
     /// A body was moved.
     Move,
-    /// A body was turned.
+    /// A body was rotated.
     Turn,
     /// A body was scaled.
     Scale,
@@ -31,32 +31,32 @@ pub enum Step {
     Contact,
     /// A field of a body's shape was changed.
     Shape(&'static str),
-    /// A body was taken away.
+    /// A body was deleted.
     Delete,
     /// Another scene was opened instead of the one of this name.
     Open(String),
-    /// A body was pulled by a hand.
+    /// A body was pulled with the pointer.
     Pull,
-    /// A body was pushed by a hand.
+    /// A body was pushed with the pointer.
     Push,
-    /// A point was pinned, or taken elsewhere and pinned there.
+    /// A point was pinned, or moved and pinned there.
     Pin,
-    /// A point was let go.
+    /// A point was unpinned.
     Unpin,
-    /// Everything that was recorded was taken back.
+    /// Everything that was recorded was removed.
     Reset,
-    /// The scene was shown twice, or no longer.
+    /// The comparison of the scene with itself was switched on or off.
     Compare,
-    /// The right side differs in this.
+    /// The right side was changed in this respect.
     Differ(String),
 }
 
-/// What a message says.
+/// The contents of a message.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Report {
-    /// What is wrong with a scene or its files.
+    /// The errors of a scene or its files.
     Scene(Vec<SceneError>),
-    /// What a world refuses.
+    /// An error of the world.
     World(WorldError),
     /// Why a recorded run cannot be viewed.
     Recording(ViewError),
@@ -64,79 +64,79 @@ pub enum Report {
     NotWritten(WriteError),
     /// A picture or a film cannot be made.
     NotDrawn(DrawError),
-    /// This is wrong with what lies in a file of this name.
+    /// An error in the contents of a file of this name.
     Inside(String, Box<Report>),
     /// A scene cannot be compressed.
     NotCompressed,
-    /// A body has grown beyond every measure, and time stands.
+    /// A body has grown beyond all proportions, and time has stopped.
     Exploded(Exploded),
-    /// This was undone, and the scene is at this time \[s\].
+    /// This was undone; the scene is at this time \[s\].
     Undone(Step, f64),
-    /// This was done again, and the scene is at this time \[s\].
+    /// This was redone; the scene is at this time \[s\].
     Redone(Step, f64),
-    /// The scene begins anew, without the pins of the pointer.
+    /// The scene starts again, without the pins that were set with the pointer.
     PinsLetGo,
-    /// A body of this name moves on with other models.
+    /// The body of this name continues to move with other models.
     GoesOn(String),
-    /// All bodies move on with an integrator of this kind.
+    /// All bodies continue to move with an integrator of this kind.
     AllGoOn(String),
-    /// A body was set down anew.
+    /// A body was replaced.
     SetDown,
-    /// A field, by its path, that is given or not from the start on.
+    /// A field, by its path, can only be added or removed at the start.
     AtTheStartAlone(String),
-    /// Contact between bodies is switched on and off at the start alone.
+    /// Contact between bodies can only be switched on and off at the start.
     ContactAtTheStartAlone,
-    /// The scene is at its end, at this time \[s\], and attracts attention by this.
+    /// The scene has reached its end, at this time \[s\], with these warnings.
     AtTheEnd(f64, Vec<Warning>),
     /// The recording that is viewed ends at this time \[s\].
     RecordingEnds(f64),
-    /// What was done begins a new course at this time of the recording \[s\].
+    /// The action starts a different run at this time of the recording \[s\].
     OwnCourse(f64),
-    /// A frame takes longer than so many seconds, and nothing can be asked for meanwhile.
+    /// A frame takes longer than this many seconds, and the page cannot respond in the meantime.
     TakesLong(f64),
     /// There is no body of this name.
     NoBody(String),
-    /// A body of this name has no shape that could be changed.
+    /// The body of this name has no shape that can be changed.
     NoShape(String),
-    /// A body of this name is one of several copies.
+    /// The body of this name is one of several copies.
     Copy(String),
-    /// A body cannot be scaled by this.
+    /// A body cannot be scaled by this factor.
     Scaled(f64),
-    /// What both sides shall differ in stands nowhere in the scene itself.
+    /// The intended difference of the two sides is not written in the scene itself.
     NoDifference(String),
     /// A file is no text.
     NoText(String),
-    /// A file is neither a scene nor a shape; the endings that are.
+    /// A file is neither a scene nor a shape, with the endings of those.
     NoShapeFile(String, String),
-    /// A file whose name a scene cannot hold.
+    /// The name of a file cannot be used in a scene.
     NameOfFile(String),
-    /// A file of so many bytes is too large; the most that are allowed.
+    /// A file is too large, with its size and the limit [bytes].
     TooLarge(String, u64, u64),
     /// A file cannot be read.
     Unreadable(String),
     /// Files were written.
     Written(Vec<String>),
-    /// The folder cannot be made, and why.
+    /// The folder cannot be made, with the reason.
     NoFolder(String, String),
     /// The folder has no free name left.
     FolderFull(String),
-    /// A browser does not take a file.
+    /// The browser did not accept a file for download.
     NoDownload(String),
     /// There is nothing to draw.
     NothingToDraw,
     /// The link was copied.
     LinkCopied,
-    /// A scene has too many letters for an address; the most that are allowed.
+    /// A scene has too many characters for an address, with the limit.
     AddressTooLong(usize, usize),
-    /// The address names no scene; those that it could name.
+    /// The address names no known scene, with those that it could name.
     AddressUnknown(String),
-    /// The scene in the address is not whole.
+    /// The scene in the address is truncated.
     AddressCut,
-    /// The scene in the address is larger than so many bytes.
+    /// The scene in the address is larger than this many bytes.
     AddressTooLarge(u64),
-    /// The browser keeps its address.
+    /// The browser did not change its address.
     AddressStays,
-    /// The window before was lost; what was done in it is saved in this file.
+    /// The previous window was lost; its work is saved in this file.
     WindowLost(String),
 }
 

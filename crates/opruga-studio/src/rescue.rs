@@ -1,5 +1,5 @@
-//! What a person has done is kept while it is done: where the window is lost, with the graphics device, the driver or the whole
-//! screen, it is found there by the program that watches over it ([`crate::watch`]).
+//! The work of the user is saved while it is done. If the window is lost, with the graphics device, the driver or the whole screen, the supervising
+//! program finds it there ([`crate::watch`]).
 
 use crate::handing::named_files;
 use crate::report::Report;
@@ -14,30 +14,30 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
-/// How long at most what was done is not kept yet.
+/// The longest time for which new work is not saved.
 const EVERY: Duration = Duration::from_secs(2);
 
-/// The place where what is done is kept.
+/// The saving of work to a file.
 #[derive(Debug)]
 pub struct Rescue {
     path: PathBuf,
     asked: Option<Receiver<Copied>>,
     writing: Option<Receiver<()>>,
-    /// When it was asked for last.
+    /// When the work was last requested.
     last: Option<Instant>,
-    /// The text that was kept last, and whether it holds anything that is not saved.
+    /// The text that was last saved, and whether it contains anything that the user has not saved.
     kept: (Arc<str>, bool),
-    /// The files of a scene, which are read once: the scene and where they are, and what they hold.
+    /// The files of a scene, which are read only once: the scene, where they are, and their contents.
     files: Option<(String, Files, Files)>,
 }
 
 impl Rescue {
-    /// Keeps what is done in this file.
+    /// Saves the work in this file.
     pub fn at(path: impl Into<PathBuf>) -> Rescue {
         Rescue { path: path.into(), asked: None, writing: None, last: None, kept: ("".into(), false), files: None }
     }
 
-    /// Looks whether something is to be kept; to be called with every picture.
+    /// Checks whether something must be saved; to be called with every picture.
     pub fn poll(&mut self, link: &Link) {
         if self.writing.as_ref().is_some_and(|writing| writing.try_recv() == Err(std::sync::mpsc::TryRecvError::Empty))
         {
@@ -68,29 +68,29 @@ impl Rescue {
         self.files = Some(files);
         let path = self.path.clone();
         self.writing = Some(work::spawn(async move {
-            // Where it cannot be kept, the window goes on all the same: this is for the day on which it does not.
+            // If it cannot be saved, the window continues anyway: saving matters only if the window is lost.
             let _ = write(&path, &shared);
             let _ = if edited { std::fs::write(mark_of(&path), []) } else { std::fs::remove_file(mark_of(&path)) };
         }));
     }
 }
 
-/// The file that is there where what is kept in this one was edited or recorded since it was opened or saved.
+/// The path of a second file, which exists if the saved work was edited or recorded after it was opened or saved.
 pub fn mark_of(path: &Path) -> PathBuf {
     path.with_extension("edited")
 }
 
-/// Writes a scene so that it is whole whenever it is read.
+/// Writes a scene so that a reader always finds it complete.
 ///
 /// # Errors
-/// What the system refuses.
+/// Those of the system.
 pub fn write(path: &Path, shared: &Shared) -> Result<(), Report> {
     let packed = share::pack(shared)?;
     safe_write(path, true, |file| file.write_all(&packed))?;
     Ok(())
 }
 
-/// The scene that was kept.
+/// Reads the saved scene.
 ///
 /// # Errors
 /// Why it cannot be read.
@@ -99,7 +99,7 @@ pub fn read(path: &Path) -> Result<Shared, Report> {
     share::unpack(&scene::bytes_of(path, &scene::Limits::default()).map_err(refused)?)
 }
 
-/// The session that was lost, on its way to the moment where it was; time stands there.
+/// Reopens the session that was lost, which then goes to the moment where it was and stops there.
 ///
 /// # Errors
 /// Why it cannot be opened.

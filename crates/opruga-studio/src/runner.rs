@@ -1,5 +1,5 @@
-//! The simulation beside the interface, which sends what is asked and takes the last picture: on a thread of its own, or in
-//! a browser in the time that a picture of the window leaves.
+//! The simulation behind the interface, which sends requests and receives the last picture. The simulation runs on a thread of its own or, in a
+//! browser, in the time that a picture of the window leaves.
 
 pub mod sliced;
 #[cfg(not(target_arch = "wasm32"))]
@@ -19,24 +19,24 @@ use std::sync::mpsc::Sender;
 use std::time::Duration;
 use web_time::Instant;
 
-/// The scene as it can be run again from its start: its text, the files it names, and how many frames.
+/// The data to run the scene again from its start: its text, the files that it names, and the number of frames.
 #[derive(Clone, Debug)]
 pub struct Copied {
     /// Its name.
     pub name: String,
     /// Its text with everything that was done.
     pub text: String,
-    /// Where the files are that it names.
+    /// Where the files that it names are.
     pub files: Files,
     /// The models and integrators that it can name.
     pub registries: Registries,
-    /// In what the scene on the right differs, where there is one.
+    /// The differences of the right scene, if there is one.
     pub differences: Option<Vec<Difference>>,
-    /// Frames up to the last one of this course of things.
+    /// The number of frames up to the last one of this run.
     pub frames: u64,
-    /// A mark of the text as it stands.
+    /// A fingerprint of the present text.
     pub mark: u64,
-    /// Whether anything was edited or recorded since it was opened or saved.
+    /// Whether anything was edited or recorded after it was opened or saved.
     pub edited: bool,
 }
 
@@ -56,17 +56,17 @@ impl Copied {
     }
 }
 
-/// What the interface asks for.
+/// A request of the interface.
 enum Ask {
     Do(Request),
     Copy(Sender<Copied>),
 }
 
-/// A session and the clock that it follows.
+/// A session with the clock that it follows.
 struct Course {
     session: Session,
     begin: Instant,
-    /// When time was last let pass.
+    /// The clock at the last turn.
     last: Duration,
 }
 
@@ -75,13 +75,13 @@ impl Course {
         Course { session, begin: Instant::now(), last: Duration::ZERO }
     }
 
-    /// Forgets the time that has passed: nothing moved in it.
+    /// Forgets the time that has passed, because nothing moved.
     fn rest(&mut self) {
         self.last = self.begin.elapsed();
     }
 
-    /// Does what is asked, and lets the time pass that has passed on the clock since the last turn; the picture, if there
-    /// is a new one.
+    /// Handles the requests, and lets the simulation advance by the time on the clock since the last turn; returns the picture, if there is a new
+    /// one.
     fn turn(&mut self, asks: impl IntoIterator<Item = Ask>, budget: Duration) -> Option<Shown> {
         let mut news = false;
         for ask in asks {
@@ -89,7 +89,7 @@ impl Course {
             match ask {
                 Ask::Do(request) => self.session.handle(request),
                 Ask::Copy(reply) => {
-                    // Who asked may be gone.
+                    // The sender of the request may no longer exist.
                     let _ = reply.send(Copied::of(&self.session));
                 }
             }
@@ -101,7 +101,7 @@ impl Course {
             (self.session.frames(), self.session.is_seeking(), self.session.message_count());
         self.session.tick(now.saturating_sub(self.last), budget, &clock);
         self.last = now;
-        // A frame that fails is news too, though it leaves everything as it was.
+        // A frame that fails is also news, though it changes nothing.
         news |= self.session.frames() != before || was_seeking || self.session.message_count() != message_count;
         news.then(|| self.session.shown())
     }

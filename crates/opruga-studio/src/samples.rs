@@ -1,12 +1,11 @@
-//! The curves of a course of things: numbers frame by frame, within a bounded memory. Where they would take more, every second frame
-//! goes.
+//! The curves of a run: numbers frame by frame, within a memory limit. If they exceed it, every second frame is dropped.
 
 use opruga::core::potential::Reading;
 use std::sync::Arc;
 
-/// What the samples may take [bytes].
+/// The memory limit of the samples [bytes].
 const MOST_BYTES: usize = 16 << 20;
-/// The most samples: no window is so wide that more could be told apart.
+/// The largest number of samples: no window is wide enough to distinguish more.
 const MOST: usize = 8_192;
 
 /// The numbers of one frame.
@@ -16,21 +15,21 @@ pub struct Sample {
     pub frame: u64,
     /// The time [s].
     pub time: f64,
-    /// Kinetic, elastic, of the gas, of the weight; work put in, losses, damping by the rule, error of the integrator [J].
+    /// Kinetic energy, elastic energy, energy of the gas, potential energy of gravity; work, losses, numerical damping, error of the integrator [J].
     pub energy: [f64; 8],
     /// The momentum [kg m/s].
     pub momentum: [f64; 3],
-    /// What a frame took of late to compute [ms].
+    /// The recent computing time of a frame [ms].
     pub cost: f64,
-    /// Mean and largest distance of the sides and that of their centres of mass, what the right one has more of volume and of
-    /// energy; not a number where the sides have it not in common.
+    /// The mean and the largest distance between the sides, the distance between their centres of mass, and the differences in volume and in energy,
+    /// right minus left; NaN if the sides cannot be compared.
     pub beside: Option<[f64; 5]>,
-    /// What the models of bodies say, by the number of the body; empty in a crowd.
+    /// The readings of the models of bodies, by the index of the body; empty in a crowd.
     pub readings: Vec<(usize, Arc<[Reading]>)>,
 }
 
 impl Sample {
-    /// What the models of a body say.
+    /// The readings of the models of a body.
     pub fn readings_of(&self, body: usize) -> &[Reading] {
         self.readings.iter().find(|(number, _)| *number == body).map_or(&[], |(_, readings)| readings)
     }
@@ -45,7 +44,7 @@ impl Sample {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Samples {
     kept: Vec<Sample>,
-    /// Frames between two of them.
+    /// The number of frames between two of them.
     every: u64,
     bytes: usize,
 }
@@ -57,12 +56,12 @@ impl Default for Samples {
 }
 
 impl Samples {
-    /// Whether a frame should be sampled: it is none of those that were.
+    /// Whether a frame should be sampled, because it has not been yet.
     pub fn wants(&self, frame: u64) -> bool {
         frame.is_multiple_of(self.every) && self.kept.binary_search_by_key(&frame, |sample| sample.frame).is_err()
     }
 
-    /// Keeps a sample, wherever its frame lies among the others.
+    /// Adds a sample in the order of its frame.
     pub fn keep(&mut self, sample: Sample) {
         let index = self.kept.partition_point(|other| other.frame < sample.frame);
         self.bytes += sample.bytes();
@@ -74,13 +73,13 @@ impl Samples {
         }
     }
 
-    /// Gives up what comes after a frame: that future is another one now.
+    /// Drops the samples after a frame, because the run now continues differently.
     pub fn forget_after(&mut self, frame: u64) {
         self.kept.retain(|sample| sample.frame <= frame);
         self.bytes = self.kept.iter().map(Sample::bytes).sum();
     }
 
-    /// The samples of frames that follow one another; between two such runs nothing is known.
+    /// The samples in runs of consecutive frames; between two runs the values are unknown.
     pub fn runs(&self) -> impl Iterator<Item = &[Sample]> {
         self.kept.chunk_by(|a, b| b.frame - a.frame <= self.every)
     }
@@ -111,7 +110,7 @@ mod tests {
         assert_eq!(samples.runs().count(), 1);
         let ends = [samples.all().first(), samples.all().last()].map(|end| end.expect("samples").frame);
         assert!(ends[0] == 0 && ends[1] > 49_980, "{ends:?}");
-        // What bodies say counts too.
+        // The readings of bodies count as well.
         let reading: Arc<[Reading]> = vec![("pressure".into(), 1.0); 1000].into();
         let mut heavy = Samples::default();
         for frame in 0..2_000 {

@@ -1,13 +1,13 @@
-//! In what a session runs its scenes.
+//! The setting in which a session runs its scenes.
 
 use opruga::{Options, Registries};
 
-/// How worlds are run, and by which models and integrators.
+/// The options of worlds, and the available models and integrators.
 #[derive(Clone, Debug, Default)]
 pub struct Setting {
-    /// Threads, instructions and limits.
+    /// Threads, instruction set and limits.
     pub options: Options,
-    /// What scenes can name, and what panels offer.
+    /// The models and integrators that scenes can name and panels offer.
     pub registries: Registries,
 }
 

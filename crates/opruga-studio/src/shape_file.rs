@@ -19,12 +19,12 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// Its body in a scene that others are in, of this size [m], from a file that is called so there.
+    /// The body for a scene with other bodies, of this size [m], from a file with this name there.
     pub fn body(&self, file: &str, size: f64) -> Option<InlineTable> {
         let document: DocumentMut = self.text.parse().ok()?;
         let mut body = document.get("body")?.as_array_of_tables()?.get(0)?.clone().into_inline_table();
         body.insert("name", self.name.as_str().into());
-        // It is set down where there is room for it.
+        // It is placed where there is space.
         body.remove("position");
         let shape = body.get_mut("shape")?.as_inline_table_mut()?;
         shape.insert("file", file.into());

@@ -1,5 +1,4 @@
-//! A whole scene in one piece: its text and the files that it names, compressed; in an address as letters behind the `#`, which
-//! browsers keep to themselves.
+//! A whole scene in one piece: its text and the files that it names, compressed; in an address, as letters after the `#`, which browsers do not send.
 
 use crate::report::Report;
 use flate2::read::DeflateDecoder;
@@ -9,11 +8,11 @@ use serde_json::{Map, Value, json};
 use std::io::{Read as _, Write as _};
 use std::sync::Arc;
 
-/// What stands before the letters of a scene.
+/// The prefix of the letters of a scene.
 const HEAD: &str = "scene=";
-/// The most letters that common browsers take in an address.
+/// The largest number of letters in an address that common browsers accept.
 pub const MOST_LETTERS: usize = 1 << 20;
-/// The most bytes that letters are unpacked to.
+/// The largest number of bytes to which letters are unpacked.
 const MOST_BYTES: u64 = 64 << 20;
 
 /// A scene that an address names.
@@ -27,7 +26,7 @@ pub struct Shared {
     pub files: Files,
 }
 
-/// A scene in one piece. Files that come with the program are left out.
+/// Packs a scene. Files that come with the program are omitted.
 ///
 /// # Errors
 /// [`Report::NotCompressed`].
@@ -40,10 +39,10 @@ pub fn pack(scene: &Shared) -> Result<Vec<u8>, Report> {
     encoder.write_all(whole.as_bytes()).and_then(|()| encoder.finish()).map_err(|_| Report::NotCompressed)
 }
 
-/// The scene of [`pack`].
+/// Unpacks a scene packed by [`pack`].
 ///
 /// # Errors
-/// The scene is not whole, or larger than 64 MiB.
+/// The scene is truncated, or larger than 64 MiB.
 pub fn unpack(packed: &[u8]) -> Result<Shared, Report> {
     let cut = || Report::AddressCut;
     let mut whole = Vec::new();
@@ -61,7 +60,7 @@ pub fn unpack(packed: &[u8]) -> Result<Shared, Report> {
     Ok(Shared { name: word("name")?, text: word("text")?, files: opruga::scenes::files().with(own) })
 }
 
-/// The part of an address behind its `#` that holds a scene. Files that come with the program are left out.
+/// The part of an address after its `#` for a scene. Files that come with the program are omitted.
 ///
 /// # Errors
 /// [`Report::AddressTooLong`].
@@ -73,11 +72,10 @@ pub fn to_fragment(scene: &Shared) -> Result<String, Report> {
     Ok(format!("{HEAD}{letters}"))
 }
 
-/// The scene that the part of an address behind its `#` names: one that comes with the program, or a whole one; none where it
-/// is empty.
+/// The scene in the part of an address after its `#`: one that comes with the program, or a complete one; none if the part is empty.
 ///
 /// # Errors
-/// There is no such scene, or the address was cut off.
+/// The scene does not exist, or the address was truncated.
 pub fn of_fragment(fragment: &str) -> Result<Option<Shared>, Report> {
     let fragment = fragment.trim_start_matches('#');
     let Some(letters) = fragment.strip_prefix(HEAD) else {

@@ -1,4 +1,4 @@
-//! What the interface sees of a session: one picture and the numbers beside it, made by the thread of the simulation.
+//! The interface's view of a session: one picture and the numbers beside it, made by the thread of the simulation.
 
 use crate::differences::Difference;
 use crate::report::{Report, Step};
@@ -10,14 +10,14 @@ use opruga::draw::{BodyPicture, ColourMap, Picture};
 use opruga::pictures::Quantity;
 use std::sync::{Arc, RwLock};
 
-/// What a person wants to see.
+/// What the user wants to see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Show {
-    /// What the colours tell.
+    /// The quantity that the colours show.
     pub quantity: Quantity,
     /// Arrows of pressure or force, and of pulls.
     pub arrows: bool,
-    /// The springs of bodies that have a surface too.
+    /// The springs of bodies that also have a surface.
     pub springs: bool,
     /// The vertices.
     pub vertices: bool,
@@ -29,9 +29,9 @@ pub struct Show {
     pub contacts: bool,
     /// The hash of the state.
     pub hash: bool,
-    /// The colours of numbers.
+    /// The colour map.
     pub map: ColourMap,
-    /// Whether bodies that carry a drawing are seen in its colours.
+    /// Whether bodies that carry a drawing are shown in its colours.
     pub own_colours: bool,
 }
 
@@ -57,17 +57,17 @@ impl Default for Show {
 pub struct EnergyShown {
     /// ½ Σ m v².
     pub kinetic: f64,
-    /// Stored by the models.
+    /// Elastic energy of the models.
     pub elastic: f64,
-    /// Of the gas.
+    /// Energy of the gas.
     pub gas: f64,
-    /// Of the weight.
+    /// Potential energy of gravity.
     pub gravity: f64,
     /// Work of pulls, pushes and loads.
     pub work: f64,
     /// Damping, friction and impacts together.
     pub losses: f64,
-    /// What implicit rules take by themselves.
+    /// The numerical dissipation of implicit integrators.
     pub numerical: f64,
     /// The error of the integrator.
     pub error: f64,
@@ -76,48 +76,47 @@ pub struct EnergyShown {
 /// One body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyShown {
-    /// Its number in the world.
+    /// Its index in the world.
     pub number: usize,
     /// Its name.
     pub name: String,
-    /// The name under which a person knows it: a body that was set down anew keeps that of the body it was.
+    /// The name under which the user knows it: a replaced body keeps the name of the original one.
     pub title: String,
-    /// How many nodes it has.
+    /// The number of nodes.
     pub nodes: usize,
     /// Its models; empty in a crowd.
     pub models: Vec<Values>,
     /// Its own integrator.
     pub integrator: Option<Values>,
-    /// Its shape as the scene tells it, where it has a table of its own.
+    /// Its shape in the scene, if it has a table of its own.
     pub shape: Option<Values>,
-    /// What its models say: volume, pressure.
+    /// Readings of its models, such as volume and pressure.
     pub readings: Vec<Reading>,
 }
 
 impl EnergyShown {
-    /// What is stored and in motion [J].
+    /// The total of stored and kinetic energy [J].
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic + self.gas + self.gravity
     }
 }
 
-/// The same scene under another configuration, in lock step.
+/// The same scene in another configuration, in lockstep.
 #[derive(Clone, Debug)]
 pub struct Beside {
-    /// What there is to see of it.
+    /// The view of it.
     pub right: Arc<Shown>,
-    /// The root of the mean square of the distances between the nodes of both, and the largest one [m]; none where the
-    /// bodies differ or the right one has stopped.
+    /// The root mean square and the largest distance between the nodes of both [m]; none if the bodies differ or the right side has stopped.
     pub distances: Option<[f64; 2]>,
     /// The distance between the centres of mass of both \[m\].
     pub center: Option<f64>,
-    /// By how much its outlines or surfaces enclose more than those of the left one \[m³, m² in the plane\].
+    /// The difference of the volumes (in the plane, areas) within its surfaces or outlines, minus those on the left \[m³, m² in the plane\].
     pub volume: Option<f64>,
-    /// What it has more of energy than the left one [J].
+    /// Its energy minus that of the left side [J].
     pub energy: Option<f64>,
-    /// In what it differs.
+    /// Its differences.
     pub differences: Vec<Difference>,
-    /// Why it does not go on.
+    /// Why it has stopped.
     pub stopped: Option<Report>,
 }
 
@@ -131,67 +130,66 @@ pub struct ObstacleShown {
 /// How the simulation keeps up with the clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pace {
-    /// The simulated time that passes over that which is asked for; 1 keeps up.
+    /// The ratio of simulated time to the requested one; 1 if the simulation keeps up.
     pub ratio: f64,
-    /// What a frame of the scene takes [s].
+    /// The computing time of a frame of the scene [s].
     pub frame_cost: f64,
 }
 
-/// How grave a message is.
+/// The severity of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// What was done.
+    /// Something was done.
     Done,
-    /// What could not be done; all is as it was before.
+    /// Something could not be done; everything is as it was before.
     Refused,
 }
 
-/// What a button beside a message does.
+/// The action of a button beside a message.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Offer {
-    /// Go back a second and take half the step.
+    /// Go back one second and halve the step.
     HalveStep,
-    /// Go back a second and take an integrator that has a stable step, for the body of this number or for the scene.
+    /// Go back one second and use an integrator with a stable step, for the body of this index or for the scene.
     Steady(Option<usize>, &'static str),
-    /// Take so many substeps and try again what was refused.
+    /// Use this number of substeps and repeat the refused request.
     Substeps(u32),
-    /// Give a field of the shape of a body this value instead of the one that was refused, with as many substeps as that needs.
+    /// Give a field of a body's shape this value instead of the refused one, with as many substeps as needed.
     Coarser(String, &'static str, i64),
-    /// Go on behind the end of a recording.
+    /// Continue after the end of a recording.
     GoOn,
-    /// Wait for frames up to so long \[s\], and do again what was broken off.
+    /// Allow this time for a frame \[s\], and repeat the interrupted request.
     Wait(f64),
 }
 
 /// A message.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Message {
-    /// Counts messages, so that a new one is told from an old one of the same words.
+    /// A running number, which distinguishes a new message from an earlier one with the same text.
     pub number: u64,
     /// How grave it is.
     pub severity: Severity,
-    /// What it says.
+    /// Its contents.
     pub report: Report,
-    /// The same in English.
+    /// Its text in English.
     pub text: String,
-    /// What would help.
+    /// The offered remedy.
     pub offer: Option<Offer>,
-    /// What a frame would take with the substeps that what was refused needs [s], where that is long.
+    /// The time of a frame with the substeps that the refused request needs [s], if it is long.
     pub frame_seconds: Option<f64>,
 }
 
-/// How far a body reaches. Who makes a picture finds it once: the window asks several times for every one that it draws, and a crowd has
-/// tens of thousands of nodes.
+/// The extent of a body, computed once per picture: the window needs it several times for each picture, and a crowd has tens of thousands of nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
-    /// The lowest and the highest corner of the box around its nodes [m]; crossed where it has none.
+    /// The lowest and the highest corner of the box around its nodes [m]; reversed if it has none.
     pub corners: [[f64; 3]; 2],
-    /// The least and the largest of what its colours show; crossed where that is nowhere a finite number.
+    /// The least and the largest value that its colours show; reversed if no value is finite.
     pub colours: [f64; 2],
 }
 
 impl Extent {
-    /// That of a body.
+    /// Computes the extent of a body.
     pub fn of(body: &BodyPicture) -> Extent {
         let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for p in &body.positions {
@@ -218,19 +216,19 @@ pub struct Shown {
     pub dimension: u8,
     /// The time [s].
     pub time: f64,
-    /// Frames since the start.
+    /// The number of frames since the start.
     pub frames: u64,
-    /// The last frame that was computed in this course of things.
+    /// The last frame that was computed in this run.
     pub latest: u64,
-    /// The moment to which everything is computed again \[s\].
+    /// The moment up to which everything is being computed again \[s\].
     pub goal: Option<f64>,
     /// The length of a frame [s].
     pub frame: f64,
-    /// How long the scene lasts for the command line [s].
+    /// The duration of the scene on the command line [s].
     pub seconds: f64,
-    /// Substeps of a frame.
+    /// The number of substeps per frame.
     pub substeps: u32,
-    /// The largest stable substep [s]; infinite where nothing limits it.
+    /// The largest stable substep [s]; infinite if there is no limit.
     pub stable_step: f64,
     /// Gravity [m/s²].
     pub gravity: [f64; 3],
@@ -238,64 +236,64 @@ pub struct Shown {
     pub drag: f64,
     /// The integrator of the scene.
     pub integrator: Option<Values>,
-    /// The hash of the state, where somebody looks at it: that of `opruga run --json`.
+    /// The hash of the state, if it is displayed: that of `opruga run --json`.
     pub hash: Option<u64>,
-    /// The bodies, in the order of those of the picture.
+    /// The bodies, in the same order as in the picture.
     pub bodies: Vec<BodyShown>,
     /// The obstacles.
     pub obstacles: Vec<ObstacleShown>,
-    /// How bodies touch one another; none where they pass through one another.
+    /// The parameters of contact between bodies; none if they pass through one another.
     pub contact: Option<Values>,
     /// Pulls: node, pointer, force [m, m, N].
     pub pulls: Vec<[[f64; 3]; 3]>,
     /// Pushes of the pointer: node, end of the arrow, force [m, m, N].
     pub pushes: Vec<[[f64; 3]; 3]>,
-    /// Points that a person has pinned: body, node, position [m].
+    /// Points that the user has pinned: body, node, position [m].
     pub pins: Vec<(usize, u32, [f64; 3])>,
     /// The energy ledger.
     pub energy: EnergyShown,
     /// The momentum [kg m/s].
     pub momentum: [f64; 3],
-    /// The curves of this course of things; those of the scene that is open, also behind this moment.
+    /// The curves of this run; if the scene is open, they may extend beyond this moment.
     pub samples: Arc<RwLock<Samples>>,
-    /// What attracted attention.
+    /// The warnings.
     pub warnings: Vec<Warning>,
     /// The picture.
     pub picture: Picture,
-    /// How far each of its bodies reaches.
+    /// The extent of each of its bodies.
     pub extents: Vec<Extent>,
     /// Whether time passes.
     pub playing: bool,
-    /// Simulated seconds for every real one that are wanted.
+    /// The requested number of simulated seconds per real second.
     pub speed: f64,
     /// How the simulation keeps up.
     pub pace: Pace,
-    /// What can be undone and redone.
+    /// The action that can be undone.
     pub undo: Option<Step>,
-    /// What can be redone.
+    /// The action that can be redone.
     pub redo: Option<Step>,
     /// The last message.
     pub message: Option<Message>,
-    /// How many scenes were opened or built anew: a view is fitted once for each.
+    /// The number of scenes that were opened or rebuilt so far: the view is fitted once for each.
     pub opened: u64,
-    /// How often another state took the place of the one before at once, as by undo, reset or a way through time: what was
-    /// fitted to the states before is fitted anew.
+    /// How often the state was replaced by a different one at once, for example by undo, a reset or the time slider: whatever was fitted to the
+    /// earlier states is then fitted again.
     pub replaced: u64,
-    /// How often a person went back to the start and left what was done: a view begins anew with it.
+    /// How often the user has reset the scene to its start: the view is then reset, too.
     pub resets: u64,
-    /// The same scene under another configuration.
+    /// The same scene in another configuration.
     pub beside: Option<Beside>,
-    /// Bodies that were set down anew under another name: old and new.
+    /// Bodies that were replaced under another name: old and new names.
     pub renamed: Vec<(String, String)>,
-    /// The last body that was added or copied, with a number that counts them.
+    /// The last body that was added or copied, with a running number.
     pub newest: Option<(u64, String)>,
-    /// Whether bodies carry drawings with colours of their own.
+    /// Whether bodies carry drawings with colours.
     pub has_drawings: bool,
-    /// The last frame that is as it was recorded, where a recording is viewed.
+    /// The last frame that is as it was recorded, if a recording is viewed.
     pub recorded_until: Option<u64>,
-    /// How many commands of a person the scene holds.
+    /// The number of commands of the user in the scene.
     pub recorded: usize,
-    /// The last moment that can be gone back to without computing from the start [bytes kept].
+    /// The memory of the states to which the session can return without computing from the start [bytes].
     pub kept_bytes: usize,
 }
 

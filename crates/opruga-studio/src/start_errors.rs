@@ -1,13 +1,13 @@
-//! Why the studio does not start, and why its window is gone.
+//! Why the studio does not start, or why its window was lost.
 
 opruga::math::messages! {
-    /// Why the studio does not start, and why its window is gone.
+    /// Why the studio does not start, or why its window was lost.
     #[derive(Clone, Debug, PartialEq)]
     pub enum StartError {
-        /// An argument is no text.
+        /// An argument is not text.
         "studio.call" #[error("`{argument}` is no text in UTF-8")]
         NotUtf8 { argument: String },
-        /// An option that is not there.
+        /// An unknown option.
         "studio.call" #[error("there is no option `{option}`")]
         NoOption { option: String },
         /// Several scenes.
@@ -17,10 +17,10 @@ opruga::math::messages! {
         "studio.no_window" #[error("no window can be opened: {reason}")]
         #[hint("`opruga run {scene}` runs without a window and writes pictures")]
         NoWindow { reason: String, scene: String },
-        /// The program of the window does not start.
+        /// The process of the window does not start.
         "studio.no_window" #[error("the window cannot be started: {reason}")]
         NotStarted { reason: String },
-        /// The window has ended by itself.
+        /// The window has ended by itself with an error.
         "studio.lost" #[error("the window was lost (exit code {code})")]
         ExitCode { code: i32 },
         /// A signal has ended the window.

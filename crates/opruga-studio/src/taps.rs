@@ -1,20 +1,20 @@
-//! A press that is over before the next picture. A screen that draws seldom takes in both of its ends with one picture, and then no slider
-//! knows that it was pressed. So the end of such a press comes with the picture after.
+//! A press that ends before the next picture. If a screen draws rarely, both the press and the release arrive with the same picture, and sliders do
+//! not notice them. The release of such a press is therefore delayed until the next picture.
 
 use egui::{Context, Event, Plugin, PointerButton, RawInput};
 
-/// How long a press lasts at most that was over within one picture \[s\]: however long that picture was drawn, it is a click.
+/// The longest duration of a press that began and ended within one picture \[s\]: however long the picture took, it counts as a click.
 const TAP: f64 = 0.125;
 
-/// What waits for the next picture.
+/// The events that wait for the next picture.
 #[derive(Debug, Default)]
 pub(crate) struct Taps {
     later: Vec<Event>,
-    /// When the press began whose end waits [s].
+    /// When the press began whose release waits [s].
     pressed: Option<f64>,
 }
 
-/// Where the first press among events ends that begins among them too.
+/// The index of the first release among events whose press is among them, too.
 fn end_of_tap(events: &[Event]) -> Option<usize> {
     let mut down: Vec<PointerButton> = Vec::new();
     events.iter().position(|event| {
@@ -69,10 +69,10 @@ mod tests {
         };
         let two = vec![at(1.0), button(true), at(2.0), button(false), at(3.0), button(true), button(false)];
         assert_eq!(picture(two.clone(), 5.0), (two[..3].to_vec(), 5.0));
-        // The picture was drawn for two seconds.
+        // The picture took two seconds.
         assert_eq!(picture(vec![at(4.0)], 7.0), (two[3..6].to_vec(), 5.125));
         assert_eq!(picture(vec![], 7.1), (vec![button(false), at(4.0)], 5.25));
-        // A press that lasts is left alone.
+        // A longer press is not changed.
         for (events, time) in [(vec![button(true)], 8.0), (vec![at(5.0), button(false)], 9.0), (vec![], 10.0)] {
             assert_eq!(picture(events.clone(), time), (events, time));
         }

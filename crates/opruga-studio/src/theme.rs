@@ -1,17 +1,17 @@
-//! How the interface looks, dark and light.
+//! The appearance of the interface, dark and light.
 
 use egui::{
     Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Style, TextStyle, Theme, vec2,
 };
 use std::sync::Arc;
 
-/// Letters of one width for excerpts of files and for time: those of English and Croatian out of Hack.
+/// A monospaced font for excerpts of files and for time: the characters of English and Croatian from Hack.
 const MONOSPACE: &[u8] = include_bytes!("../font/hack-subset.ttf");
 
-/// Adds the fonts of the interface to others. What they lack natively comes from those of the toolkit; a browser draws it with
-/// its own, and the page need not carry those.
+/// Adds the fonts of the interface to others. In a desktop window, missing characters come from the fonts of the toolkit; a browser draws them with
+/// its own, so a web page need not contain those.
 fn with_own(mut fonts: FontDefinitions) -> FontDefinitions {
-    // The font of the pictures: it has the letters of formulas and of Croatian.
+    // The font of the pictures, which has the characters of formulas and of Croatian.
     fonts.font_data.insert("inter".into(), Arc::new(FontData::from_static(opruga::draw::FONT)));
     fonts.font_data.insert("hack".into(), Arc::new(FontData::from_static(MONOSPACE)));
     for (family, [first, last]) in
@@ -24,7 +24,7 @@ fn with_own(mut fonts: FontDefinitions) -> FontDefinitions {
     fonts
 }
 
-/// Sets fonts, sizes and roundings for both themes.
+/// Sets fonts, sizes and corner radii for both themes.
 pub fn apply(context: &Context) {
     context.set_fonts(with_own(FontDefinitions::default()));
     context.set_theme(Theme::Dark);
@@ -47,7 +47,7 @@ pub fn apply(context: &Context) {
             widget.corner_radius = CornerRadius::same(5);
         }
     });
-    // The toolkit's own faint text is too faint to be read; beside it plain text stands out more.
+    // The toolkit's faint text is too faint to be read; with a stronger one, plain text must stand out more.
     for (theme, plain, faint) in [(Theme::Dark, 190, 154), (Theme::Light, 60, 100)] {
         context.style_mut_of(theme, |style| {
             style.visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(plain);
@@ -56,7 +56,7 @@ pub fn apply(context: &Context) {
     }
 }
 
-/// The colour of text that asks for attention.
+/// The colour of text that needs attention.
 pub fn attention(visuals: &egui::Visuals) -> Color32 {
     if visuals.dark_mode { Color32::from_rgb(230, 140, 20) } else { Color32::from_rgb(158, 80, 0) }
 }
@@ -65,7 +65,7 @@ pub fn attention(visuals: &egui::Visuals) -> Color32 {
 mod tests {
     use super::*;
 
-    /// The contrast of two colours as the Web Content Accessibility Guidelines have it, from 1 to 21.
+    /// The contrast of two colours according to the Web Content Accessibility Guidelines, from 1 to 21.
     fn contrast(a: Color32, b: Color32) -> f64 {
         let linear = |part: u8| {
             let share = f64::from(part) / 255.0;

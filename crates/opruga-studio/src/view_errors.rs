@@ -6,22 +6,22 @@ opruga::math::messages! {
     /// Why a recorded run cannot be viewed.
     #[derive(Clone, Debug, PartialEq)]
     pub enum ViewError {
-        /// What a program did during the run is no part of its scene.
+        /// A program controlled the run, and its actions are not part of the scene.
         "recording.led" #[error("a program has led this run, which the text of a scene cannot say")] #[hint("`opruga replay` shows it")]
         Led {},
-        /// The scene is no text.
+        /// The scene is not text.
         "recording.scene" #[error("the scene inside is no text in UTF-8")]
         SceneNotUtf8 {},
-        /// What the call of the run set has no value.
+        /// An override of the run has an invalid value.
         "recording.override" #[error("`{path}` is set to `{value}`, which is no value")]
         NoValue { path: String, value: String },
-        /// What the call of the run set is not there.
+        /// An override of the run names nothing in the scene.
         "recording.override" #[error("`{path}` leads to nothing in the scene")]
         NoPath { path: String },
-        /// None of its states is there.
+        /// It contains no state.
         "recording.no_frame" #[error("the recording holds no frame")]
         Empty {},
-        /// The scene inside and the states do not agree.
+        /// The scene inside and the states are inconsistent.
         "recording.other_program" #[error("its scene does not lead to its first state: another program has recorded it")]
         OtherProgram {},
         /// Its end is damaged.

@@ -1,4 +1,4 @@
-//! What a call of the program names: a scene file, a scene that comes with the program, a recorded run, or the file of a shape.
+//! The argument of the program: a scene file, a scene that comes with the program, a recorded run, or the file of a shape.
 
 use crate::dropping;
 use crate::report::Report;
@@ -8,10 +8,10 @@ use opruga::io::recording::{MAGIC, Recording, RecordingError};
 use opruga::io::{Files, SceneError, scene, shapes};
 use std::path::Path;
 
-/// Opens what a call names.
+/// Opens what the argument names.
 ///
 /// # Errors
-/// Everything that is wrong with it; where there is nothing of this name, what else could be meant.
+/// All errors in it; if there is nothing with this name, what else may be meant.
 pub fn open(wanted: &str, setting: impl Into<Setting>) -> Result<Session, Report> {
     let (path, setting) = (Path::new(wanted), setting.into());
     if let Some(text) = opruga::scenes::find(wanted).filter(|_| !path.is_file()) {
@@ -39,7 +39,7 @@ pub fn open(wanted: &str, setting: impl Into<Setting>) -> Result<Session, Report
     Session::open(&name, &text, Files::beside(path), setting)
 }
 
-/// Whether a file begins as recordings do.
+/// Whether a file begins like a recording.
 fn is_recording(path: &Path) -> bool {
     use std::io::Read as _;
     let mut head = [0; MAGIC.len()];

@@ -1,6 +1,6 @@
-//! A program that watches over the window. OpenGL has no way to ask for another device in the same window, and where a driver
-//! fails it takes the program with it. So the window is a program of its own that this one starts: where it is lost, what was done
-//! is saved and said, and another window goes on from there. Where it is asked to end, what was done is saved and said too.
+//! A program that supervises the window. OpenGL cannot provide another device for the same window, and a driver that fails takes the program with it.
+//! The window is therefore a separate process, which this one starts. If the window is lost, its work is saved, the path is reported, and another
+//! window continues from there. If the program is asked to end, the work is saved and the path is reported, too.
 
 use crate::handing::Folder;
 use crate::preferences::Store;
@@ -14,54 +14,54 @@ use std::process::{Child, Command, ExitCode, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Names the file in which the window keeps what is done.
+/// The environment variable with the file in which the window saves its work.
 pub const KEPT: &str = "OPRUGA_STUDIO_KEPT";
-/// Says where what was done was saved when the window before was lost.
+/// The environment variable with the path to which the work of the previous, lost window was saved.
 pub const SAVED: &str = "OPRUGA_STUDIO_SAVED";
 /// The exit code of a window that could not be opened.
 pub const NO_WINDOW: u8 = 5;
 /// The exit code of a window that was lost.
 pub const LOST: u8 = 70;
-/// So many windows may be lost within so long; then no other is opened.
+/// If this many windows are lost within the following time, no other window is opened.
 const MOST_LOST: usize = 3;
 const WITHIN: Duration = Duration::from_secs(60);
 
 /// The exit code of a program that was asked to end.
 const ENDED: u8 = 130;
-/// How often the window is looked at.
+/// The interval at which the window is checked.
 const EVERY: Duration = Duration::from_millis(30);
 /// How long a window may take to end after it was asked to.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Whether Ctrl-C or a signal has asked the program to end.
 static END: AtomicBool = AtomicBool::new(false);
-/// Whether it was asked more than once: the window does not get the time to end by itself then. What was done is saved all the same.
+/// Whether it was asked more than once: the window then gets no time to end by itself. Its work is saved anyway.
 static AT_ONCE: AtomicBool = AtomicBool::new(false);
 
-/// What follows the end of a window.
+/// The action after the end of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
-    /// It was closed, or has said what is wrong.
+    /// It was closed, or has reported an error.
     End(u8),
-    /// Somebody has ended it.
+    /// It was asked to end.
     Ended,
     /// It was lost.
     Lost,
 }
 
-/// Prints an error in the language that the person prefers.
+/// Prints an error in the language that the user prefers.
 pub fn print(error: StartError) {
     let language = Store::of_the_person().read().language;
     eprintln!("{}", SceneError::of(error).text(language.translation()));
 }
 
-/// Watches over windows on what the arguments name.
+/// Supervises windows that open what the arguments name.
 pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
     let Ok(kept) = Kept::new() else {
-        // A window that nobody watches over is better than none.
+        // A window without supervision is better than none.
         return window(arguments, None, None).map_or(ExitCode::from(NO_WINDOW), |status| code(status.code()));
     };
-    // Where the system gives us no handler, a signal ends the program as it always did.
+    // If the system provides no handler, a signal ends the program as usual.
     let _ = ctrlc::set_handler(|| {
         if END.swap(true, Ordering::SeqCst) {
             AT_ONCE.store(true, Ordering::SeqCst);
@@ -108,7 +108,7 @@ pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
     }
 }
 
-/// Saves what was kept, and reports where.
+/// Saves the work, and reports where.
 fn save_and_report(kept: &Path, registries: &Registries) -> Option<String> {
     let saved = save(kept, registries);
     match &saved {
@@ -124,12 +124,12 @@ fn hint(saved: Option<&str>) {
     }
 }
 
-/// What follows an exit code or a signal.
+/// The action after an exit code or a signal.
 fn next(code: Option<i32>, signal: Option<i32>) -> Next {
     match (code, signal) {
         (Some(code @ (0 | 2)), _) => Next::End(code as u8),
         (Some(code), _) if code == i32::from(NO_WINDOW) => Next::End(NO_WINDOW),
-        // Hang up, interrupt, terminate: that is asked for.
+        // Hangup, interrupt, terminate: the end was requested.
         (None, Some(1 | 2 | 15)) => Next::Ended,
         _ => Next::Lost,
     }
@@ -149,7 +149,7 @@ fn code(code: Option<i32>) -> ExitCode {
     code.and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::from(LOST), ExitCode::from)
 }
 
-/// A window until its end. It ends with this program, whose end it sees at its input.
+/// Runs a window until its end. The window ends with this program, whose end closes its input.
 fn window(arguments: &[OsString], kept: Option<&Path>, saved: Option<&str>) -> std::io::Result<ExitStatus> {
     let mut command = Command::new(std::env::current_exe()?);
     command.args(arguments).stdin(Stdio::piped()).env(KEPT, kept.map_or(OsString::new(), |path| path.into()));
@@ -160,9 +160,9 @@ fn window(arguments: &[OsString], kept: Option<&Path>, saved: Option<&str>) -> s
     wait(command.spawn()?, &END)
 }
 
-/// Waits for the end of a window. One that does not end where it is asked to is ended.
+/// Waits for the end of a window. A window that does not end when it is asked to is killed.
 fn wait(mut child: Child, end: &AtomicBool) -> std::io::Result<ExitStatus> {
-    // Waiting with the child itself would close its input, and so end it.
+    // Waiting on the child would close its input, and thus end it.
     let mut input = child.stdin.take();
     let mut asked: Option<Instant> = None;
     loop {
@@ -181,7 +181,7 @@ fn wait(mut child: Child, end: &AtomicBool) -> std::io::Result<ExitStatus> {
     }
 }
 
-/// Saves what was kept among the files of the studio, or where that is refused, leaves it beside; where it is.
+/// Saves the work to the folder of the studio or, if that fails, leaves it where it is; returns the path.
 fn save(kept: &Path, registries: &Registries) -> Option<String> {
     let shared = rescue::read(kept).ok()?;
     let beside = kept.parent().map(Folder::at);
@@ -191,7 +191,7 @@ fn save(kept: &Path, registries: &Registries) -> Option<String> {
     written.ok()?.first().map(|path| path.display().to_string())
 }
 
-/// A folder that nobody else can have made, with the file in it; it goes with this where nothing else lies in it.
+/// A folder that nobody else can have made, with the file in it. It is removed with this value if it contains nothing else.
 struct Kept(PathBuf);
 
 impl Kept {
@@ -211,7 +211,7 @@ impl Drop for Kept {
     fn drop(&mut self) {
         let _ = std::fs::remove_file(self.file());
         let _ = std::fs::remove_file(rescue::mark_of(&self.file()));
-        // What was being written when the window ended.
+        // Files that were being written when the window ended.
         for left in std::fs::read_dir(&self.0).into_iter().flatten().flatten() {
             if left.file_name().to_string_lossy().starts_with(".kept.") {
                 let _ = std::fs::remove_file(left.path());
@@ -221,12 +221,12 @@ impl Drop for Kept {
     }
 }
 
-/// Ends this program where the one that watches over it has ended.
+/// Ends this process when the supervising one has ended.
 pub fn end_with_the_watch() {
     std::thread::spawn(|| {
         use std::io::Read as _;
         let mut rest = Vec::new();
-        // Nothing is ever sent: the end comes when nobody is there to send.
+        // Nothing is ever sent: the input ends when the sender no longer exists.
         let _ = std::io::stdin().lock().read_to_end(&mut rest);
         std::process::exit(0);
     });
@@ -243,7 +243,7 @@ mod tests {
             (Some(0), None, Next::End(0)),
             (Some(2), None, Next::End(2)),
             (Some(5), None, Next::End(5)),
-            // The screen is gone, a panic, a driver that gives up, one that reads where nothing is.
+            // The screen is gone, a panic, a driver that aborts, a driver that reads an invalid address.
             (Some(1), None, Next::Lost),
             (Some(101), None, Next::Lost),
             (Some(i32::from(LOST)), None, Next::Lost),
@@ -264,7 +264,7 @@ mod tests {
         let status = wait(begun(&["true"]), &end).expect("its end");
         assert_eq!((status.code(), signal(&status)), (Some(0), None));
         end.store(true, Ordering::SeqCst);
-        // This one ends with its input, as windows do; the other one does not care.
+        // This process ends with its input, as windows do; the other one ignores its input.
         let status = wait(begun(&["cat"]), &end).expect("its end");
         assert_eq!((status.code(), signal(&status)), (Some(0), None));
         let status = wait(begun(&["sleep", "600"]), &end).expect("its end");

@@ -1,4 +1,4 @@
-//! Every word of the interface, in every language, in one place.
+//! All texts of the interface in all languages, in one place.
 
 mod messages;
 mod named;
@@ -22,7 +22,7 @@ impl Language {
     /// All of them.
     pub const EVERY: [Language; 2] = [Language::English, Language::Croatian];
 
-    /// What the engine says in it; none for English, which the engine speaks itself.
+    /// The translation of the engine's texts; none for English, which is the language of the engine.
     pub fn translation(self) -> Option<&'static Translation> {
         match self {
             Language::English => None,
@@ -30,12 +30,12 @@ impl Language {
         }
     }
 
-    /// What a message of the engine says, what is allowed and what would help; in English where there is no other text of it.
+    /// A message of the engine in full: what it says, what is allowed and what would help; in English if there is no translation.
     pub fn in_full(self, message: &dyn Message) -> String {
         self.translation().and_then(|known| known.in_full(message)).unwrap_or_else(|| message.in_full())
     }
 
-    /// Its two letters in ISO 639.
+    /// Its two-letter code in ISO 639.
     pub fn code(self) -> &'static str {
         match self {
             Language::English => "en",
@@ -57,7 +57,7 @@ macro_rules! words {
                 }
             )*
         }
-        /// Every word in every language, for tests.
+        /// All texts in all languages, for tests.
         pub const ALL: &[(&str, &str, &str)] = &[$((stringify!($name), $english, $croatian)),*];
     };
 }

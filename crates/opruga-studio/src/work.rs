@@ -1,5 +1,5 @@
-//! Work beside the interface, such as films and thumbnails: on a thread of its own; in a browser, which gives none, in slices
-//! between two pictures of the window.
+//! Work in the background, such as films and thumbnails: on a thread of its own or, in a browser, which has none, in slices between two pictures of
+//! the window.
 
 use std::sync::mpsc::Receiver;
 
@@ -8,7 +8,7 @@ pub use sliced::{breathe, spawn};
 #[cfg(not(target_arch = "wasm32"))]
 pub use threaded::{breathe, finish, spawn};
 
-/// What work came to, if it is done.
+/// The result of the work, if it is finished.
 pub fn done<T>(receiver: &Receiver<T>) -> Option<T> {
     receiver.try_recv().ok()
 }
@@ -20,17 +20,17 @@ mod threaded {
     use std::sync::mpsc::{Receiver, channel};
     use std::task::{Context, Poll, Waker};
 
-    /// Does work beside the interface; what it comes to can be received.
+    /// Starts work in the background; its result can be received.
     pub fn spawn<T: Send + 'static>(work: impl Future<Output = T> + Send + 'static) -> Receiver<T> {
         let (sender, receiver) = channel();
         std::thread::spawn(move || {
-            // Nobody waits any more where the window was closed.
+            // Nobody waits any more if the window was closed.
             let _ = sender.send(finish(work));
         });
         receiver
     }
 
-    /// Does work to its end. Here it never waits for anything, as [`breathe`] returns at once.
+    /// Does the work completely. It never waits here, because [`breathe`] returns at once.
     pub fn finish<T>(work: impl Future<Output = T>) -> T {
         let mut work = pin!(work);
         let mut context = Context::from_waker(Waker::noop());
@@ -42,7 +42,7 @@ mod threaded {
         }
     }
 
-    /// The place in long work where the interface has its turn: on a thread it has it anyway.
+    /// A point in long work at which the interface has its turn; nothing happens here, because the work has its own thread.
     pub async fn breathe() {}
 }
 
@@ -53,7 +53,7 @@ mod sliced {
     use std::future::Future;
     use std::sync::mpsc::{Receiver, channel};
 
-    /// How long work goes on before the interface has its turn [ms].
+    /// How long work continues before the interface has its turn [ms].
     const SLICE: f64 = 6.0;
 
     thread_local! {
@@ -61,7 +61,7 @@ mod sliced {
         static BEGAN: Cell<f64> = const { Cell::new(0.0) };
     }
 
-    /// Does work beside the interface; what it comes to can be received.
+    /// Starts work in the background; its result can be received.
     pub fn spawn<T: 'static>(work: impl Future<Output = T> + 'static) -> Receiver<T> {
         let (sender, receiver) = channel();
         wasm_bindgen_futures::spawn_local(async move {
@@ -70,7 +70,7 @@ mod sliced {
         receiver
     }
 
-    /// The place in long work where the interface has its turn, once the slice is used up.
+    /// A point in long work at which the interface has its turn, if the slice is used up.
     pub async fn breathe() {
         if browser::milliseconds() - BEGAN.get() > SLICE {
             browser::next_turn().await;

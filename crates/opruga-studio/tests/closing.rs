@@ -11,13 +11,13 @@ use opruga::core::spec::Value;
 use opruga_studio::session::Request;
 use screen::window::{SIZE, Window};
 
-/// What the window answers when its cross is pressed: whether it goes on, and whether it asks to be closed by itself.
+/// The reaction of the window when its close button is pressed: whether it stays open, and whether it then requests to be closed.
 fn asked_to_close(window: &mut Window) -> [bool; 2] {
     let root = window.harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
     root.events.push(ViewportEvent::Close);
     window.frames(1);
     let answered = commands(window);
-    // A question is laid out before it is seen.
+    // A question is laid out before it is visible.
     window.frames(3);
     answered
 }
@@ -40,7 +40,7 @@ fn edited() -> Window {
     window
 }
 
-/// Presses a button of the question, behind which one of the same name may stand.
+/// Presses a button of the question, which may cover another one with the same name.
 fn answer(window: &mut Window, name: &str) {
     let last = window.harness.get_all_by_label(name).last().expect("a button");
     last.click();
@@ -60,7 +60,7 @@ fn a_window_with_something_to_be_saved_asks_and_discards_or_goes_on() {
     let mut window = edited();
     assert_eq!(asked_to_close(&mut window), [true, false]);
     assert!(question(&window));
-    // However often it is asked: nothing is lost by it, nor by keys that mean something else otherwise.
+    // However often it is asked: nothing is lost, not even by keys that otherwise have another meaning.
     assert_eq!(asked_to_close(&mut window), [true, false]);
     window.key(Modifiers::NONE, Key::Home);
     assert_eq!(window.shown().recorded, 1);
@@ -80,7 +80,7 @@ fn a_window_with_something_to_be_saved_asks_and_discards_or_goes_on() {
 fn a_window_saves_what_was_done_before_it_closes_and_stays_where_that_is_refused() {
     let folder = std::env::temp_dir().join(format!("opruga-closing-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
-    // The studio writes below the folder in which it was started. No other test here reads or writes files.
+    // The studio writes to a folder below the one in which it was started. No other test here reads or writes files.
     std::env::set_current_dir(&folder).expect("it is there");
     std::fs::write(folder.join("out"), b"").expect("a file where the folder should be");
     let mut window = edited();

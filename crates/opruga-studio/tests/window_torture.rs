@@ -1,4 +1,4 @@
-//! What a window has to bear, row by row of the list of faults.
+//! Faults that a window must survive, row by row of the torture list.
 #![allow(missing_docs)]
 // No physics here.
 #![allow(clippy::disallowed_methods)]
@@ -42,7 +42,7 @@ fn row_92_a_window_without_size_a_huge_one_and_one_on_another_screen_are_shown_a
         }
         window.rest();
     }
-    // Screens with other numbers of pixels a point: what lies under the pointer is what is seen there.
+    // Screens with other numbers of pixels per point: the pointer acts on what is seen under it.
     for fine in [0.75, 1.25, 1.5, 3.0] {
         let mut window = Window::open_at("ball", SIZE, fine);
         let top = top_of(&window);
@@ -119,7 +119,7 @@ fn row_95_ten_hidden_minutes_are_neither_a_giant_step_nor_a_spiral() {
 fn row_96_a_scene_that_is_too_slow_slows_down_and_says_by_how_much() {
     let mut session = open("ball");
     session.handle(Request::Play(true));
-    // Every look at the clock, two a frame, lets thirty milliseconds pass.
+    // Every look at the clock, twice per frame, advances it by thirty milliseconds.
     let now = Cell::new(Duration::ZERO);
     let clock = || {
         now.set(now.get() + Duration::from_millis(30));
@@ -159,7 +159,7 @@ fn row_97_the_trajectory_is_the_same_to_the_bit_at_30_60_144_and_1000_frames_a_s
 
 #[test]
 fn row_98_where_there_is_no_thread_the_bits_are_the_same_and_what_no_memory_holds_is_refused() {
-    // As on a page, whose workers may share no memory: every frame in a turn of the interface; and on four threads.
+    // As on a web page whose workers cannot share memory, every frame in a turn of the interface; and on four threads.
     let (text, files) = (opruga::scenes::find("balloons").expect("a scene"), opruga::scenes::files());
     let session = |threads| {
         let options = Options { threads, ..Options::default() };
@@ -172,7 +172,7 @@ fn row_98_where_there_is_no_thread_the_bits_are_the_same_and_what_no_memory_hold
         together.handle(Request::Step);
         assert_eq!(alone.with_session(Session::hash), together.hash());
     }
-    // A page has 4 GiB, a machine more; what takes too much of it is told before any memory is asked for.
+    // A web page has 4 GiB, a machine more. A scene that takes too much is refused before any memory is allocated.
     let vast = |vertices: &str| {
         let ball = opruga::scenes::find("ball").expect("a scene");
         let vast = ball.replace("vertices = 36", &format!("vertices = {vertices}"));
@@ -190,7 +190,7 @@ fn row_98_where_there_is_no_thread_the_bits_are_the_same_and_what_no_memory_hold
     together.handle(Request::Open { name: "vast".into(), text: many, files: files.clone() });
     let message = together.shown().message.expect("it is told");
     assert_eq!(message.severity, Severity::Refused);
-    // What is too much for every machine has another code.
+    // A scene that is too large for every machine has another code.
     assert!(message.text.contains("limit.nodes") && message.text.contains("allowed: at most"), "{}", message.text);
     assert_eq!((together.name(), together.hash()), ("balloons", hash), "the old scene stays");
     together.handle(Request::Step);
@@ -228,7 +228,7 @@ fn row_100_extreme_values_are_refused_or_run_and_what_failed_can_be_taken_back()
             assert_eq!(message.offer, Some(Offer::HalveStep), "{path} {value}");
         }
         assert!(substeps < 5000, "{substeps}");
-        // Taken back, the scene is at the moment before the change, and goes on.
+        // After an undo the scene is at the moment before the change, and continues.
         session.handle(Request::Undo);
         while session.is_seeking() {
             session.tick(Duration::from_millis(16), Duration::from_millis(12), &no_time);
@@ -246,7 +246,7 @@ fn row_100_a_slider_that_was_drawn_too_far_shows_the_last_good_value_and_the_mes
     window.until("it moves", |shown| shown.frames == 1);
     let slider = || ("stiffness [N/m]", egui::Role::Slider);
     let rect = window.harness.get_by_role_and_label(slider().1, slider().0).rect();
-    // From the middle of the rail beyond its right end.
+    // From the middle of the slider to beyond its right end.
     let from = egui::pos2(rect.left() + 60.0, rect.center().y);
     window.drag(&[from, egui::pos2(rect.left() + 2000.0, rect.center().y)], PointerButton::Primary, Modifiers::NONE);
     window.until("a refusal", |shown| shown.message.as_ref().is_some_and(|m| m.severity == Severity::Refused));
@@ -275,7 +275,7 @@ fn row_100_more_substeps_than_a_frame_may_have_are_not_offered_and_the_message_s
     session.handle(Request::Accept(message.offer.expect("the offer")));
     let shown = session.shown();
     assert_eq!(shown.substeps, most, "{:?}", shown.message);
-    // Stiffer by what the margin leaves and no more: the offer ends where frames do.
+    // Stiffer only by the remaining margin: the offer ends at the limit for frames.
     let least = |message: &str| message.rsplit(">= ").next().and_then(|n| n.parse::<f64>().ok()).expect("a number");
     let almost = 1e12 * (0.97 * f64::from(MOST_SUBSTEPS) / least(&message.text)).powi(2);
     let (_, message) = stiffer(almost);

@@ -1,4 +1,4 @@
-//! Files that were dropped on the window or chosen.
+//! Files that were dropped on the window or chosen in a dialog.
 
 use super::Studio;
 use crate::hand::Arrived;
@@ -8,15 +8,15 @@ use crate::shown::Shown;
 use egui::Ui;
 use std::time::Duration;
 
-/// How long a shape waits for the pointer \[s\]: while a file is dragged over a window, systems tell that where the pointer is only when
-/// it is let go.
+/// How long a shape waits for the position of the pointer \[s\]: while a file is dragged over a window, systems report the position of the pointer
+/// only when the file is dropped.
 const PATIENCE: f64 = 0.3;
 
-/// Shapes that wait for the pointer, and since when \[s\].
+/// Shapes that wait for the position of the pointer, and since when \[s\].
 pub(super) type Waiting = Vec<(Shape, f64)>;
 
 impl Studio {
-    /// Scenes are opened, shapes become bodies at the pointer.
+    /// Opens dropped scenes; dropped shapes become bodies at the pointer.
     pub(super) fn dropped(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
         let (now, pointer) = ui.input(|i| (i.time, i.pointer.latest_pos()));
         for arrived in self.hand.arrived(ui) {
@@ -26,7 +26,7 @@ impl Studio {
                 Arrived::Message(severity, report) => self.keeping.report(severity, report),
             }
         }
-        // Not so large that nothing else is seen.
+        // Small enough that other things remain visible.
         let size = opruga::draw::nice_length(0.3 * self.canvas.shorter_side(shown));
         let at = self.canvas.landing(shown, pointer);
         for (shape, since) in std::mem::take(&mut self.landing) {

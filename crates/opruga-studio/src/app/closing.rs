@@ -1,4 +1,4 @@
-//! The window is asked to close, by its cross or by Alt-F4: what was done and is not saved is asked for first.
+//! Closing the window by its button or by Alt-F4: if there is unsaved work, the user is asked first.
 
 use super::Studio;
 use crate::panels::keeping::What;
@@ -6,25 +6,25 @@ use crate::shown::Shown;
 use egui::{Id, Modal, Ui, ViewportCommand};
 use std::time::Duration;
 
-/// How long the window waits for the simulation to say whether there is anything to be saved. Where it does not, there may be: a frame
-/// that takes longer is one of a large scene.
+/// How long the window waits for the simulation to report whether there is unsaved work. If it does not answer, the window assumes that there is: a
+/// frame that takes longer belongs to a large scene.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// How far the window is on its way to its end.
+/// The state of closing the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Closing {
     /// Nobody has asked for it.
     #[default]
     No,
-    /// The person is asked, since the last picture or for longer.
+    /// The user is being asked; `fresh` means since the previous picture.
     Asking { fresh: bool },
-    /// The scene is being saved; then the window closes.
+    /// The scene is being saved; after that the window closes.
     Saving,
     /// It closes.
     Now,
 }
 
-/// What a person answers.
+/// The answer of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
     Save,
@@ -33,14 +33,14 @@ enum Answer {
 }
 
 impl Closing {
-    /// Whether a question stands before everything else.
+    /// Whether a modal question is open.
     pub(super) fn is_asking(self) -> bool {
         matches!(self, Closing::Asking { .. })
     }
 }
 
 impl Studio {
-    /// Lets the window close where nothing is lost by it, and asks the person otherwise.
+    /// Lets the window close if nothing is lost, and asks the user otherwise.
     pub(super) fn close(&mut self, ui: &Ui, shown: &Shown) {
         if ui.input(|i| i.viewport().close_requested()) && self.closing != Closing::Now {
             if self.closing == Closing::No {
@@ -64,11 +64,11 @@ impl Studio {
             },
             Closing::Saving if !self.keeping.is_saving() => match self.keeping.saved() {
                 Some(files) => {
-                    // The window is gone before anybody could read it there.
+                    // The window closes before anybody could read it there.
                     eprintln!("saved: {}", files.join(", "));
                     self.close_now(ui);
                 }
-                // Why not stands over the scene.
+                // The reason is shown over the scene.
                 None => self.closing = Closing::No,
             },
             Closing::Saving => ui.ctx().request_repaint_after(Duration::from_millis(50)),

@@ -1,4 +1,4 @@
-//! What keys do.
+//! Keyboard shortcuts.
 
 use super::Studio;
 use crate::canvas::Tool;
@@ -7,12 +7,12 @@ use crate::shown::Shown;
 use egui::{Key, Modifiers, Ui};
 
 impl Studio {
-    /// Takes the keys that no control has for itself.
+    /// Handles the keys that no control uses.
     pub(super) fn shortcuts(&mut self, ui: &Ui, shown: &Shown, asks: &mut Vec<Request>) {
         if ui.ctx().text_edit_focused() {
             return;
         }
-        // A slider or a button that has the focus takes keys itself, but none with Ctrl.
+        // A slider or a button with the focus uses keys itself, but none with Ctrl.
         let focused = ui.ctx().memory(|m| m.focused().is_some());
         let pressed = |modifiers: Modifiers, key: Key| {
             (modifiers.command || !focused) && ui.input_mut(|i| i.consume_key(modifiers, key))
@@ -53,8 +53,8 @@ impl Studio {
                 }
             }
         }
-        // The space bar lets time pass when it is let go without a press of the pointer: held, it takes the view along. Where it was
-        // let go before the pointer, nobody has forgotten that until it is pressed anew.
+        // The space bar starts and stops time when it is released, unless the pointer was used while it was held: then it moved the view. If the
+        // space bar is released before the pointer, this is remembered until it is pressed again.
         let anew = |event: &egui::Event| {
             matches!(event, egui::Event::Key { key: Key::Space, pressed: true, repeat: false, .. })
         };

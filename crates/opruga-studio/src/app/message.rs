@@ -10,11 +10,11 @@ use egui::{
 };
 use opruga::draw::format_value;
 
-/// How long it stays on the screen that something was done, and how much longer for every letter behind the first sixty [s].
+/// How long a notice stays on the screen, and how much longer for every letter after the first sixty [s].
 const SHOWN_FOR: f64 = 6.0;
 const TO_READ: f64 = 0.05;
 
-/// Where a message may be, what is usual first.
+/// The possible positions of a message, the preferred one first.
 const PIVOTS: [Align2; 6] = [
     Align2::CENTER_BOTTOM,
     Align2::CENTER_TOP,
@@ -24,13 +24,13 @@ const PIVOTS: [Align2; 6] = [
     Align2::RIGHT_TOP,
 ];
 
-/// So many heights between the upper and the lower end are tried where all of these hide something.
+/// The number of heights that are tried if each of these positions hides something.
 const HEIGHTS: u8 = 32;
 
-/// The widths of a message, as shares of the greatest one.
+/// The widths of a message that are tried, as fractions of the largest.
 const WIDTHS: [f32; 3] = [1.0, 0.6, 0.4];
 
-/// Where a message lies in what is free: by which of its sides it is held, how far down that is [0 … 1], and how wide it may be.
+/// The position of a message in the free area: the side at which it is anchored, how far down it is [0 … 1], and its largest width.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Placement {
     pivot: Align2,
@@ -50,24 +50,24 @@ impl Placement {
         Placement { pivot, down: if pivot.y() == Align::BOTTOM { 1.0 } else { 0.0 }, max_width: 620.0 }
     }
 
-    /// The point by which it is held.
+    /// The anchor point.
     fn point(self, free: Rect) -> Pos2 {
         Pos2::new(self.pivot.pos_in_rect(&free).x, free.top() + self.down * free.height())
     }
 }
 
-/// Who speaks to the person, in the order in which they are heard where they speak at once.
+/// The source of a message, in the order of priority if several occur at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Speaker {
-    /// The session, of what becomes of the scene.
+    /// The session, about the scene.
     Session,
-    /// The window, of files.
+    /// The window, about files.
     Window,
-    /// The pen, of an outline.
+    /// The pen, about an outline.
     Pen,
 }
 
-/// What was heard: of each speaker the number of what it says, if it says anything, and who spoke before whom.
+/// The messages so far: the number of the present message of each source, if it has one, and the order in which the sources spoke.
 #[derive(Debug)]
 pub(super) struct Heard {
     numbers: [Option<u64>; 3],
@@ -81,12 +81,12 @@ impl Default for Heard {
 }
 
 impl Heard {
-    /// Who of those that say something now spoke last.
+    /// Returns the last source among those that have a message now.
     fn last(&mut self, now: [Option<u64>; 3]) -> Option<Speaker> {
         for speaker in [Speaker::Session, Speaker::Window, Speaker::Pen] {
             let index = speaker as usize;
             if now[index].is_some() && now[index] != self.numbers[index] {
-                // To the end of the row, the others in their order before it.
+                // It moves to the end; the others keep their order.
                 self.order.sort_by_key(|other| *other == speaker);
             }
         }
@@ -98,7 +98,7 @@ impl Heard {
 /// The message that is shown.
 struct Spoken {
     speaker: Speaker,
-    /// That of the session.
+    /// The number of the session's message.
     number: Option<u64>,
     text: String,
     refused: bool,
@@ -106,7 +106,7 @@ struct Spoken {
 }
 
 impl Language {
-    /// The button of what would help.
+    /// The label of the button with a remedy.
     fn offer(self, offer: &Offer) -> String {
         match offer {
             Offer::HalveStep => self.halve_step().to_string(),
@@ -123,7 +123,7 @@ impl Language {
 }
 
 impl Studio {
-    /// The last message, over the scene where it hides least of the bodies, with what would help.
+    /// Shows the last message with its remedy, where it hides as little of the bodies as possible.
     pub(super) fn message(&mut self, ui: &Ui, rect: egui::Rect, shown: &Shown, asks: &mut Vec<Request>) {
         let words = self.language;
         let pen = self.canvas.refused.map(|why| match why {
@@ -135,7 +135,7 @@ impl Studio {
         let of_window = self.keeping.message().map(|_| self.keeping.message_count());
         let now = [message.map(|message| message.number), of_window, pen.map(|_| 0)];
         let Some(speaker) = self.heard.last(now) else { return };
-        // A mere notice that was not read to its end when another message came is over.
+        // A notice that is still shown when another message comes is dropped.
         let is_notice = |severity: Severity, offer: bool| severity == Severity::Done && !offer;
         if speaker != Speaker::Session
             && let Some(message) = message.filter(|message| is_notice(message.severity, message.offer.is_some()))
@@ -166,12 +166,12 @@ impl Studio {
         let heard = format!("{speaker:?} {:?}: {}", now[speaker as usize], spoken.text);
         let time = ui.input(|i| i.time);
         if self.last_message.0 != heard {
-            // Bodies move: where it was put when it came, there it stays.
+            // Bodies move, but the message stays where it was first placed.
             let placement = self.least_hiding(&spoken.text, ui, free, rect.width(), shown);
             self.last_message = (heard, time, placement);
         }
         let long = SHOWN_FOR + TO_READ * spoken.text.chars().count().saturating_sub(60) as f64;
-        // A menu that is open is what Escape closes first.
+        // Escape first closes an open menu.
         let escape =
             !egui::Popup::is_any_open(ui.ctx()) && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
         if escape || !spoken.refused && spoken.offer.is_none() && time - self.last_message.1 > long {
@@ -181,20 +181,20 @@ impl Studio {
         self.show_message(ui, &spoken, free, shown.undo.as_ref(), asks);
     }
 
-    /// Where messages may be: between the tools and what stands at the lower border.
+    /// The area for messages: between the tools and the items at the lower border.
     fn free_for_messages(&self, rect: Rect, shown: &Shown) -> Rect {
         let high = self.canvas.tools.map_or(rect.top(), |tools| tools.bottom()) + 8.0;
         let low = rect.bottom()
             - match &shown.beside {
                 None => 40.0,
                 Some(_) if rect.width() >= rect.height() => 66.0,
-                // One above the other, the lower one has nothing there.
+                // If the scenes are one above the other, the lower one has nothing there.
                 Some(_) => 8.0,
             };
         Rect::from_min_max(Pos2::new(rect.left() + 8.0, high), Pos2::new(rect.right() - 8.0, low.max(high)))
     }
 
-    /// Where a text hides least of the bodies; on more lines, where that hides less.
+    /// The placement of a text that hides as little of the bodies as possible; it may be broken into more lines for that.
     fn least_hiding(&self, text: &str, ui: &Ui, free: Rect, width: f32, shown: &Shown) -> Placement {
         let covered = self.canvas.covered(shown);
         let widest = (width - 120.0).clamp(120.0, 620.0);
@@ -208,7 +208,7 @@ impl Studio {
         placements.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default().1
     }
 
-    /// The message with its buttons.
+    /// Shows the message with its buttons.
     fn show_message(&mut self, ui: &Ui, spoken: &Spoken, free: Rect, undo: Option<&Step>, asks: &mut Vec<Request>) {
         let placement = self.last_message.2;
         egui::Area::new(egui::Id::unique("message"))
@@ -231,7 +231,7 @@ impl Studio {
             });
     }
 
-    /// What would help, what takes the last change back, and what closes the message.
+    /// Shows the buttons: the remedy, undo of the last change, and close.
     fn message_buttons(&mut self, ui: &mut Ui, spoken: &Spoken, undo: Option<&Step>, asks: &mut Vec<Request>) {
         let words = self.language;
         let closed = spoken.number.unwrap_or(self.closed);
@@ -241,7 +241,7 @@ impl Studio {
             asks.push(Request::Accept(offer.clone()));
             self.closed = closed;
         }
-        // What made it fail may have been the last change.
+        // The last change may have caused the failure.
         if matches!(spoken.offer, Some(Offer::HalveStep | Offer::Steady(..)))
             && let Some(step) = undo
             && ui.button(format!("{} ({})", words.undo(), words.done(step))).clicked()
@@ -254,7 +254,7 @@ impl Studio {
         }
     }
 
-    /// What this one said is read, or has been there for long enough.
+    /// Forgets the message of a source, which has been read or was shown for long enough.
     fn forget(&mut self, speaker: Speaker, number: Option<u64>) {
         match speaker {
             Speaker::Session => self.closed = number.unwrap_or(self.closed),
@@ -269,14 +269,14 @@ fn edge(refused: bool) -> Color32 {
     if refused { Color32::from_rgb(214, 80, 60) } else { Color32::from_rgb(60, 140, 110) }
 }
 
-/// The placement of a message of this size that hides least of what is there, and how much that is [square points].
+/// The placement of a message of this size that hides as little as possible, and the hidden area [square points].
 fn placement(free: Rect, size: Vec2, covered: &[Rect]) -> (f32, Placement) {
     let hidden = |placement: &Placement| {
         let rect = placement.pivot.anchor_size(placement.point(free), size).intersect(free);
         let over = |other: &Rect| Some(other.intersect(rect)).filter(Rect::is_positive).map_or(0.0, |both| both.area());
         covered.iter().map(over).sum::<f32>()
     };
-    // Bodies that lie apart leave strips free between them.
+    // Separate bodies leave free strips between them.
     let most = (1.0 - size.y / free.height().max(1.0)).max(0.0);
     let heights = (1..HEIGHTS).map(|k| f32::from(k) / f32::from(HEIGHTS) * most);
     let between = heights.flat_map(|down| {
@@ -287,10 +287,10 @@ fn placement(free: Rect, size: Vec2, covered: &[Rect]) -> (f32, Placement) {
     all.map(|placement| (hidden(&placement), placement)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
 }
 
-/// Units that stand behind numbers in messages.
+/// Units that follow numbers in messages.
 const UNITS: [&str; 12] = ["s", "ms", "m", "kg", "N", "J", "Pa", "Hz", "%", "rad/s", "m/s", "N/m"];
 
-/// The same with what belongs together held on one line: a letter, its sign of equality and its number, a number and its unit.
+/// Keeps parts that belong together on one line: a symbol, its equals sign and its number; a number and its unit.
 fn unbroken(text: &str) -> String {
     let mut whole = String::with_capacity(text.len() + 8);
     let mut last = "";
@@ -336,14 +336,14 @@ mod tests {
         let placement = |free: Rect, size: Vec2, covered: &[Rect]| super::placement(free, size, covered).1;
         assert_eq!(placement(free, size, &[]), Placement::at(Align2::CENTER_BOTTOM));
         assert_eq!(placement(free, size, &[body(400.0, 200.0, 600.0, 400.0)]), Placement::at(Align2::CENTER_BOTTOM));
-        // A flat body on the floor, one that hangs from above too, and one that fills the window but for a corner.
+        // A flat body on the floor, another that also hangs from above, and one that fills the window except for a corner.
         let flat = body(200.0, 540.0, 800.0, 600.0);
         assert_eq!(placement(free, size, &[flat]), Placement::at(Align2::CENTER_TOP));
         let hanging = body(300.0, 60.0, 700.0, 200.0);
         let lying = body(300.0, 540.0, 500.0, 600.0);
         assert_eq!(placement(free, size, &[lying, hanging]), Placement::at(Align2::RIGHT_BOTTOM));
         assert_eq!(placement(free, size, &[body(0.0, 0.0, 980.0, 520.0)]), Placement::at(Align2::CENTER_BOTTOM));
-        // Two scenes one above the other, with a strip between.
+        // Two scenes one above the other, with a strip between them.
         let scenes = [body(0.0, 60.0, 980.0, 260.0), body(0.0, 380.0, 980.0, 600.0)];
         let (hidden, between) = super::placement(free, size, &scenes);
         assert_eq!(hidden, 0.0);

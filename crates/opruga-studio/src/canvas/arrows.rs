@@ -1,4 +1,4 @@
-//! Arrows over a scene of the plane, and the key to those of both dimensions: an arrow as long as it is drawn for a round value.
+//! Arrows over a scene of the plane, and the key of the arrows in both dimensions: an arrow that is as long as one for a round value.
 
 use super::camera::Flat;
 use super::look::{Look, Paper, colour, on_paper};
@@ -8,16 +8,16 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use opruga::draw::{ArrowKind, arrow_colour, arrow_unit, format_value, nice_length};
 use std::collections::BTreeMap;
 
-/// The length of the longest arrow of a kind in the plane, and of unit normals there [points].
+/// The length of the longest arrow of each kind in the plane, and of unit normals there [points].
 const LONG: f64 = 60.0;
 const LONG_NORMAL: f64 = 18.0;
 
-/// The longest arrow of every kind that is drawn: at once longer, slowly shorter, so that the scale can be read.
+/// The longest arrow of every kind that is drawn. It grows at once and shrinks slowly, so that the scale can be read.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Longest(pub(crate) BTreeMap<ArrowKind, f64>);
 
 impl Longest {
-    /// Follows what is drawn now.
+    /// Updates the lengths to the present arrows.
     pub(crate) fn follow(&mut self, shown: &Shown) {
         let right = shown.beside.iter().flat_map(|beside| &beside.right.picture.arrows);
         let mut now: BTreeMap<ArrowKind, f64> = BTreeMap::new();
@@ -32,13 +32,13 @@ impl Longest {
         self.0 = now;
     }
 
-    /// The longest arrow of a kind, where it is one at all.
+    /// The longest arrow of a kind; none if it is zero.
     fn of(&self, kind: ArrowKind) -> Option<f64> {
         self.0.get(&kind).copied().filter(|longest| *longest > 0.0)
     }
 }
 
-/// The colour of a kind of arrow: that of the pictures of the command line, where it can be seen.
+/// The colour of a kind of arrow: that of the pictures of the command line, adjusted to be visible on the paper.
 fn ink(kind: ArrowKind, paper: &Paper) -> Color32 {
     match kind {
         ArrowKind::Force => paper.ink,
@@ -51,7 +51,7 @@ fn long(kind: ArrowKind) -> f64 {
     if kind == ArrowKind::Normal { LONG_NORMAL } else { LONG }
 }
 
-/// Arrows, each kind in a scale of its own.
+/// Draws the arrows, each kind with a scale of its own.
 pub(super) fn paint(look: &Look<'_>, flat: &Flat, longest: &Longest, project: &dyn Fn([f64; 3]) -> Pos2) {
     for mark in &look.shown.picture.arrows {
         let Some(most) = longest.of(mark.kind).filter(|_| mark.kind != ArrowKind::Pull) else { continue };
@@ -63,7 +63,7 @@ pub(super) fn paint(look: &Look<'_>, flat: &Flat, longest: &Longest, project: &d
     }
 }
 
-/// A line with a head of this length.
+/// Draws a line with a head of this length.
 pub(super) fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke, long: f32) {
     let offset = to - from;
     painter.line_segment([from, to], stroke);
@@ -73,7 +73,7 @@ pub(super) fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke, lon
     painter.add(Shape::convex_polygon(head, stroke.color, Stroke::NONE));
 }
 
-/// What a key says of a kind: a round value, the points of the screen that an arrow of it takes, and its words.
+/// The entry of the key for a kind: the length on the screen of an arrow with a round value, and its text.
 fn entry(look: &Look<'_>, kind: ArrowKind, most: f64, points: f64, words: Language) -> Option<(f32, String)> {
     if !(points > 0.0 && points.is_finite()) {
         return None;
@@ -82,14 +82,14 @@ fn entry(look: &Look<'_>, kind: ArrowKind, most: f64, points: f64, words: Langua
     if kind == ArrowKind::Normal {
         return Some((points as f32, name.into()));
     }
-    // Looked at from near they would take the whole window.
+    // When zoomed in they would take the whole window.
     let value = nice_length(most * (0.3 * f64::from(look.rect.width()) / points).min(1.0));
     let unit = arrow_unit(kind, &look.shown.picture.length_unit);
     Some(((points * value / most) as f32, format!("{name} {} {unit}", format_value(value))))
 }
 
-/// The key: for every kind of arrow that is seen one of a round value, above the bar of lengths. In space arrows are as long as they
-/// are at the point that is looked at; `points_of` gives the points of the screen of the longest one there. Returns where its rows are.
+/// Draws the key above the scale bar: for every visible kind of arrow, one with a round value. In space, arrows have the length that they have at the
+/// point in the centre of the view; `points_of` is the length of the longest one there in points of the screen. Returns the rectangles of its rows.
 pub(super) fn key(look: &Look<'_>, longest: &Longest, points_of: Option<f64>, words: Language) -> Vec<Rect> {
     let Look { painter, rect, paper, shown, .. } = *look;
     let base = rect.bottom()
@@ -138,7 +138,7 @@ mod tests {
         assert_eq!(longest.of(ArrowKind::Velocity), Some(5.0));
         longest.follow(&seen(1.0));
         assert!(longest.of(ArrowKind::Velocity).is_some_and(|long| (4.0..5.0).contains(&long)));
-        // What stands still has no scale, and what is seen no longer leaves none behind.
+        // A scene at rest has no scale, and a kind that is no longer visible leaves none behind.
         longest.follow(&seen(0.0));
         assert_eq!(longest.of(ArrowKind::Velocity), None);
         longest.follow(&seen(5.0));

@@ -1,4 +1,4 @@
-//! What says where the bodies are when none of them is in sight.
+//! The hint that shows where the bodies are when none of them is in sight.
 
 use super::look::RUBBER;
 use super::{Canvas, arrows};
@@ -6,12 +6,12 @@ use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Align2, Button, Color32, Id, Order, Pos2, Rect, RichText, Stroke, Ui, Vec2};
 
-/// From the border of what is free to the tip of the arrow, and how long that is [points].
+/// From the border of the free area to the tip of the arrow, and the length of the arrow [points].
 const BORDER: f32 = 8.0;
 const ARROW: f32 = 26.0;
 
 impl Canvas {
-    /// The direction on the screen in which the nearest body lies; none where one is in sight, or none is there.
+    /// The direction on the screen towards the nearest body; none if one is in sight, or if there are none.
     fn away(&self, shown: &Shown) -> Option<Vec2> {
         let rect = self.rect?;
         let right = self.other.zip(shown.beside.as_ref());
@@ -26,7 +26,8 @@ impl Canvas {
         offsets.min_by(|a, b| a.length_sq().total_cmp(&b.length_sq()))
     }
 
-    /// The offset on the screen from its middle to a point; in space across what is seen, as a point may be behind the camera.
+    /// The offset on the screen from its centre to a point. In space it is measured across the line of sight, because a point may be behind the
+    /// camera.
     fn offset_to(&self, shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Vec2> {
         if shown.dimension != 3 {
             return Some(self.flat.to_screen(rect, point, shown.picture.y_down) - rect.center());
@@ -37,10 +38,10 @@ impl Canvas {
         Some(Vec2::new(along(right) as f32, -along(up) as f32))
     }
 
-    /// An arrow at the border where no body is in sight, and a button that shows them all again.
+    /// Shows an arrow at the border if no body is in sight, and a button that shows all bodies again.
     pub(super) fn point_to_bodies(&mut self, ui: &Ui, shown: &Shown, legend: Option<Rect>, language: Language) {
         let (Some(offset), Some(rect)) = (self.away(shown), self.rect) else { return };
-        // A file that is about to be dropped has a hint of its own.
+        // A file that is being dragged over the window has a hint of its own.
         if !ui.input(|i| i.raw.hovered_files.is_empty()) {
             return;
         }
@@ -50,7 +51,7 @@ impl Canvas {
             ui.painter().layout_no_wrap(language.away().into(), egui::FontId::proportional(15.0), Color32::WHITE);
         let size = galley.size() + Vec2::new(22.0, 12.0);
         let mut free = Rect::from_min_max(Pos2::new(rect.left(), high), rect.max - Vec2::new(0.0, 32.0)).shrink(BORDER);
-        // Beside the legend, where that leaves room.
+        // Next to the legend, if there is space.
         if let Some(legend) = legend.filter(|legend| legend.left() - free.left() > size.x + 2.0 * ARROW + 8.0) {
             free.max.x = legend.left() - 4.0;
         }
@@ -70,7 +71,7 @@ impl Canvas {
     }
 }
 
-/// The tip of the arrow at the border of what is free, and the middle of a bubble of this size behind it.
+/// The tip of the arrow at the border of the free area, and the centre of a bubble of this size behind it.
 fn tip_and_middle(free: Rect, offset: Vec2, size: Vec2) -> (Pos2, Pos2) {
     let ahead = if offset.length_sq() > 0.0 { offset.normalized() } else { Vec2::DOWN };
     let far = |half: Vec2| {
@@ -79,7 +80,7 @@ fn tip_and_middle(free: Rect, offset: Vec2, size: Vec2) -> (Pos2, Pos2) {
     };
     let half_free = 0.5 * free.size().max(Vec2::ZERO);
     let tip = free.center() + far(half_free) * ahead;
-    // The arrow is between the bubble and the border, at its side or above or below it.
+    // The arrow is between the bubble and the border, beside the bubble or above or below it.
     let back = 0.5 * size + Vec2::splat(ARROW + 2.0);
     let sideways = (ahead.x / half_free.x.max(1.0)).abs() > (ahead.y / half_free.y.max(1.0)).abs();
     let back =
@@ -129,7 +130,7 @@ mod tests {
         assert_eq!(canvas.away(&shown(&[])), None, "there is none");
         let offset = canvas.away(&shown(&[90.0, -40.0])).expect("they are out of sight");
         assert!(offset.x < 0.0 && offset.y.abs() < 0.1 * offset.x.abs(), "the nearest one: {offset:?}");
-        // Nearer than its own size, all of the screen is within it.
+        // Closer than its own size, it contains the whole screen.
         let mut near = Canvas { rect: Some(rect), ..Default::default() };
         near.flat.zoom(1e4, rect, rect.center() + Vec2::new(50.0, -50.0), false);
         assert_eq!(near.away(&shown(&[0.0])), None);

@@ -1,56 +1,53 @@
-//! Bodies as triangles, written straight into one mesh: the interface has only to copy them, and the arrays are kept from
-//! picture to picture.
+//! Bodies as triangles, written directly to one mesh. The interface only has to copy them, and the arrays are reused from picture to picture.
 
 use super::detail::Detail;
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Vec2};
 use std::sync::Arc;
 
-/// Points of a line nearer to one another than this are drawn as one; with hard borders, in a crowd, nearer than that [points of
-/// the screen].
+/// Points of a line closer together than this are merged; with hard borders, in a crowd, the second value applies [points of the screen].
 const JOINED: f32 = 0.4;
 const JOINED_HARD: f32 = 1.5;
-/// Points of a line above which it is looked at whether it is straight in places, and what may lie beside it then [points of the
-/// screen].
+/// Longer lines are searched for straight pieces; the second value is the largest deviation [points of the screen].
 const LONG: usize = 256;
 const BESIDE: f32 = 0.1;
 const BESIDE_HARD: f32 = 0.4;
-/// By how much its colours may differ then, of 255.
+/// The largest difference of colours within such a piece, of 255.
 const ALIKE: u8 = 6;
-/// The most by which a corner sticks out, as a multiple of half the width.
+/// The largest extent of a corner, as a multiple of half the width.
 const MOST_MITRE: f32 = 2.0;
 
 fn vertex(pos: Pos2, color: Color32) -> Vertex {
     Vertex { pos, uv: WHITE_UV, color }
 }
 
-/// The direction of a vector on the screen. Points are thousands, and neither so far apart nor so near that a square would leave the range
-/// of numbers.
+/// The direction of a vector on the screen. Coordinates are in the thousands, and differences are neither so large nor so small that a square would
+/// overflow or underflow.
 fn unit(vector: Vec2) -> Vec2 {
     let long = vector.length_sq().sqrt();
     if long > 0.0 { vector / long } else { Vec2::ZERO }
 }
 
-/// A mesh that grows, and the one that was shown last.
+/// A mesh under construction, and the one that was shown last.
 #[derive(Debug, Default)]
 pub(crate) struct Brush {
     mesh: Mesh,
     shown: Option<Arc<Mesh>>,
     /// The width of a soft border; 0 for hard ones [points of the screen].
     soft: f32,
-    /// What is seen at all.
+    /// The visible area.
     screen: Option<Rect>,
-    /// The points of a line that are told apart on the screen.
+    /// The points of a line that are distinct on the screen.
     line: Vec<(Pos2, Color32)>,
-    /// Those of them that are needed.
+    /// The points among them that are needed.
     kept: Vec<u32>,
 }
 
 impl Brush {
-    /// Begins a picture with borders of this softness, of which this is seen.
+    /// Begins a picture with borders of this softness, of which `screen` is visible.
     pub(crate) fn begin(&mut self, soft: f32, screen: Rect) {
         self.screen = Some(screen);
-        // What was shown last is no longer needed by anybody: its arrays are used again.
+        // Nobody needs the last mesh any more, so its arrays are reused.
         if let Some(Ok(mesh)) = self.shown.take().map(Arc::try_unwrap) {
             self.mesh = mesh;
         }
@@ -58,7 +55,7 @@ impl Brush {
         self.soft = soft;
     }
 
-    /// Hands the picture to a painter.
+    /// Gives the picture to a painter.
     pub(crate) fn end(&mut self, painter: &Painter) {
         if !self.mesh.indices.is_empty() {
             let mesh = Arc::new(std::mem::take(&mut self.mesh));
@@ -71,7 +68,7 @@ impl Brush {
         self.mesh.vertices.push(vertex(pos, color));
     }
 
-    /// Triangles between points of these colours.
+    /// Adds triangles between points of these colours.
     pub(crate) fn fill(&mut self, points: impl Iterator<Item = (Pos2, Color32)>, triangles: &[[u32; 3]]) {
         let first = self.mesh.vertices.len() as u32;
         self.mesh.vertices.extend(points.map(|(pos, color)| vertex(pos, color)));
@@ -79,8 +76,7 @@ impl Brush {
         triangles.iter().for_each(|[a, b, c]| self.mesh.indices.extend([first + a, first + b, first + c]));
     }
 
-    /// A band of four, or with hard borders two, corners at every point of a line: from the point number `from` of them to the
-    /// next.
+    /// Adds a band of triangles with four corners (with hard borders two) at every point of a line: from the point with the index `from` to `to`.
     fn band(&mut self, first: u32, from: u32, to: u32) {
         let rows = if self.soft > 0.0 { 4 } else { 2 };
         for row in 0..rows - 1 {
@@ -89,7 +85,7 @@ impl Brush {
         }
     }
 
-    /// The corners at a point of a line, across it: `side` has the length by which a width of 1 is stretched there.
+    /// Adds the corners at a point of a line, across it; the length of `side` is the factor by which a width of 1 is stretched there.
     fn across(&mut self, at: Pos2, side: Vec2, width: f32, color: Color32) {
         let half = 0.5 * width;
         if self.soft > 0.0 {
@@ -107,7 +103,7 @@ impl Brush {
         }
     }
 
-    /// A straight line whose colour goes from one to the other.
+    /// Adds a straight line whose colour changes from one to the other.
     pub(crate) fn line(&mut self, [from, to]: [Pos2; 2], width: f32, [a, b]: [Color32; 2]) {
         let vector = to - from;
         let long = vector.length();
@@ -121,7 +117,7 @@ impl Brush {
         self.band(first, 0, 1);
     }
 
-    /// A closed line.
+    /// Adds a closed line.
     pub(crate) fn ring(&mut self, points: impl Iterator<Item = (Pos2, Color32)>, width: f32) {
         let mut line = std::mem::take(&mut self.line);
         line.clear();
@@ -147,7 +143,7 @@ impl Brush {
         }
         match line[..] {
             [] => {}
-            // So far away that it is but a point.
+            // So far away that it is only a point.
             [(at, color)] => self.disc(at, 0.5 * width, color),
             _ => self.around(&line, width),
         }
@@ -165,7 +161,7 @@ impl Brush {
         let next = line[1..].iter().chain([&line[0]]);
         for ((at, color), (next, _)) in line.iter().zip(next) {
             let after = direction(*at, *next);
-            // Across the middle of both directions, so long that the band keeps its width.
+            // Perpendicular to the bisector of both directions, with a length that keeps the width of the band.
             let sum = Vec2::new(-before.y - after.y, before.x + after.x);
             let square = sum.length_sq();
             let side = if square > 4.0 / (MOST_MITRE * MOST_MITRE) {
@@ -181,7 +177,7 @@ impl Brush {
         }
     }
 
-    /// A small filled circle.
+    /// Adds a small filled circle.
     pub(crate) fn disc(&mut self, at: Pos2, radius: f32, color: Color32) {
         let first = self.mesh.vertices.len() as u32;
         let count: u32 = if self.soft > 0.0 { 10 } else { 4 };
@@ -209,7 +205,7 @@ impl Brush {
 mod tests {
     use super::*;
 
-    /// The area of the triangles of a mesh, those whose colour is not transparent throughout; and the box around them.
+    /// The area of the triangles of a mesh, except those that are completely transparent, and the box around them.
     fn covered(mesh: &Mesh) -> f32 {
         let corner = |k: &u32| mesh.vertices[*k as usize].pos;
         let triangles = mesh.indices.chunks_exact(3).map(|t| [corner(&t[0]), corner(&t[1]), corner(&t[2])]);

@@ -1,21 +1,21 @@
-//! How a scene of the plane lies in the window.
+//! The view of a scene of the plane in the window.
 
 use crate::shown::Shown;
 use egui::{Pos2, Rect, Vec2};
 use opruga::draw::View;
 
-/// The room around a scene [points].
+/// The margin around a scene [points].
 const BORDER: f32 = 36.0;
-/// The room above it that the tools take, before anybody has seen them [points].
+/// The height of the tools above it, assumed before they have been drawn [points].
 const TOOLS: f32 = 50.0;
 
-/// The point in the middle and the scale.
+/// The point at the centre and the scale.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flat {
     center: [f64; 2],
-    /// Points of the screen in a metre.
+    /// Points of the screen per metre.
     pub(crate) scale: f64,
-    /// The room below a scene that captions take [points].
+    /// The height of captions below a scene [points].
     pub(crate) foot: f32,
 }
 
@@ -26,11 +26,11 @@ impl Default for Flat {
 }
 
 impl Flat {
-    /// Shows the whole of a view below the tools and above what stands at its foot.
+    /// Shows the whole of a view below the tools and above the captions.
     pub(crate) fn fit(&mut self, view: &View, rect: Rect, tools: Option<Rect>) {
         let tools =
             tools.map_or(TOOLS, |tools| tools.bottom() - rect.top()).clamp(TOOLS, (0.5 * rect.height()).max(TOOLS));
-        // Bodies move: there is room around them for that.
+        // Bodies move: there is space around them for that.
         let wide = (view.high[0] - view.low[0]).max(1e-9) * 1.25;
         let tall = (view.high[1] - view.low[1]).max(1e-9) * 1.1;
         let high = rect.height() - BORDER - tools - self.foot;
@@ -40,8 +40,8 @@ impl Flat {
         self.center = [view.center()[0], view.center()[1] + up * f64::from(tools - self.foot) / self.scale];
     }
 
-    /// Makes a view that nobody has moved wider where a body of the plane leaves what is seen, by no more than two sizes to each
-    /// side of what was there first; after that it goes along with bodies that find room in it. Whether it did.
+    /// Widens a view that the user has not moved if a body of the plane leaves it, to each side by at most twice the size of the first view. Beyond
+    /// that, the view follows the bodies if they fit into it. Returns whether the view changed.
     pub(crate) fn widen(&self, view: &mut View, first: &[[f64; 3]; 2], shown: &Shown, rect: Rect) -> bool {
         if shown.dimension != 2 {
             return false;
@@ -53,7 +53,7 @@ impl Flat {
                 (*low, *high) = (low.min(lowest[d]), high.max(highest[d]));
             }
         }
-        // The scene beside it is seen too, as far as the view may become and as long as it goes along with nothing.
+        // The scene beside it is shown, too, as far as the view may widen and unless the view follows bodies.
         let limits = [0, 1].map(|d| {
             let most = 2.0 * (first[1][d] - first[0][d]);
             [first[0][d] - most, first[1][d] + most]
@@ -74,7 +74,7 @@ impl Flat {
             let seen = [corners[0][d].min(corners[1][d]), corners[0][d].max(corners[1][d])];
             let edge = 0.02 * (seen[1] - seen[0]);
             if low < first[0][d] - most || high > first[1][d] + most {
-                // Away from everything: the view keeps its size and goes along.
+                // Far away from everything: the view keeps its size and follows.
                 let over = [seen[0] + edge - low, high - seen[1] + edge];
                 if high - low + 2.0 * edge < seen[1] - seen[0] && over.iter().any(|over| *over > 0.0) {
                     let shift = if over[1] > 0.0 { over[1] } else { -over[0] };
@@ -94,7 +94,7 @@ impl Flat {
                 view.high[d] += above;
                 wider = true;
             }
-            // Where it has gone along and the bodies are back, what is seen without them is let go.
+            // If the view has followed bodies that are now back, the part without them is dropped.
             let widest = first[1][d] - first[0][d] + 2.0 * most;
             if wider && view.high[d] - view.low[d] > widest {
                 if above > 0.0 {
@@ -111,7 +111,7 @@ impl Flat {
         let sign = if y_down { 1.0 } else { -1.0 };
         let x = self.scale * (point[0] - self.center[0]);
         let y = sign * self.scale * (point[1] - self.center[1]);
-        // Far outside nothing is seen, and larger numbers, or none, would break the painter.
+        // Nothing is visible far outside, and larger numbers, or NaN, would break the painter.
         let sane = |x: f64| if x.is_nan() { 1e5 } else { x.clamp(-1e5, 1e5) } as f32;
         rect.center() + Vec2::new(sane(x), sane(y))
     }
@@ -122,14 +122,14 @@ impl Flat {
         [self.center[0] + f64::from(from.x) / self.scale, self.center[1] + sign * f64::from(from.y) / self.scale]
     }
 
-    /// Takes the view along with the pointer.
+    /// Moves the view along with the pointer.
     pub(crate) fn pan(&mut self, delta: Vec2, y_down: bool) {
         let sign = if y_down { 1.0 } else { -1.0 };
         self.center[0] -= f64::from(delta.x) / self.scale;
         self.center[1] -= sign * f64::from(delta.y) / self.scale;
     }
 
-    /// Comes nearer; what is under the pointer stays there.
+    /// Zooms about the point under the pointer.
     pub(crate) fn zoom(&mut self, factor: f64, rect: Rect, at: Pos2, y_down: bool) {
         let before = self.to_world(rect, at, y_down);
         self.scale = (self.scale * factor).clamp(1e-6, 1e9);
@@ -137,18 +137,18 @@ impl Flat {
         self.center = [self.center[0] + before[0] - after[0], self.center[1] + before[1] - after[1]];
     }
 
-    /// The point in the middle [m].
+    /// The point at the centre [m].
     pub(crate) fn middle(&self) -> [f64; 3] {
         [self.center[0], self.center[1], 0.0]
     }
 
-    /// The length of so many points of the screen [m].
+    /// The length of a number of points on the screen [m].
     pub(crate) fn metres(&self, points: f64) -> f64 {
         points / self.scale
     }
 }
 
-/// A view with the floors and walls that bodies may come to: at the start they are often far above them.
+/// A view with the floors and walls that bodies may reach: at the start, bodies are often far above them.
 pub(super) fn with_floors(mut view: View, shown: &Shown) -> View {
     let center = view.center();
     let size = view.extent();
@@ -157,7 +157,7 @@ pub(super) fn with_floors(mut view: View, shown: &Shown) -> View {
         let long = normal.iter().map(|n| n * n).sum::<f64>();
         let height = (0..3).map(|d| normal[d] * (center[d] - point[d])).sum::<f64>() / long.max(1e-300);
         let foot = [0, 1, 2].map(|d| center[d] - height * normal[d]);
-        // A floor far away would make everything small.
+        // With a distant floor, everything would look small.
         if foot.iter().zip(&center).all(|(a, b)| (a - b).abs() < 8.0 * size) {
             for d in 0..3 {
                 view.low[d] = view.low[d].min(foot[d] - 0.05 * size);
@@ -171,7 +171,7 @@ pub(super) fn with_floors(mut view: View, shown: &Shown) -> View {
     view
 }
 
-/// The part of the scene and that of the one beside it: next to one another, on a high window one above the other.
+/// The areas of the scene and of the one beside it: next to each other, or one above the other in a tall window.
 pub(super) fn halves(whole: Rect, two: bool) -> (Rect, Option<Rect>) {
     if !two {
         return (whole, None);
@@ -215,7 +215,7 @@ mod tests {
             assert!(rect.contains(right), "{x} {right:?}");
         }
         assert!(view.high[0] - view.low[0] < 4.0, "it grows for ever: {:?}", view.high);
-        // Back at the start it is as wide as before.
+        // Back at the start, the view is as wide as before.
         for _ in 0..3 {
             if flat.widen(&mut view, &first, &shown(0.0), rect) {
                 flat.fit(&view, rect, None);
@@ -223,12 +223,12 @@ mod tests {
         }
         assert!(rect.contains(flat.to_screen(rect, [-0.5, 0.5, 0.0], false)), "it is seen again");
         assert!(view.high[0] - view.low[0] <= 5.0 * (first[1][0] - first[0][0]) + 1e-9, "{:?}", view.high);
-        // Two bodies that fly apart find no room in it: it stays.
+        // Two bodies that fly apart do not fit into it, so it stays.
         let mut apart = shown(0.0);
         apart.picture.bodies = vec![ball(-40.0), ball(40.0)];
         apart.extents = apart.picture.bodies.iter().map(Extent::of).collect();
         assert!(!flat.widen(&mut view, &first, &apart, rect));
-        // The scene beside it is seen too, as far as there is room for both.
+        // The scene beside it is shown, too, as far as there is space for both.
         let mut both = shown(0.0);
         for (x, there) in [(1.5, true), (40.0, false)] {
             let right = std::sync::Arc::new(shown(x));

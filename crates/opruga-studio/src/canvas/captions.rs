@@ -1,4 +1,4 @@
-//! What is written over two scenes that stand side by side.
+//! Captions of two scenes that are shown side by side.
 
 use super::look::Paper;
 use crate::shown::Beside;
@@ -7,16 +7,16 @@ use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Stroke, Vec2};
 use opruga::draw::format_value;
 use std::sync::Arc;
 
-/// What is written over two scenes: where, what, and in which colour.
+/// The captions of two scenes: rectangle, text and colour.
 pub(super) struct Captions(Vec<(Rect, Arc<Galley>, Color32)>);
 
 impl Captions {
-    /// The room below a scene for them, and for the names of its lowest bodies above them: next to one another, one above the other
-    /// [points].
+    /// The height below a scene for captions and, above them, for the names of its lowest bodies: with the scenes next to each other, and one above
+    /// the other [points].
     pub(super) const FOOT: [f32; 2] = [46.0, 32.0];
 
-    /// What the two scenes are, how far they are from one another, and why the second one has stopped. The lower one of two, which has
-    /// no tools above it, has it there, beside its legend.
+    /// The names of the two scenes, the distance between them, and why the second one has stopped. If the scenes are one above the other, the
+    /// captions of the lower one are at its top, next to its legend, because it has no tools there.
     pub(super) fn of(
         painter: &Painter,
         paper: &Paper,
@@ -27,7 +27,7 @@ impl Captions {
     ) -> Captions {
         let mut all = Vec::new();
         let below = second.top() > first.top();
-        // Beside the legend, which the lower ones do not reach where the scenes stand next to one another.
+        // Next to the legend; the captions of scenes next to each other do not reach it.
         let free = legend.map_or(second.right(), |legend| legend.left());
         let beside_legend = (free - second.left() - 30.0).max(40.0);
         let wrap_width = if below { beside_legend } else { (second.width() - 40.0).max(40.0) };
@@ -46,7 +46,7 @@ impl Captions {
                 let [mean, largest] = [mean, largest].map(format_value);
                 format!("\n{} {mean} m, {} {largest} m", language.mean_distance(), language.largest_distance())
             }
-            // Where the nodes are others, their distances are none.
+            // If the nodes differ, there are no distances between them.
             (None, Some(far)) => format!("\n{} {} m", language.center_distance(), format_value(far)),
             (None, None) => String::new(),
         };
@@ -63,7 +63,7 @@ impl Captions {
         Captions(all)
     }
 
-    /// What they take.
+    /// The rectangles that they take.
     pub(super) fn rects(&self) -> Vec<Rect> {
         self.0.iter().map(|(text_rect, ..)| ground(*text_rect)).collect()
     }
@@ -83,7 +83,7 @@ impl Captions {
     }
 }
 
-/// What is behind a caption.
+/// The background of a caption.
 fn ground(text_rect: Rect) -> Rect {
     text_rect.expand2(Vec2::new(7.0, 4.0))
 }

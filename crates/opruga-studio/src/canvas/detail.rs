@@ -1,33 +1,33 @@
-//! How much of a closed line can be seen: points that the screen cannot tell from the line between others are left away, however
-//! many there are.
+//! The visible detail of a closed line: a point is left out if the line without it looks the same on the screen.
 
 use egui::{Color32, Pos2, Rect, Vec2};
 
-/// What is told apart.
+/// The limits of visible detail.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Detail {
-    /// Points nearer to one another than this are one [points of the screen].
+    /// Points closer to one another than this are merged [points of the screen].
     pub(crate) merge_distance: f32,
-    /// By how much a line may pass beside points that are left away [points of the screen].
+    /// The largest distance of the line from a point that is left out [points of the screen].
     pub(crate) beside: f32,
-    /// By how much a colour may differ from that where the line begins, of 255.
+    /// The largest difference of a colour from the colour at the beginning of the piece, of 255.
     pub(crate) colour: u8,
-    /// What lies outside of this is not seen.
+    /// The visible area.
     pub(crate) screen: Rect,
 }
 
-/// A straight piece of a line that is grown point by point.
+/// A straight piece of a line that is extended point by point.
 struct Piece {
     from: (Pos2, Color32),
-    /// The directions in which all of its points lie near enough, as the two outermost; none before the first that is far enough.
+    /// The range of directions in which all of its points are close enough to it, as the two outermost; none before the first point that is far
+    /// enough away.
     cone: Option<[Vec2; 2]>,
-    /// The greatest distance of its points.
+    /// The largest distance of its points from its beginning.
     far: f32,
-    /// Whether it has a second point: what two neighbours differ in is drawn between them.
+    /// Whether it has a second point; a difference between two neighbouring points is interpolated.
     begun: bool,
-    /// Whether its points still lie near enough to a straight line.
+    /// Whether its points are still close enough to a straight line.
     straight: bool,
-    /// The sides of the screen beyond which all of its points lie.
+    /// The sides of the screen beyond which all of its points are.
     outside: u8,
 }
 
@@ -36,7 +36,7 @@ impl Piece {
         Piece { from, cone: None, far: 0.0, begun: false, straight: true, outside: detail.outside(from.0) }
     }
 
-    /// Whether it may reach to one more point.
+    /// Extends the piece by a point if possible; returns whether it is.
     fn takes(&mut self, point: (Pos2, Color32), detail: &Detail) -> bool {
         self.outside &= detail.outside(point.0);
         let offset = point.0 - self.from.0;
@@ -44,7 +44,7 @@ impl Piece {
         let [a, b] = [self.from.1, point.1].map(|colour| colour.to_array());
         let free = !std::mem::replace(&mut self.begun, true) || long <= detail.merge_distance;
         let alike = free || a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= detail.colour);
-        // What goes back has a tip that would be lost.
+        // A line that turns back has a tip, which would be lost.
         self.straight &= alike && long.is_finite() && long >= self.far - detail.beside;
         self.far = self.far.max(long);
         if self.straight && long > detail.merge_distance {
@@ -73,7 +73,7 @@ impl Detail {
         u8::from(at.x < min.x) | u8::from(at.x > max.x) << 1 | u8::from(at.y < min.y) << 2 | u8::from(at.y > max.y) << 3
     }
 
-    /// The indices of the points of a closed line that are needed, in their order.
+    /// Collects the indices of the points of a closed line that are needed, in their order.
     pub(crate) fn seen(&self, line: impl Iterator<Item = (Pos2, Color32)>, kept: &mut Vec<u32>) {
         kept.clear();
         let mut piece: Option<(Piece, (Pos2, Color32), u32)> = None;
@@ -101,7 +101,7 @@ impl Detail {
         }
     }
 
-    /// The same with twice as much left away.
+    /// The same with twice the tolerances.
     fn rougher(self) -> Detail {
         Detail {
             merge_distance: 2.0 * self.merge_distance,
@@ -112,13 +112,13 @@ impl Detail {
     }
 }
 
-/// Corners up to which a surface is made of triangles anew with every picture.
+/// The largest number of corners for which a surface is triangulated in every picture.
 const MOST_CORNERS: usize = 5_000;
 
-/// Nodes nearer to one another on the screen than this are one in a large outline [points].
+/// Nodes closer to one another on the screen than this are merged in a large outline [points].
 const JOINED: f32 = 0.3;
 
-/// The nodes of a closed line that lie apart on the screen: the first and cheapest look at a large outline.
+/// The nodes of a closed line that are separate on the screen: the first and cheapest reduction of a large outline.
 pub(crate) fn apart(line: &[u32], at: &[Pos2]) -> Vec<u32> {
     let mut kept: Vec<u32> = Vec::new();
     let mut last: Option<Pos2> = None;
@@ -132,8 +132,8 @@ pub(crate) fn apart(line: &[u32], at: &[Pos2]) -> Vec<u32> {
     kept
 }
 
-/// The closed lines of a large outline as far as they are seen, with no more corners than can be filled for every picture; `of` is
-/// where a node is on the screen, and its colour.
+/// Collects the visible corners of the closed lines of a large outline, at most as many as can be filled in every picture; `of` returns the position
+/// of a node on the screen, and its colour.
 pub(crate) fn corners(
     closed: &[Vec<u32>],
     mut detail: Detail,
@@ -175,7 +175,7 @@ mod tests {
         kept
     }
 
-    /// The distance of a point from the closed line through some of the points.
+    /// The distance of a point from the closed line through the kept points.
     fn distance(at: Pos2, line: &[(Pos2, Color32)], kept: &[u32]) -> f32 {
         let ends = (0..kept.len()).map(|k| [k, (k + 1) % kept.len()].map(|k| line[kept[k] as usize].0));
         let far = |[a, b]: [Pos2; 2]| {
@@ -211,11 +211,11 @@ mod tests {
     #[test]
     fn tips_corners_and_colours_are_kept_and_points_on_one_another_and_numbers_that_are_none_do_no_harm() {
         let at = |x: f32, y: f32| (Pos2::new(x, y), RED);
-        // There and back along one line: the tip.
+        // Forth and back along one line: the tip must be kept.
         let spike: Vec<_> = (0..=100).chain((0..100).rev()).map(|k| at(k as f32, 100.0)).collect();
         let tip = kept(&detail(), &spike);
         assert!(tip.iter().any(|index| (*index as i32 - 100).abs() <= 1), "{tip:?}");
-        // A straight line that changes its colour.
+        // A straight line whose colour changes.
         let green = Color32::from_rgb(0, 200, 0);
         let two: Vec<_> = (0..200).map(|k| (Pos2::new(k as f32, 9.0), if k < 90 { RED } else { green })).collect();
         let both = kept(&detail(), &two);

@@ -1,4 +1,4 @@
-//! What of a scene is seen: everything at first, and what comes to it until somebody moves the view.
+//! The visible part of a scene: everything at first, and later also what moves there, until the user moves the view.
 
 use super::camera::with_floors;
 use super::{Canvas, Doing};
@@ -9,15 +9,15 @@ use opruga::WorldError;
 use opruga::draw::View;
 
 impl Canvas {
-    /// Forgets what was fitted to states that are gone: the ends of the colours, and how far the view was widened where nobody has
-    /// moved it.
+    /// Forgets what was fitted to states that no longer exist: the range of the colours, and how far the view was widened if the user has not moved
+    /// it.
     fn fit_if_replaced(&mut self, shown: &Shown, rect: Rect) {
         if std::mem::replace(&mut self.replaced, shown.replaced) == shown.replaced {
             return;
         }
         self.range = None;
         if std::mem::replace(&mut self.resets, shown.resets) != shown.resets {
-            // The start is looked at as it was at first, wherever a person has taken the view since.
+            // The start is shown as it was at first, wherever the user has moved the view since.
             self.far = false;
             self.fit();
         } else if std::mem::take(&mut self.far) {
@@ -28,7 +28,7 @@ impl Canvas {
         }
     }
 
-    /// Looks as at first where a body has just exploded and nobody has moved the view: what there is to be seen is where it was.
+    /// Restores the first view if a body has just exploded and the user has not moved the view: the rest of the scene is where it was.
     fn stay_if_exploded(&mut self, shown: &Shown, rect: Rect) {
         let exploded = shown.message.as_ref().filter(|message| matches!(message.report, Report::Exploded(_)));
         let number = exploded.map(|message| message.number);
@@ -41,7 +41,7 @@ impl Canvas {
         }
     }
 
-    /// Shows everything where a motion has just failed and its last good frame has left nothing in sight.
+    /// Shows everything if a motion has just failed and nothing is in sight in its last good frame.
     fn fit_if_lost(&mut self, shown: &Shown, rect: Rect) {
         let failed = shown.message.as_ref().filter(|message| {
             matches!(
@@ -69,7 +69,7 @@ impl Canvas {
         self.fit_if_lost(shown, rect);
         self.stay_if_exploded(shown, rect);
         if self.fitted == shown.opened && self.scales.is_some() {
-            // The view follows the window until somebody moves it.
+            // The view adapts to the window until the user moves it.
             if let (Some(size), Some(view)) = (self.fitted_size, &mut self.scales) {
                 if size != rect.size() {
                     self.flat.fit(view, rect, self.tools);
@@ -105,9 +105,9 @@ impl Canvas {
         self.doing = Doing::Nothing;
     }
 
-    /// The ends of the colours follow what is there: at once outwards, slowly inwards.
+    /// The range of the colours follows the values: it grows at once and shrinks slowly.
     pub(super) fn fit_colours(&mut self, shown: &Shown) {
-        // What does not go on may be anywhere.
+        // A side that has stopped may be anywhere.
         let beside = shown.beside.iter().filter(|beside| beside.stopped.is_none());
         let beside = beside.flat_map(|beside| &beside.right.extents);
         let colours = shown.extents.iter().chain(beside).map(|extent| extent.colours);
@@ -115,7 +115,7 @@ impl Canvas {
         if low > high {
             return;
         }
-        // What is nearly nothing is not spread over all colours.
+        // Values that are nearly zero are not spread over all colours.
         let least = match shown.picture.legend.as_ref().map_or("", |legend| &legend.unit) {
             "%" | "Pa" => 1.0,
             _ => 0.01,
@@ -141,7 +141,7 @@ mod tests {
 
     const RECT: Rect = Rect { min: Pos2::ZERO, max: Pos2::new(600.0, 500.0) };
 
-    /// A ball of a metre at this place, in colours up to this.
+    /// A ball of one metre at position `x`, in colours up to `most`.
     fn ball(x: f64, most: f64) -> Shown {
         let body = opruga::draw::BodyPicture {
             positions: vec![[x - 0.5, 0.0, 0.0], [x + 0.5, 1.0, 0.0]],
@@ -171,7 +171,7 @@ mod tests {
         assert!(canvas.range > first.1, "slowly, while nothing is replaced");
         seen(&mut canvas, &Shown { replaced: 1, ..ball(0.0, 20.0) });
         assert_eq!((canvas.flat.scale, canvas.range), first);
-        // A view that somebody has moved stays, but where the scene begins anew.
+        // A view that the user has moved stays, unless the scene is restarted.
         (canvas.fitted_size, canvas.flat.scale) = (None, 7.0);
         seen(&mut canvas, &Shown { replaced: 2, ..ball(0.0, 20.0) });
         assert_eq!(canvas.flat.scale, 7.0);

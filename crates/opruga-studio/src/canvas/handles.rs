@@ -1,4 +1,4 @@
-//! The handles of a selected body, by which it is turned and scaled.
+//! The handles of a selected body, which rotate and scale it.
 
 use super::Canvas;
 use super::look::{Paper, RUBBER};
@@ -8,17 +8,17 @@ use crate::shown::Shown;
 use egui::{Painter, Pos2, Rect, Stroke, StrokeKind, Vec2};
 use opruga::draw::{BodyPicture, Facets};
 
-/// How near a press must come [points].
+/// The largest distance of a press from a handle [points].
 const REACH: f32 = 12.0;
-/// How far the box stands away from the body, and the handle for turns from the box [points].
+/// The distance of the box from the body, and of the rotation handle from the box [points].
 const MARGIN: f32 = 8.0;
 const STALK: f32 = 24.0;
-/// A turn in space for each point of the displacement of the pointer [rad].
+/// The rotation in space for each point of displacement of the pointer [rad].
 const TURN: f32 = 0.01;
-/// The least and the largest factor of one stroke.
+/// The smallest and the largest factor of one drag.
 const FACTORS: [f32; 2] = [0.1, 10.0];
 
-/// What a handle does.
+/// The action of a handle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
     Turn,
@@ -41,7 +41,7 @@ impl GrabbedHandle {
         self.now = at;
     }
 
-    /// The turn as it is seen, clockwise [rad], and the factor.
+    /// The rotation as seen, clockwise [rad], and the factor.
     fn change(&self) -> (f32, f32) {
         let (a, b) = (self.from - self.middle, self.now - self.middle);
         match self.kind {
@@ -51,7 +51,7 @@ impl GrabbedHandle {
         }
     }
 
-    /// What is asked for where the handle is let go.
+    /// The request when the handle is released.
     pub(super) fn edit(self, dimension: u8, y_down: bool) -> Option<Request> {
         let (turned, scaled) = self.change();
         // The screen counts downwards, the world upwards.
@@ -77,7 +77,7 @@ impl Handles {
         }
     }
 
-    /// The handle that a press takes.
+    /// The handle that a press grabs.
     pub(super) fn at(self, at: Pos2) -> Option<GrabbedHandle> {
         let kind = [Kind::Turn, Kind::Scale].into_iter().find(|kind| self.spot(*kind).distance(at) < REACH)?;
         let Handles { name, around, space } = self;
@@ -95,7 +95,7 @@ impl Handles {
 }
 
 impl Canvas {
-    /// The handles of the selected body, with the tool that moves bodies.
+    /// The handles of the selected body, if the tool is the one that moves bodies.
     pub(super) fn handles(&self, shown: &Shown, rect: Rect) -> Option<Handles> {
         let name = self.selected.clone().filter(|_| self.tool == Tool::Shift)?;
         let index = shown.bodies.iter().position(|body| body.name == name)?;
@@ -106,13 +106,13 @@ impl Canvas {
                 around.extend_with(at);
             }
         }
-        // Within sight, also where the body is not.
+        // It stays within sight even if the body is not.
         let around = around.expand(MARGIN).intersect(rect.shrink(16.0));
         (around.width() > 4.0 && around.height() > 4.0).then_some(Handles { name, around, space: shown.dimension == 3 })
     }
 }
 
-/// Draws where a body would come: as it is seen now, turned and scaled about the middle of its box.
+/// Draws a preview of a body: as it looks now, rotated and scaled about the centre of its box.
 pub(super) fn ghost(
     painter: &Painter,
     grabbed: &GrabbedHandle,

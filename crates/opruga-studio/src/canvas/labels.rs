@@ -1,12 +1,12 @@
-//! What is written beside bodies: their names, and the hint for the first pull. Nothing of it covers anything else that is written.
+//! Labels next to bodies: their names, and the hint for the first pull. They cover no other text.
 
 use super::look::{Paper, RUBBER};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 
-/// Bodies up to which names keep off other bodies.
+/// The largest number of bodies with which names avoid other bodies.
 const FEW: usize = 64;
 
-/// A body that has a name: what it takes on the screen, and the mean of its nodes from left to right.
+/// A body with a name: its rectangle on the screen, and the mean horizontal position of its nodes.
 pub(super) struct Named<'a> {
     text: &'a str,
     rect: Rect,
@@ -14,7 +14,7 @@ pub(super) struct Named<'a> {
 }
 
 impl<'a> Named<'a> {
-    /// A body of this name with its nodes here; none where there is nothing to write, or none of it is seen.
+    /// A body with this name and the nodes at these positions; none if there is nothing to write, or if no node is visible.
     pub(super) fn of(text: &'a str, spots: impl Iterator<Item = Pos2>) -> Option<Named<'a>> {
         let (mut rect, mut sum, mut count) = (Rect::NOTHING, 0.0, 0_u32);
         for spot in spots {
@@ -25,8 +25,7 @@ impl<'a> Named<'a> {
     }
 }
 
-/// The names of bodies, below them or where else there is room beside them, and not where something is `taken`. In a throng without
-/// room they are not written.
+/// Writes the names of bodies below them, or next to them where there is space, but not over `taken` rectangles. Names without space are omitted.
 pub(super) fn names(painter: &Painter, named: &[Named<'_>], paper: &Paper, taken: &[Rect]) {
     let mut taken = taken.to_vec();
     let compared = if named.len() <= FEW { named } else { &[] };
@@ -42,8 +41,8 @@ pub(super) fn names(painter: &Painter, named: &[Named<'_>], paper: &Paper, taken
     }
 }
 
-/// Where there is room for a name of this size: below a body, also a little to the side, above it, beside it, or a little farther; where
-/// that can be, off the other bodies.
+/// The free position for a name of this size: below a body, also a little to the side, above it, beside it, or a little farther away; off the other
+/// bodies if possible.
 fn free(body: Rect, middle: f32, size: Vec2, taken: &[Rect], others: &[Rect]) -> Option<Rect> {
     let below = Align2::CENTER_TOP.anchor_size(Pos2::new(middle, body.bottom() + 6.0), size);
     let above = Align2::CENTER_BOTTOM.anchor_size(Pos2::new(middle, body.top() - 6.0), size);
@@ -59,9 +58,9 @@ fn free(body: Rect, middle: f32, size: Vec2, taken: &[Rect], others: &[Rect]) ->
     Some(std::iter::once(first).chain(candidates).find(off).unwrap_or(first))
 }
 
-/// The hint for the first pull, above a body.
+/// Draws the hint for the first pull, above a body.
 pub(super) fn hint(painter: &Painter, top: Pos2, rect: Rect, tools: Option<Rect>, legend: Option<Rect>, text: &str) {
-    // Below the toolbar, and where the body is out of sight, at the border next to it.
+    // Below the toolbar; if the body is out of sight, at the nearest border.
     let across = top.x.clamp(rect.left() + 50.0, (rect.right() - 50.0).max(rect.left() + 50.0));
     let highest = tools.map_or(rect.top(), |tools| tools.bottom()) + 54.0;
     let tip = Pos2::new(across, top.y.clamp(highest, rect.bottom().max(highest)) - 8.0);
@@ -77,7 +76,7 @@ pub(super) fn hint(painter: &Painter, top: Pos2, rect: Rect, tools: Option<Rect>
     painter.galley(bubble.center() - 0.5 * galley.size(), galley, Color32::WHITE);
 }
 
-/// The bubble, to the left of the legend where it would lie on that.
+/// The bubble, moved to the left of the legend if it would overlap it.
 fn beside_legend(bubble: Rect, legend: Option<Rect>) -> Rect {
     // It moves up and down, and has an arrow below.
     let over = |legend: &Rect| legend.intersects(bubble.expand2(Vec2::new(4.0, 12.0)));
@@ -102,7 +101,7 @@ mod tests {
             assert!(taken.iter().all(|other| !other.intersects(place)), "{middle}: {place:?} of {taken:?}");
             taken.push(place);
         }
-        // Where many lie over one another there is no room for one more.
+        // Where many names overlap there is no space for another.
         while let Some(place) = free(at(300.0), 300.0, size, &taken, &[]) {
             assert!(taken.len() < 12, "{taken:?}");
             taken.push(place);
@@ -114,11 +113,11 @@ mod tests {
         let size = Vec2::new(80.0, 14.0);
         let at = |x: f32, y: f32| Rect::from_center_size(Pos2::new(x, y), Vec2::splat(22.0));
         let (body, above) = (at(220.0, 330.0), at(220.0, 288.0));
-        // What stands below leaves no room there, and over it is another body.
+        // There is no space below, because of what is there, and another body is above.
         let taken = [Rect::from_min_max(Pos2::new(130.0, 342.0), Pos2::new(320.0, 400.0))];
         let place = free(body, 220.0, size, &taken, &[above]).expect("room");
         assert!(!place.intersects(above) && !place.intersects(taken[0]), "{place:?}");
-        // Within a large body there is no other place: it is written there.
+        // Within a large body there is no other position, so it is written there.
         let around = at(220.0, 330.0).expand(300.0);
         let within = free(body, 220.0, size, &[], &[around]).expect("room");
         assert!(within.top() > body.bottom());

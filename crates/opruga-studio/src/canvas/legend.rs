@@ -1,4 +1,4 @@
-//! The legend: what the colours of a scene mean.
+//! The legend: the meaning of the colours of a scene.
 
 use super::look::{Look, colour, on_paper};
 use crate::shown::Shown;
@@ -8,22 +8,22 @@ use egui::{Align, Align2, CornerRadius, FontId, Galley, Mesh, Pos2, Rect, Shape,
 use opruga::draw::{BodyPicture, format_value, nice_ticks, scientific};
 use std::sync::Arc;
 
-/// What there is room for at least above the bar, and what its name takes at most on one line [points].
+/// The least height required above the bar, and the largest width of its name on one line [points].
 const NAME: [f32; 2] = [84.0, 240.0];
 
-/// Whether a body is seen in colours of its own.
+/// Whether a body is drawn in its own colours.
 fn drawn(shown: &Shown, body: &BodyPicture) -> bool {
     shown.dimension == 2 && body.areas.iter().any(|area| area.colour.is_some())
 }
 
-/// Where the legend is: its bar of colours, what they mean, and all that it takes.
+/// The layout of the legend: its bar of colours, its name, and its whole rectangle.
 struct LegendLayout {
     bar: Rect,
     name: Arc<Galley>,
     whole: Rect,
 }
 
-/// Where the legend is; nowhere where nothing has colours that mean something.
+/// Computes the layout of the legend; none if no colours have a meaning.
 fn legend_layout(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<LegendLayout> {
     let Look { painter, shown, rect, paper, .. } = *look;
     let legend = shown.picture.legend.as_ref()?;
@@ -31,7 +31,7 @@ fn legend_layout(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Op
         return None;
     }
     let tall = (0.4 * rect.height()).clamp(60.0, 180.0);
-    // Beside the tools, or where there is no room for that, below them; of two scenes the lower one has none.
+    // Next to the tools or, if there is no space, below them; the lower one of two scenes has no tools.
     let tools = tools.filter(|tools| tools.intersects(rect));
     let over = tools.filter(|tools| tools.right() > rect.right() - 110.0);
     let below = over.map_or(rect.top(), |tools| tools.bottom());
@@ -53,12 +53,12 @@ fn legend_layout(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Op
     Some(LegendLayout { bar, name, whole })
 }
 
-/// Where the legend is.
+/// The rectangle of the legend.
 pub(super) fn bounds(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Option<Rect> {
     legend_layout(look, tools, language).map(|layout| layout.whole)
 }
 
-/// Writes that nothing that is seen has what the colours are to show, where all is grey for that reason.
+/// Writes that nothing visible has the quantity that the colours show, if everything is grey for that reason.
 pub(super) fn explain_absence(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     let Look { painter, shown, rect, paper, .. } = *look;
     let Some(legend) = &shown.picture.legend else { return };
@@ -73,12 +73,12 @@ pub(super) fn explain_absence(look: &Look<'_>, tools: Option<Rect>, language: La
     painter.galley(text_rect.min, galley, paper.soft);
 }
 
-/// What the colours mean.
+/// Draws the legend.
 pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     let Look { painter, shown, rect, paper, range, .. } = *look;
     let Some(legend) = &shown.picture.legend else { return };
     let Some(LegendLayout { bar, name, whole: behind }) = legend_layout(look, tools, language) else { return };
-    // A long name is wider than the bar with its figures: what is below it beside these is not hidden.
+    // A long name is wider than the bar with its numbers; the area below it next to these stays visible.
     let side = behind.with_min_x(bar.left() - 24.0);
     let above = behind.with_max_y(bar.top() - 4.0);
     let ground = paper.background.gamma_multiply(0.7);
@@ -124,10 +124,10 @@ pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     }
 }
 
-/// The size of the figures, where they find room [points].
+/// The font size of the numbers, if they fit [points].
 const SIZE: f32 = 11.5;
 
-/// A figure beside the bar, where there is no room for many digits.
+/// A number next to the bar, where there is little space for digits.
 fn figure(value: f64) -> String {
     if value.is_finite() && value.abs() >= 1e5 { scientific(value) } else { format_value(value) }
 }
@@ -149,7 +149,7 @@ mod tests {
             Shown { dimension: 2, picture, ..Default::default() }
         };
         let tools = Rect::from_min_max(Pos2::new(10.0, 160.0), Pos2::new(314.0, 248.0));
-        // A phone, the lower one of two scenes on it, and a small laptop on which the tools leave room beside them.
+        // A phone, the lower of two scenes on it, and a small laptop on which there is space next to the tools.
         let parts = [
             (Rect::from_min_max(Pos2::new(0.0, 150.0), Pos2::new(360.0, 555.0)), tools),
             (Rect::from_min_max(Pos2::new(0.0, 352.0), Pos2::new(360.0, 555.0)), tools),

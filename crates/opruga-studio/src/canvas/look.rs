@@ -1,22 +1,22 @@
-//! The colours of the canvas, and what everything that is drawn needs.
+//! The colours of the canvas, and the data that all drawing functions need.
 
 use crate::shown::{Show, Shown};
 use egui::{Color32, Rect, Ui};
 
-/// The rubber line of a pull.
+/// The colour of the rubber band of a pull.
 pub(crate) const RUBBER: Color32 = Color32::from_rgb(214, 50, 100);
 
-/// What everything that is drawn needs.
+/// The data that all drawing functions need.
 #[derive(Clone, Copy)]
 pub(crate) struct Look<'a> {
     pub(crate) painter: &'a egui::Painter,
     pub(crate) shown: &'a Shown,
-    /// Where the scene is.
+    /// The rectangle of the scene.
     pub(crate) rect: Rect,
     pub(crate) paper: &'a Paper,
-    /// What a person wants to see.
+    /// What the user wants to see.
     pub(crate) show: Show,
-    /// The ends of the colours.
+    /// The range of the colours.
     pub(crate) range: [f64; 2],
 }
 
@@ -62,7 +62,7 @@ pub(super) fn colour([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// A colour that can be seen on the paper: on a dark one the dark ones are lifted, and their order stays.
+/// A colour that is visible on the paper: on dark paper, dark colours are made lighter, in the same order.
 pub(super) fn on_paper(c: Color32, paper: &Paper) -> Color32 {
     let lift = |x: u8| if paper.dark { (70.0 + f32::from(x) * (185.0 / 255.0)) as u8 } else { x };
     Color32::from_rgb(lift(c.r()), lift(c.g()), lift(c.b()))

@@ -1,4 +1,4 @@
-//! The scene on the screen, and what the pointer does there.
+//! The scene on the screen, and the actions of the pointer there.
 
 mod arrows;
 mod away;
@@ -37,16 +37,16 @@ pub use tool::Tool;
 enum Doing {
     #[default]
     Nothing,
-    /// A body is held; in space so far behind the point that is looked at. Of a push where the pointer was pressed, and the point that was taken
-    /// hold of: that goes the way of the pointer [m].
+    /// A body is held; in space, at this distance behind the point in the centre of the view. For a push, also the point where the pointer was
+    /// pressed and the grabbed point, which moves along with the pointer [m].
     Holding(f64, Option<[[f64; 3]; 2]>),
-    /// The view moves along.
+    /// The view is moved.
     Panning,
-    /// The view turns.
+    /// The view is rotated.
     Turning,
-    /// A body is taken elsewhere, from this point of the world; in space so far behind the point that is looked at.
+    /// A body is moved from this point of the world; in space, at this distance behind the point in the centre of the view.
     Shifting(String, [f64; 3], f64),
-    /// A body is turned or scaled by one of its handles.
+    /// A body is rotated or scaled by one of its handles.
     Handling(handles::GrabbedHandle),
     /// An outline is drawn.
     Drawing(Vec<[f64; 2]>),
@@ -55,58 +55,58 @@ enum Doing {
 /// The part of the window where the scene is.
 #[derive(Debug, Default)]
 pub struct Canvas {
-    /// What a press does.
+    /// The action of a press.
     pub tool: Tool,
     /// The body that was pressed last.
     pub selected: Option<String>,
     /// The last body that was added or copied.
     newest: Option<(u64, String)>,
-    /// Where it is in the window.
+    /// The rectangle of the scene in the window.
     rect: Option<Rect>,
-    /// Where the tools lie over it.
+    /// The rectangle of the tools over it.
     pub tools: Option<Rect>,
-    /// What a person wants to see.
+    /// What the user wants to see.
     pub wanted: Show,
-    /// Where legends and captions are.
+    /// The rectangles of legends and captions.
     written: Vec<Rect>,
-    /// Where the scene beside it is.
+    /// The rectangle of the scene beside it.
     other: Option<Rect>,
     /// The longest arrow of every kind.
     arrows: arrows::Longest,
     flat: Flat,
     space: space::Space,
-    /// What draws the scene beside it.
+    /// The renderer of the scene beside it.
     beside: space::Space,
     kept_beside: plane::Kept,
     scales: Option<View>,
-    /// The lowest and the highest corner of what was there when the view was fitted [m].
+    /// The lowest and the highest corner of the scene when the view was fitted [m].
     first: [[f64; 3]; 2],
     fitted: u64,
-    /// How often the state was replaced when it was seen last.
+    /// The number of replacements of the state when it was last seen.
     replaced: u64,
-    /// How often a person had gone back to the start then.
+    /// The number of resets to the start at that time.
     resets: u64,
     /// The number of the message of a body that has exploded, while there is one.
     exploded: Option<u64>,
     /// The number of the message of the last motion that has failed.
     failed: Option<u64>,
-    /// Whether the view was fitted to what such a motion has left far away.
+    /// Whether the view was fitted to a failed motion whose bodies are far away.
     far: bool,
-    /// The size of the window for which the scene was fitted; none once somebody has moved the view.
+    /// The size of the window for which the scene was fitted; none after the user has moved the view.
     fitted_size: Option<Vec2>,
     doing: Doing,
-    /// A pull that begins when the pointer moves, or time.
+    /// A pull that begins as soon as the pointer moves or time passes.
     waiting: Option<pressing::Waiting>,
-    /// From where the pointer is to where it is on the side to the left.
+    /// The offset from the pointer to the corresponding point on the left side.
     offset: Vec2,
     kept: plane::Kept,
-    /// The ends of the colours.
+    /// The range of the colours.
     range: Option<[f64; 2]>,
-    /// Whether a person has pulled already: then no hint is needed.
+    /// Whether the user has already pulled, so that no hint is needed.
     pub pulled: bool,
     /// Why an outline was refused, until the next one.
     pub refused: Option<&'static str>,
-    /// Whether the space bar has taken the view along since it was pressed: then it does not let time pass.
+    /// Whether the space bar has moved the view since it was pressed; it then does not start or stop time.
     pub panned: bool,
 }
 
@@ -116,7 +116,7 @@ impl Canvas {
         self.space.is_drawing() || self.beside.is_drawing()
     }
 
-    /// Hands all pictures over anew: what they were drawn on is gone.
+    /// Uploads all pictures again after their device was lost.
     #[cfg(target_arch = "wasm32")]
     pub fn forget_textures(&mut self) {
         self.space.forget_texture();
@@ -141,22 +141,22 @@ impl Canvas {
         }
     }
 
-    /// Where new bodies are put [m]: at the pointer where that is on the scene, else in the middle of what is seen.
+    /// Where new bodies are placed [m]: at the pointer if it is on the scene, otherwise at the centre of the view.
     pub fn landing(&self, shown: &Shown, pointer: Option<Pos2>) -> [f64; 3] {
         let left = self.rect.zip(pointer).filter(|(rect, at)| rect.contains(*at));
-        // The scene beside it is seen alike.
+        // The scene beside it has the same view.
         let right = self.other.zip(self.rect).zip(pointer).filter(|((other, _), at)| other.contains(*at));
         let right = right.map(|((other, rect), at)| (rect, at - other.min.to_vec2() + rect.min.to_vec2()));
         let point = left.or(right).and_then(|(rect, at)| self.point(shown, rect, at, 0.0));
         point.unwrap_or_else(|| self.middle(shown))
     }
 
-    /// The middle of what is seen [m].
+    /// The centre of the view [m].
     fn middle(&self, shown: &Shown) -> [f64; 3] {
         if shown.dimension == 3 { self.space.eye().map_or([0.0; 3], |eye| eye.target) } else { self.flat.middle() }
     }
 
-    /// The shorter side of what is seen [m].
+    /// The shorter side of the view [m].
     pub fn shorter_side(&self, shown: &Shown) -> f64 {
         let side = self.rect.map_or(600.0, |rect| f64::from(rect.width().min(rect.height())));
         if shown.dimension == 3 { self.space.eye().map_or(2.0, |eye| eye.radius) } else { self.flat.metres(side) }
@@ -172,7 +172,7 @@ impl Canvas {
         Some(self.flat.to_screen(rect, point, shown.picture.y_down))
     }
 
-    /// What of the canvas the bodies and the legend take: no message shall lie there.
+    /// The rectangles of the bodies and the legend, which no message may cover.
     pub fn covered(&self, shown: &Shown) -> Vec<Rect> {
         let left = self.rect.into_iter().flat_map(|rect| self.seen_in(rect, shown));
         let right = self.other.zip(shown.beside.as_ref());
@@ -180,7 +180,7 @@ impl Canvas {
         left.chain(right).chain(self.written.iter().copied()).collect()
     }
 
-    /// What of a part of the window bodies take; nothing of those that are out of sight there.
+    /// The rectangles of the bodies within a part of the window; bodies out of sight have none.
     fn seen_in(&self, part: Rect, shown: &Shown) -> Vec<Rect> {
         let by = self.rect.map_or(Vec2::ZERO, |rect| part.min - rect.min);
         let of = |extent: &crate::shown::Extent| {
@@ -193,17 +193,17 @@ impl Canvas {
         shown.extents.iter().map(of).filter(there).collect()
     }
 
-    /// Shows a scene in all the room that is left, and says what the pointer asks for.
+    /// Shows a scene in the remaining area, and returns the requests of the pointer.
     pub fn show(&mut self, ui: &mut Ui, shown: &Arc<Shown>, language: Language) -> Vec<Request> {
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "canvas"));
-        // A window without any size, as a minimised one, shows nothing.
+        // A window of zero size, such as a minimised one, shows nothing.
         if whole.width() < 4.0 || whole.height() < 4.0 || shown.dimension == 0 {
             return Vec::new();
         }
         let (rect, other) = halves(whole, shown.beside.is_some());
         if self.other.is_some() != other.is_some() {
-            // There is half the room, or twice as much: everything is shown as it is now, or as it was before a body exploded.
+            // The area has been halved or doubled: everything is shown as it is now, or as it was before a body exploded.
             match (self.exploded, &mut self.scales) {
                 (Some(_), Some(view)) => {
                     [view.low, view.high] = self.first;
@@ -221,7 +221,7 @@ impl Canvas {
         self.fit_if_new(shown, rect);
         self.fit_colours(shown);
         let mut asks = Vec::new();
-        // What is beside is looked at; it moves with the view of the scene that is worked on.
+        // The scene beside it is for viewing; its view moves with that of the main scene.
         let within = |at: Pos2| match other {
             Some(other) if other.contains(at) => (at - other.min.to_vec2() + rect.min.to_vec2(), true),
             _ => (at, false),
@@ -230,9 +230,9 @@ impl Canvas {
         self.navigate(ui, hover.map(|(at, _)| at), shown, rect);
         self.space.receive(ui);
         self.beside.receive(ui);
-        // Pictures of space are a moment behind: what is pressed is what is seen.
+        // Pictures of space are slightly delayed: a press acts on the picture that is seen.
         let seen = self.space.seen().filter(|seen| shown.dimension == 3 && seen.opened == shown.opened).cloned();
-        // Before the first one nothing hangs in the air over it.
+        // Before the first picture, nothing is drawn over it.
         let is_seen = shown.dimension != 3 || seen.is_some();
         let seen = seen.unwrap_or_else(|| Arc::clone(shown));
         let beside = hover.is_some_and(|(_, beside)| beside);
@@ -246,7 +246,7 @@ impl Canvas {
         self.press(ui, &response, shown, hovered.as_deref(), rect, under.as_ref(), offset, &mut asks);
         let range = self.range.unwrap_or([0.0, 1.0]);
         let look = Look { painter: &painter, shown, rect, paper: &paper, show: self.wanted, range };
-        // Side by side both have the same colours: the legend stands with the second one.
+        // Side by side both have the same colours, and the legend is in the second one.
         let taken = if other.is_none() { legend::bounds(&look, self.tools, language) } else { None };
         self.written = taken.into_iter().collect();
         let pair = other.zip(shown.beside.as_ref());
@@ -294,7 +294,7 @@ impl Canvas {
         asks
     }
 
-    /// Draws a scene; the second one has a painter of its own, and the eye of the first. Where something else is `written` names are not.
+    /// Draws a scene; the second one has its own renderer, with the camera of the first. Names do not cover anything that is already `written`.
     fn paint(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, beside: bool, written: &[Rect]) {
         let selected = self.selected.as_deref();
         if shown.dimension == 3 {
@@ -308,15 +308,14 @@ impl Canvas {
             let kept = if beside { &mut self.kept_beside } else { &mut self.kept };
             let taken: Vec<Rect> = written.iter().copied().chain(self.tools).collect();
             plane::paint(look, &self.flat, kept, selected, &taken, &self.arrows);
-            // Both sides are seen alike.
+            // Both sides have the same view.
             if !beside {
                 plane::scale_bar(look, &self.flat);
             }
         }
     }
 
-    /// A body that was set down anew under another name stays selected, and one of which that was undone; what is added
-    /// or copied is selected from then on.
+    /// Keeps a body selected if it was replaced under another name, also if that was undone. A body that is added or copied becomes selected.
     pub(crate) fn follow_names(&mut self, shown: &Shown) {
         if self.newest != shown.newest {
             self.newest.clone_from(&shown.newest);
@@ -327,7 +326,7 @@ impl Canvas {
         }
         let there = |name: &String| shown.bodies.iter().any(|body| body.name == *name);
         let Some(selected) = self.selected.as_ref().filter(|selected| !there(selected)) else { return };
-        // From name to name, what came later first.
+        // From name to name, the latest first.
         let mut names = vec![selected.clone()];
         let mut index = 0;
         while let Some(name) = names.get(index).cloned() {
@@ -346,12 +345,12 @@ impl Canvas {
         }
     }
 
-    /// Forgets the ends of the colours: another quantity has others.
+    /// Forgets the range of the colours, because another quantity has another range.
     pub fn forget_colours(&mut self) {
         self.range = None;
     }
 
-    /// How long the longest arrow of a kind is in space, where it is at the point that is looked at [points]; none in the plane.
+    /// The length of the longest arrow of each kind in space at the point in the centre of the view [points]; none in the plane.
     fn points_of_arrows(&self, shown: &Shown, rect: Rect) -> Option<f64> {
         let (eye, scales) = (self.space.eye()?, self.scales.as_ref()?);
         let side = f64::from(rect.width().min(rect.height()));
@@ -367,13 +366,13 @@ impl Canvas {
         }
     }
 
-    /// How far behind the point that is looked at something is at a distance from the camera; the same in the plane.
+    /// The distance behind the point in the centre of the view of something at a given distance from the camera; the same in the plane.
     fn behind(&self, rect: Rect, distance: f64) -> f64 {
         let looked_at = self.scales.as_ref().and_then(|scales| self.space.distance(scales, rect));
         distance - looked_at.unwrap_or(0.0)
     }
 
-    /// The point of the world under the pointer; in space so far behind the point that is looked at.
+    /// The point of the world under the pointer; in space, at the distance `depth` behind the point in the centre of the view.
     fn point(&self, shown: &Shown, rect: Rect, at: Pos2, depth: f64) -> Option<[f64; 3]> {
         if shown.dimension == 3 {
             let scales = self.scales.as_ref()?;

@@ -1,16 +1,16 @@
-//! What the edges of a body in the plane form, found once and used while it still fits: closed lines, what is drawn beside
-//! them, and the triangles that fill them.
+//! The outlines that the edges of a body in the plane form, computed once and reused as long as they fit: closed lines, the edges outside them, and
+//! the triangles that fill them.
 
 use opruga::draw::{BodyPicture, Facets};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Outlines up to which triangles are kept, and found anew where a body has folded; of larger ones those are found for every picture
-/// that are seen in it.
+/// Outlines with at most this many edges keep their triangles, which are computed again if a body has folded. For larger outlines, visible triangles
+/// are computed for every picture.
 const MOST_ANEW: usize = 4_000;
-/// Bodies up to which all are looked at for folds with every picture; of more, so many with each.
+/// Up to this many bodies, all are checked for folds in every picture; if there are more, this many are checked in each.
 const LOOKED_AT: usize = 64;
 
-/// The outlines of every body that was seen.
+/// The outlines of every body seen so far.
 #[derive(Default)]
 pub(crate) struct Outlines {
     known: Vec<Option<Outline>>,
@@ -27,31 +27,31 @@ impl core::fmt::Debug for Outlines {
 /// The outline of a body.
 #[derive(Default)]
 pub(crate) struct Outline {
-    /// How many nodes, edges and springs it was found for.
+    /// The numbers of nodes, edges and springs for which it was computed.
     counts: [usize; 3],
     /// Its closed lines.
     pub(crate) closed: Vec<Vec<u32>>,
     /// Edges that belong to no closed line.
     pub(crate) open: Vec<[u32; 2]>,
-    /// Whether there are springs that are not edges as well: those would be painted over.
+    /// Whether there are springs that are not also edges, which would be painted over.
     pub(crate) springs: bool,
-    /// What the closed lines enclose; nothing where the body has cells, or more edges than are filled in full.
+    /// The areas within the closed lines; empty if the body has cells, or more edges than are filled completely.
     pub(crate) parts: Vec<Part>,
-    /// Whether it has more edges than are filled in full.
+    /// Whether it has more edges than are filled completely.
     pub(crate) large: bool,
 }
 
-/// What one line and its holes enclose.
+/// The area within a line, without its holes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Part {
     /// The nodes of the line and of its holes.
     pub(crate) nodes: Vec<u32>,
-    /// The triangles between them, each by three indices into these nodes.
+    /// The triangles between them, each as three indices of these nodes.
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
 impl Part {
-    /// The triangles by the numbers of their nodes in the body.
+    /// The triangles as indices of nodes in the body.
     fn of_body(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.triangles.iter().map(|corners| corners.map(|index| self.nodes[index as usize]))
     }
@@ -68,7 +68,7 @@ impl Outlines {
         self.turn = self.turn.wrapping_add(1);
     }
 
-    /// The outline of a body now. In a crowd a fold may be seen some pictures later.
+    /// The present outline of a body. With many bodies, a fold may be detected some pictures later.
     pub(crate) fn of(&mut self, index: usize, body: &BodyPicture) -> &Outline {
         if self.known.len() <= index {
             self.known.resize_with(index + 1, || None);
@@ -105,7 +105,8 @@ impl Outline {
     }
 }
 
-/// Whether no triangle has turned over, and they cover what the lines enclose: where these had crossed, they may not have.
+/// Whether no triangle is inverted and the triangles cover the area within the lines; if the lines crossed when the triangles were made, they may
+/// not.
 fn fits(body: &BodyPicture, outline: &Outline) -> bool {
     let mut covered = 0.0;
     for triangle in outline.parts.iter().flat_map(Part::of_body) {
@@ -128,8 +129,8 @@ fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// The closed lines of a body's edges, each in its own direction and through no node twice, and the edges that close none.
-/// Lines that touch in a node are told apart where the walk comes back to it.
+/// The closed lines of a body's edges, each in its own direction and with no node twice, and the edges that do not belong to one. Lines that touch in
+/// a node are separated when the walk returns to it.
 fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
     let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     edges.iter().rev().for_each(|[a, b]| next.entry(*a).or_default().push(*b));
@@ -139,7 +140,7 @@ fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
         let mut indices: HashMap<u32, usize> = HashMap::from([(first, 0)]);
         while let Some(&last) = path.last() {
             let Some(ends) = next.get_mut(&last) else {
-                // A dead end: what leads there closes nothing.
+                // A dead end: the edges to it close nothing.
                 indices.remove(&last);
                 path.pop();
                 open.extend(path.last().map(|before| [*before, last]));
@@ -169,7 +170,7 @@ fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
     (closed, open)
 }
 
-/// Triangles within closed lines; a line that runs clockwise is a hole in the one around it.
+/// The triangles within closed lines; a clockwise line is a hole in the one around it.
 pub(crate) fn fill(body: &BodyPicture, lines: &[Vec<u32>]) -> Vec<Part> {
     let point = |node: u32| [body.positions[node as usize][0], body.positions[node as usize][1]];
     let (outer, holes): (Vec<&Vec<u32>>, Vec<&Vec<u32>>) = lines.iter().partition(|line| enclosed(body, line) > 0.0);
@@ -180,7 +181,7 @@ pub(crate) fn fill(body: &BodyPicture, lines: &[Vec<u32>]) -> Vec<Part> {
         };
         (0..line.len()).filter(crosses).count() % 2 == 1
     };
-    // Where a hole touches the line around it, some of its points lie on neither side: most of them tell.
+    // If a hole touches the line around it, some of its points are on neither side, so the majority decides.
     let holds = |line: &[u32], hole: &[u32]| {
         let some = hole.iter().step_by((hole.len() / 7).max(1));
         let inside = some.clone().filter(|node| within(line, point(**node))).count();
@@ -237,7 +238,7 @@ mod tests {
         let mut fills = Outlines::default();
         let parts = fills.of(0, &body).parts.clone();
         assert!((covered(&body, &parts) - 3.0).abs() < 1e-12);
-        // A corner is pushed in: the old triangles would overlap.
+        // A corner is pushed in, so the old triangles would overlap.
         body.positions[2] = [0.2, 0.2, 0.0];
         body.positions.truncate(4);
         body.facets = Facets::Edges((0..4).map(|k| [k, (k + 1) % 4]).collect());
@@ -253,7 +254,7 @@ mod tests {
             facets: Facets::Edges(right.1.clone()),
             ..Default::default()
         };
-        // Its corners round the other way, all in one point, and crossed so that the turns cancel.
+        // Its corners reversed, all at one point, and crossed so that the signed areas cancel.
         for wrong in [
             [[0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]],
             [[1.0, 1.0]; 4],
@@ -265,7 +266,7 @@ mod tests {
             let parts = outlines.of(0, &body).parts.clone();
             assert!((covered(&body, &parts) - 4.0).abs() < 1e-12, "{wrong:?}: {parts:?}");
         }
-        // One of two rings alone.
+        // One of two rings.
         let (mut positions, mut edges) = right.clone();
         let (more, others) = ring(&[[5.0, 0.0], [5.0, 1.0], [6.0, 1.0], [6.0, 0.0]], 4);
         positions.extend(more);
@@ -297,7 +298,7 @@ mod tests {
             assert_eq!((outline.closed.len(), outline.open.len()), (2, 0));
             assert!((covered(&body, &outline.parts) - 1.0).abs() < 1e-12, "{:?}", outline.parts);
         }
-        // A square whose triangular hole touches it in node 0.
+        // A square with a triangular hole that touches it in node 0.
         let positions = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.5, 1.0], [1.0, 0.5]];
         let body = body(vec![[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [4, 5], [5, 0]], &positions);
         let mut outlines = Outlines::default();

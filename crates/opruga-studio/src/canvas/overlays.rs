@@ -1,4 +1,4 @@
-//! What is drawn over the scene: pins, pulls with their force, what the hand is doing, the hint for the first pull.
+//! Overlays of the scene: pins, pulls with their forces, the action of the pointer, and the hint for the first pull.
 
 use super::labels::{self, Named};
 use super::look::{Look, RUBBER};
@@ -11,7 +11,7 @@ use egui::{Pos2, Rect, Stroke, Vec2};
 use opruga::draw::Lens;
 
 impl Canvas {
-    /// The position of a point in the window; in space none behind the camera.
+    /// The position of a point in the window; in space, none for points behind the camera.
     pub(super) fn project(&self, lens: Option<&Lens>, shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Pos2> {
         if shown.dimension == 3 {
             let ([x, y], _) = lens?.see(point)?;
@@ -21,7 +21,7 @@ impl Canvas {
         }
     }
 
-    /// Pins, pulls with their force, the outline that is drawn, the hint for the first pull; nothing is written where the legend is.
+    /// Draws pins, pulls with their forces, the outline being drawn, and the hint for the first pull; no text covers the legend.
     pub(super) fn overlays(
         &self,
         look: &Look<'_>,
@@ -98,13 +98,13 @@ impl Canvas {
             && self.rect == Some(rect)
             && self.tool == Tool::Pull
             && self.doing == Doing::Nothing
-            // A file that is about to be dropped has a hint of its own.
+            // A file that is being dragged over the window has a hint of its own.
             && painter.ctx().input(|i| i.raw.hovered_files.is_empty())
-            // Where the scene itself pulls, its force is to be read.
+            // If the scene itself pulls, the force of that pull is displayed.
             && shown.pulls.is_empty()
             && let Some(body) = shown.picture.bodies.first()
             && let Some(top) = body.positions.iter().filter_map(|p| project(*p)).min_by(|a, b| a.y.total_cmp(&b.y))
-            // What is far out of sight cannot be dragged.
+            // A body far out of sight cannot be dragged.
             && rect.expand(0.2 * rect.width()).contains(top)
         {
             labels::hint(painter, top, rect, self.tools, legend, language.drag_me());

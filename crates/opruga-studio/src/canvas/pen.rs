@@ -1,14 +1,14 @@
-//! From a line drawn by hand to a body: closed, resampled, refused where it crosses itself.
+//! Converts a line drawn by hand to a body: it is closed, resampled, and refused if it crosses itself.
 
 use toml_edit::InlineTable;
 
-/// The fewest and the most vertices of a drawn body.
+/// The smallest and the largest number of vertices of a drawn body.
 const VERTICES: [usize; 2] = [24, 160];
 
-/// The table of the body that a line encloses; `finest` is the length that a hand can still draw [m].
+/// The table of the body that a line encloses; `finest` is the shortest length that a hand can draw [m].
 ///
 /// # Errors
-/// The word for why not.
+/// The word for the reason.
 pub(crate) fn body(line: &[[f64; 2]], finest: f64) -> Result<InlineTable, &'static str> {
     let length: f64 = sides(line).map(|(a, b)| far(a, b)).sum();
     if line.len() < 3 || length < 16.0 * finest {
@@ -21,15 +21,15 @@ pub(crate) fn body(line: &[[f64; 2]], finest: f64) -> Result<InlineTable, &'stat
     }
     let turned = 0.5 * sides(&points).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>();
     let area = turned.abs();
-    // Outlines go counter-clockwise, whichever way the hand went.
+    // Outlines are counter-clockwise, whatever the direction of the drawing was.
     if turned < 0.0 {
         points.reverse();
     }
     if area < 30.0 * finest * finest {
         return Err("too_small");
     }
-    // A skin as stiff for its vertices as that of the ball of the thesis, and gas that holds its area against the air, whatever it is scaled
-    // to.
+    // The skin is as stiff for its number of vertices as that of the ball of the thesis, and the gas preserves the area against the ambient pressure
+    // at any scale.
     let stiffness = 57_600.0 / count as f64;
     let pressure = 120.0;
     let rows: Vec<String> = points.iter().map(|p| format!("[{:.5}, {:.5}]", p[0], p[1])).collect();
@@ -54,7 +54,7 @@ fn sides(line: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + '_ {
     (0..line.len()).map(|k| (line[k], line[(k + 1) % line.len()]))
 }
 
-/// So many points at equal distances along the closed line.
+/// Points at equal distances along the closed line.
 fn resample(line: &[[f64; 2]], length: f64, count: usize) -> Vec<[f64; 2]> {
     let step = length / count as f64;
     let (mut out, mut gone) = (Vec::with_capacity(count), 0.0);
@@ -69,7 +69,7 @@ fn resample(line: &[[f64; 2]], length: f64, count: usize) -> Vec<[f64; 2]> {
     out
 }
 
-/// Takes the trembling of the hand out: every point moves to the mean of itself and its neighbours.
+/// Smooths the trembling of the hand: every point moves to the mean of itself and its neighbours.
 fn smooth(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let n = points.len();
     (0..n)
@@ -80,7 +80,7 @@ fn smooth(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Whether two sides that are no neighbours meet.
+/// Whether two sides that are not neighbours intersect.
 fn crosses(points: &[[f64; 2]]) -> bool {
     let n = points.len();
     let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -91,7 +91,7 @@ fn crosses(points: &[[f64; 2]]) -> bool {
                 continue;
             }
             let (c, d) = (points[j], points[(j + 1) % n]);
-            // Sides of one straight line meet only where they lie over one another.
+            // Collinear sides intersect only if they overlap.
             let apart = |k: usize| a[k].max(b[k]) < c[k].min(d[k]) || c[k].max(d[k]) < a[k].min(b[k]);
             if apart(0) || apart(1) {
                 continue;
@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn a_drawn_circle_becomes_a_body_and_an_eight_is_refused() {
         let text = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1.0\nframe = 0.0166\nsubsteps = 32\n[integrator]\nkind = \"verlet\"\n[[body]]\n";
-        // Whichever way the hand goes round, nothing has to be turned.
+        // Whatever the direction of the drawing, the result is the same.
         for way in [1.0, -1.0] {
             let table = body(&line(|t| [(way * t).cos(), 1.5 + (way * t).sin()]), 0.02).expect("a body");
             let whole = format!("{text}{}", table.into_table());
@@ -127,7 +127,7 @@ mod tests {
         assert_eq!(body(&line(|t| [t.sin(), (2.0 * t).sin()]), 0.02).err(), Some("crossing"));
         assert_eq!(body(&line(|t| [0.01 * t.cos(), 0.01 * t.sin()]), 0.02).err(), Some("too_small"));
         assert_eq!(body(&[[0.0, 0.0], [9.0, 0.0]], 0.02).err(), Some("too_small"));
-        // There and back on one line.
+        // Forth and back on one line.
         assert_eq!(body(&[[0.0, 0.0], [9.0, 0.0], [2.0, 0.0]], 0.02).err(), Some("crossing"));
     }
 

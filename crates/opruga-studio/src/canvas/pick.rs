@@ -1,17 +1,17 @@
-//! What lies under the pointer.
+//! Finds the body under the pointer.
 
 use super::camera::Flat;
 use crate::shown::Shown;
 use egui::{Pos2, Rect, Vec2};
 use opruga::draw::{Facets, Lens};
 
-/// How near the pointer must come to a node [points].
+/// The largest distance of the pointer from a node [points].
 const REACH: f64 = 18.0;
 
 /// The body under the pointer.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Under {
-    /// Its number in the world.
+    /// Its index in the world.
     pub(crate) body: usize,
     /// Its name.
     pub(crate) name: String,
@@ -23,7 +23,7 @@ pub(crate) struct Under {
     pub(crate) pixel: f64,
 }
 
-/// The body of the plane under the pointer: the nearest node within reach, or the body around the pointer.
+/// The body of the plane under the pointer: that of the nearest node within reach, or the one whose outline contains the pointer.
 pub(crate) fn in_plane(shown: &Shown, flat: &Flat, rect: Rect, at: Pos2) -> Option<Under> {
     let [x, y] = flat.to_world(rect, at, shown.picture.y_down);
     let pixel = flat.metres(1.0);
@@ -54,7 +54,7 @@ pub(crate) fn in_plane(shown: &Shown, flat: &Flat, rect: Rect, at: Pos2) -> Opti
     Some(Under { body: body.number, name: body.name.clone(), point, distance: 0.0, pixel })
 }
 
-/// Whether the outlines of a body go around a point an odd number of times.
+/// Whether the outlines of a body contain a point by the even-odd rule.
 fn around(body: &opruga::draw::BodyPicture, x: f64, y: f64) -> bool {
     let Facets::Edges(edges) = &body.facets else { return false };
     let crosses = |edge: &&[u32; 2]| {
@@ -64,7 +64,7 @@ fn around(body: &opruga::draw::BodyPicture, x: f64, y: f64) -> bool {
     edges.iter().filter(crosses).count() % 2 == 1
 }
 
-/// The body of space under the pointer: of the nodes within reach the one in front, or a triangle under the pointer.
+/// The body of space under the pointer: that of the frontmost node within reach, or of a triangle under the pointer.
 pub(crate) fn in_space(shown: &Shown, lens: &Lens, rect: Rect, at: Pos2) -> Option<Under> {
     let at = at - rect.min;
     let mut best: Option<(f64, usize, [f64; 3])> = None;
@@ -99,7 +99,7 @@ pub(crate) fn in_space(shown: &Shown, lens: &Lens, rect: Rect, at: Pos2) -> Opti
     Some(Under { body: body.number, name: body.name.clone(), point, distance, pixel })
 }
 
-/// The shares of the corners of a triangle in a point within it.
+/// The barycentric coordinates of a point within a triangle.
 fn inside([a, b, c]: [[f64; 2]; 3], at: Vec2) -> Option<[f64; 3]> {
     let p = [f64::from(at.x), f64::from(at.y)];
     let area = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);

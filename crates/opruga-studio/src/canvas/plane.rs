@@ -1,4 +1,4 @@
-//! A scene of the plane, drawn by the painter of the interface: sharp at every zoom.
+//! A scene of the plane, drawn by the painter of the interface and therefore sharp at every zoom.
 
 use super::arrows::{self, Longest};
 use super::brush::Brush;
@@ -12,13 +12,13 @@ use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Ve
 use opruga::core::spec::Role;
 use opruga::draw::{BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, format_value, nice_length};
 
-/// Lines of a crowd up to which they are drawn with soft borders.
+/// The largest number of lines in a crowd that are drawn with soft borders.
 const SOFT_EDGES: usize = 6_000;
-/// The opacity of what fills an outline, and of cells.
+/// The opacity of filled outlines, and of cells.
 const FILLED: f32 = 0.34;
 const FILLED_CELLS: f32 = 0.62;
 
-/// The colours of a node: where surfaces are filled, and of lines.
+/// The colours of a node: for filled areas, and for lines.
 #[derive(Clone, Copy, Debug, Default)]
 struct Ink {
     fill: Color32,
@@ -36,11 +36,11 @@ impl Ink {
     }
 }
 
-/// The colours of a map, found once for a picture: a crowd has a hundred times as many nodes. The last one is that of what is no number.
+/// The colours of a colour map, computed once per picture, because a crowd has a hundred times as many nodes. The last one is that of NaN.
 struct Colours {
     inks: [Ink; 257],
     low: f64,
-    /// Colours for a unit of what is shown.
+    /// Colours per unit of the quantity.
     factor: f64,
 }
 
@@ -55,31 +55,31 @@ impl Colours {
     }
     fn at(&self, scalar: f64) -> Ink {
         let index = (scalar - self.low) * self.factor;
-        // As a byte it ends where the colours do.
+        // As a byte, the index is clamped to the range of the colours.
         self.inks[if index.is_nan() { 256 } else { usize::from(index as u8) }]
     }
 }
 
-/// What is kept from picture to picture.
+/// Data that are kept from picture to picture.
 #[derive(Debug, Default)]
 pub(crate) struct Kept {
     outlines: Outlines,
     brush: Brush,
-    /// Where the nodes of a body are on the screen, and their colours.
+    /// The positions of the nodes of a body on the screen, and their colours.
     at: Vec<Pos2>,
     inks: Vec<Ink>,
-    /// The corners of a large outline that are seen: their indices in it.
+    /// The visible corners of a large outline, as indices in it.
     seen: Vec<u32>,
 }
 
 impl Kept {
-    /// Forgets what belongs to a scene.
+    /// Forgets the data of a scene.
     pub(crate) fn forget(&mut self) {
         self.outlines.forget();
     }
 }
 
-/// Draws obstacles, bodies and arrows; names are not written where something is `taken`.
+/// Draws obstacles, bodies and arrows; names do not cover `taken` rectangles.
 pub(crate) fn paint(
     look: &Look<'_>,
     flat: &Flat,
@@ -93,7 +93,7 @@ pub(crate) fn paint(
     let project = |p: [f64; 3]| flat.to_screen(rect, p, picture.y_down);
     grid(painter, flat, rect, paper, picture.y_down);
     picture.colliders.iter().for_each(|c| obstacle(painter, c, flat, rect, paper, &project));
-    // A single outline has no more points than the screen; a crowd and a lattice may.
+    // A single outline has no more points than the screen; a crowd or a lattice may.
     let alone = matches!(&picture.bodies[..], [body] if body.segments.len() <= body.positions.len());
     let edges = |body: &BodyPicture| match &body.facets {
         Facets::Edges(edges) => edges.len(),
@@ -106,7 +106,7 @@ pub(crate) fn paint(
     let map = picture.legend.as_ref().map_or(ColourMap::Viridis, |legend| legend.map);
     let map = Colours::new(map, look.range, paper);
     for (index, (body, extent)) in picture.bodies.iter().zip(&shown.extents).enumerate() {
-        // What is out of sight is not looked at closer.
+        // Bodies out of sight are skipped.
         if Rect::from_points(&extent.corners.map(project)).expand(4.0).intersects(rect) && !body.positions.is_empty() {
             kept.at.clear();
             kept.at.extend(body.positions.iter().map(|p| project(*p)));
@@ -115,7 +115,7 @@ pub(crate) fn paint(
         }
     }
     kept.brush.end(painter);
-    // What is written and marked lies over all bodies.
+    // Labels and marks are above all bodies.
     for body in &picture.bodies {
         body.pinned.iter().filter_map(|node| body.positions.get(*node as usize)).for_each(|p| {
             pin(painter, project(*p), paper);
@@ -127,19 +127,19 @@ pub(crate) fn paint(
     arrows::paint(look, flat, longest, &project);
 }
 
-/// A body whose nodes are in `kept`: what fills it, its springs, its outline, its vertices.
+/// Draws a body whose nodes are in `kept`: its filling, its springs, its outline, its vertices.
 fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPicture), wide: bool, flat: &Flat) {
     let Look { rect, paper, shown, show, .. } = *look;
     let (index, body) = number;
     let Kept { outlines, brush, at, inks, seen } = kept;
     if body.areas.iter().any(|area| area.colour.is_some()) {
-        // The areas that it carries, in their own colours, one over another.
+        // The areas that it carries, in their own colours, one above the other.
         for area in &body.areas {
             let Some([r, g, b, opacity]) = area.colour else { continue };
             let colour = Color32::from_rgba_unmultiplied(r, g, b, opacity);
             let corners = area.positions.iter().map(|p| (flat.to_screen(rect, *p, shown.picture.y_down), colour));
             brush.fill(corners, &area.triangles);
-            // A thin line of the same colour makes its border smooth.
+            // A thin line of the same colour smooths its border.
             let starts = std::iter::once(0).chain(area.ends.iter().copied());
             for (start, end) in starts.zip(area.ends.iter().copied()) {
                 let Some(line) = area.positions.get(start..end) else { continue };
@@ -161,11 +161,11 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     };
     let closed = if outline.large { &thinned } else { &outline.closed };
     if outline.large {
-        // So many points of a surface are not told apart: those are filled that are.
+        // A surface with this many points is filled only between those that are distinct on the screen.
         let detail = Detail { merge_distance: 1.0, beside: 0.35, colour: 24, screen: rect };
         let lines = corners(closed, detail, |node| (at[*node as usize], inks[*node as usize].line), seen);
         let parts = fill(body, &lines);
-        // How near it is looked at does not change the colour of its inside.
+        // The zoom does not change the colour of its interior.
         let all: Vec<u32> = outline.closed.iter().flatten().copied().collect();
         for part in &parts {
             let ink = inside(body, if parts.len() == 1 { &all } else { &part.nodes }, map, inks);
@@ -182,14 +182,14 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     let of = |node: &u32| (at[*node as usize], inks[*node as usize].line);
     let edged = !(outline.closed.is_empty() && outline.open.is_empty());
     if outline.springs {
-        // Over what is filled they are seen by another colour.
+        // Over filled areas they have another colour, to be visible.
         let (width, share) = if edged { (1.2, if paper.dark { 0.4 } else { 0.15 }) } else { (1.8, 0.0) };
         for [a, b] in &body.segments {
             let (a, b) = (of(a), of(b));
             brush.line([a.0, b.0], width, [a.1, b.1].map(|colour| colour.lerp_to_gamma(paper.ink, share)));
         }
     }
-    // Springs along an outline make it thick; a body that has none has the same outline without them.
+    // Springs along an outline make it thick; a body without springs has the same outline without them.
     let sprung = |body: &crate::shown::BodyShown| body.models.iter().any(|model| model.spec().has_role(Role::Edges));
     let thin = !show.springs && shown.bodies.get(index).is_some_and(sprung);
     let width = if wide { 3.2 } else { 2.2 } - if thin { 1.2 } else { 0.0 };
@@ -203,7 +203,7 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     if body.nodes_drawn && at.len() <= 20_000 {
         let radius = if at.len() > 400 { 1.6 } else { 2.6 };
         for (pos, ink) in at.iter().zip(inks.iter()) {
-            // Those that a person wants to see stand out from the line on which they lie.
+            // If the user wants to see them, they stand out from their line.
             if show.vertices {
                 brush.disc(*pos, radius + 1.8, paper.background);
                 brush.disc(*pos, radius + 0.6, ink.line.lerp_to_gamma(paper.ink, 0.6));
@@ -214,8 +214,8 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     }
 }
 
-/// The colour of what lines enclose: that of the mean over their nodes, as in the pictures of the command line. Between them no number is
-/// known, and the triangles mean nothing.
+/// The colour of the area within lines: that of the mean over their nodes, as in the pictures of the command line. The values between the nodes are
+/// unknown, and the triangles have no physical meaning.
 fn inside(body: &BodyPicture, nodes: &[u32], map: &Colours, inks: &[Ink]) -> Color32 {
     match (body.scalar.is_empty(), nodes.first()) {
         (false, Some(_)) => {
@@ -232,12 +232,12 @@ fn darker(c: Color32) -> Color32 {
     Color32::from_rgb(scale(c.r()), scale(c.g()), scale(c.b()))
 }
 
-/// The sides of the squares of the grid: a round length [m].
+/// The side of the grid squares: a round length [m].
 fn square(flat: &Flat) -> f64 {
     nice_length(flat.metres(110.0))
 }
 
-/// Squares of a round length.
+/// Draws a grid of squares with a round length.
 fn grid(painter: &Painter, flat: &Flat, rect: Rect, paper: &Paper, y_down: bool) {
     let length = square(flat);
     let [left, top] = flat.to_world(rect, rect.min, y_down);
@@ -252,7 +252,7 @@ fn grid(painter: &Painter, flat: &Flat, rect: Rect, paper: &Paper, y_down: bool)
     }
 }
 
-/// How long a side of these squares is; over everything, as floors often reach to the corner where it is.
+/// Draws the length of a side of these squares, over everything else, because floors often reach into that corner.
 pub(crate) fn scale_bar(look: &Look<'_>, flat: &Flat) {
     let Look { painter, rect, paper, .. } = *look;
     let unit = &look.shown.picture.length_unit;
@@ -285,7 +285,7 @@ fn obstacle(
             if size == 0.0 {
                 return;
             }
-            // As far as the window reaches, wherever the point of the plane lies.
+            // Across the whole window, wherever the point of the plane is.
             let n = [normal[0] / size, normal[1] / size];
             let t = [-n[1], n[0]];
             let middle = flat.middle();
@@ -344,7 +344,7 @@ pub(crate) fn pin(painter: &Painter, at: Pos2, paper: &Paper) {
     painter.circle(at, 4.5, Color32::from_rgb(238, 178, 40), Stroke::new(1.5, paper.ink));
 }
 
-/// The rubber line of a pull and its force in newtons, which stands beside the pointer where nothing else does.
+/// Draws the rubber band of a pull and its force in newtons, which is next to the pointer where there is space.
 pub(crate) fn rubber(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
     let Look { painter, paper, .. } = *look;
     painter.line_segment([from, to], Stroke::new(2.5, RUBBER));
@@ -353,7 +353,7 @@ pub(crate) fn rubber(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], ta
     newtons(look, to, force, taken);
 }
 
-/// The arrow of a push, as long as the displacement of the pointer, and its force in newtons.
+/// Draws the arrow of a push, as long as the displacement of the pointer, and its force in newtons.
 pub(crate) fn push(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
     look.painter.circle_filled(from, 4.0, RUBBER);
     if (to - from).length() >= 2.0 {
@@ -362,7 +362,7 @@ pub(crate) fn push(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], take
     newtons(look, to, force, taken);
 }
 
-/// A force in newtons, beside the point where the pointer has it, where nothing else is.
+/// Draws a force in newtons, next to the pointer, where there is space.
 fn newtons(look: &Look<'_>, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
     let Look { painter, paper, .. } = *look;
     let newtons = force.iter().map(|f| f * f).sum::<f64>().sqrt();
@@ -373,8 +373,8 @@ fn newtons(look: &Look<'_>, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
     painter.galley(text_rect.min, galley, RUBBER);
 }
 
-/// Where beside a point there is room for something of this size: above to the right if that can be, else around it. A point out
-/// of sight has it at the border.
+/// The free position for something of this size next to a point: above and to the right if possible, otherwise around it. For a point out of sight it
+/// is at the border.
 fn beside(at: Pos2, size: Vec2, bounds: Rect, taken: &[Rect]) -> Rect {
     let candidates = [
         (Align2::LEFT_BOTTOM, Vec2::new(12.0, -10.0)),
@@ -384,7 +384,7 @@ fn beside(at: Pos2, size: Vec2, bounds: Rect, taken: &[Rect]) -> Rect {
     ];
     let candidates = candidates.map(|(align, offset)| align.anchor_size(at + offset, size));
     let free = |rect: &Rect| taken.iter().all(|other| !other.intersects(rect.expand(3.0)));
-    // Where the point itself lies among other things, next to these.
+    // If the point itself is within other things, next to these.
     let around = taken.iter().filter(|other| other.contains(at)).flat_map(|other| {
         let level = candidates[0].min;
         let [left, right] = [other.left() - size.x - 6.0, other.right() + 6.0].map(|x| Pos2::new(x, level.y));
@@ -398,7 +398,7 @@ fn beside(at: Pos2, size: Vec2, bounds: Rect, taken: &[Rect]) -> Rect {
     Rect::from_min_size(rect.min.to_vec2().clamp(low, high).to_pos2(), size)
 }
 
-/// Where a body would be set down.
+/// Draws a body where it would be placed.
 pub(crate) fn ghost(
     painter: &Painter,
     body: &BodyPicture,
@@ -418,15 +418,15 @@ pub(crate) fn ghost(
     }
 }
 
-/// Writes at the lower right whose drawings, maps or surfaces are seen, and under which licence.
+/// Writes the authors of the visible drawings, maps or surfaces, and their licence, at the lower right.
 pub(crate) fn credit(look: &Look<'_>) {
     let (rect, credit) = (look.rect, &look.shown.picture.credit);
     if !credit.is_empty() {
-        // Beside the bar of lengths, on as many lines as that takes.
+        // Next to the scale bar, on as many lines as needed.
         let wrap_width = (0.6 * rect.width()).max(120.0);
         let font = FontId::proportional(10.0);
         let galley = look.painter.layout(credit.clone(), font, look.paper.soft, wrap_width);
-        // Above what is written below each of two scenes.
+        // Above the captions below each of two scenes.
         let foot = if look.shown.beside.is_some() { Captions::FOOT[0] } else { 0.0 };
         let spot = rect.max - galley.size() - Vec2::new(8.0, 6.0 + foot);
         look.painter.galley(spot, galley, look.paper.soft);

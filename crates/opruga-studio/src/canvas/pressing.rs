@@ -1,4 +1,4 @@
-//! What the pointer does on the scene.
+//! The actions of the pointer on the scene.
 
 use super::pick::Under;
 use super::{Canvas, Doing, Tool, pen};
@@ -12,17 +12,16 @@ use opruga::draw::ColliderPicture;
 struct Press {
     button: PointerButton,
     at: Pos2,
-    /// Where the scene is.
+    /// The rectangle of the scene.
     rect: Rect,
     /// Whether the space bar is held.
     space: bool,
     shift: bool,
-    /// Whether it is on the scene that is only looked at.
+    /// Whether it is on the scene beside the main one.
     beside: bool,
 }
 
-/// A pull of which nothing has come yet. While time stands still, a press alone selects a body, and whatever was recorded behind this
-/// moment stays.
+/// A pull that has had no effect yet. While time is stopped, a press alone selects a body, and what was recorded after this moment stays.
 #[derive(Clone, Debug)]
 pub(super) struct Waiting {
     grab: Request,
@@ -31,13 +30,13 @@ pub(super) struct Waiting {
 }
 
 impl Waiting {
-    /// Whether the pointer has gone on since, or time has.
+    /// Whether the pointer has moved since, or time has passed.
     fn is_over(&self, shown: &Shown, at: Pos2) -> bool {
         (at - self.at).length() > 2.0 || shown.playing || shown.frames != self.frames
     }
 }
 
-/// Where a button was pressed since the last picture: on a slow screen the pointer has gone on since.
+/// The position at which a button was pressed since the last picture; on a slow screen the pointer has moved on since.
 pub(super) fn pressed_at(ui: &Ui) -> Option<Pos2> {
     let press = |event: &egui::Event| match event {
         egui::Event::PointerButton { pos, pressed: true, .. } => Some(*pos),
@@ -46,8 +45,8 @@ pub(super) fn pressed_at(ui: &Ui) -> Option<Pos2> {
     ui.input(|i| i.events.iter().rev().find_map(press))
 }
 
-/// The path of the pointer since the last picture, from the press where it `began` in it and up to where it was let go: on a slow
-/// screen many positions come with one picture.
+/// The path of the pointer since the last picture: from the press, if it `began` in it, up to the release. On a slow screen many positions come with
+/// one picture.
 fn path(events: &[egui::Event], began: bool) -> Vec<Pos2> {
     use egui::Event::{PointerButton as Button, PointerMoved};
     let (mut path, mut down) = (Vec::new(), !began);
@@ -66,7 +65,7 @@ fn path(events: &[egui::Event], began: bool) -> Vec<Pos2> {
 }
 
 impl Canvas {
-    /// Wheel, pinch, and dragging of the view.
+    /// Handles the wheel, pinching, and dragging of the view.
     pub(super) fn navigate(&mut self, ui: &Ui, at: Option<Pos2>, shown: &Shown, rect: Rect) {
         let Some(latest) = at else { return };
         let at = pressed_at(ui).filter(|_| self.doing == Doing::Nothing).unwrap_or(latest);
@@ -118,7 +117,7 @@ impl Canvas {
         });
         let Some(latest) = at else { return };
         let at = pressed_at(ui).filter(|_| self.doing == Doing::Nothing).unwrap_or(latest);
-        // Two fingers move the view: what the first of them took hold of is let go.
+        // Two fingers move the view, so whatever the first of them grabbed is released.
         if ui.input(|i| i.multi_touch().is_some()) {
             if let Doing::Holding(..) = std::mem::take(&mut self.doing) {
                 asks.push(Request::Release);
@@ -126,7 +125,7 @@ impl Canvas {
             return;
         }
         let began = self.doing == Doing::Nothing && pressed.is_some() && response.contains_pointer();
-        // What is done on the side to the right is done as if it were the one to the left, wherever the pointer goes.
+        // An action on the right side is treated as if it were on the left, wherever the pointer moves.
         if self.doing == Doing::Nothing {
             self.offset = offset.unwrap_or_default();
         }
@@ -150,7 +149,7 @@ impl Canvas {
         if self.waiting.as_ref().is_some_and(|waiting| !holds || waiting.is_over(shown, at)) {
             asks.extend(self.waiting.take().filter(|_| holds).map(|waiting| waiting.grab));
         }
-        // On a slow screen a press comes together with the way to it, which does not count.
+        // On a slow screen, a press comes together with the movement before it, which does not count.
         let delta = if began { Vec2::ZERO } else { ui.input(|i| i.pointer.delta()) };
         match &mut self.doing {
             Doing::Nothing => {}
@@ -217,7 +216,7 @@ impl Canvas {
             return;
         }
         let Some(under) = under else {
-            // Beside all bodies the view is taken along, in space it turns.
+            // Away from all bodies, dragging moves the view; in space it rotates it.
             self.doing = if shown.dimension == 3 { Doing::Turning } else { Doing::Panning };
             return;
         };
@@ -227,7 +226,7 @@ impl Canvas {
             (PointerButton::Secondary, ..) => Grip::Push,
             (_, true, _) | (_, _, Tool::Pin) => Grip::Pin,
             (_, _, Tool::Push) => Grip::Push,
-            // Where bodies are is common to both scenes, and told where they are set down.
+            // The positions of bodies are common to both scenes; the left one is used to place them.
             (_, _, Tool::Shift) if beside => return,
             (_, _, Tool::Shift) => {
                 let start = self.point(shown, rect, at, depth).unwrap_or(under.point);
@@ -237,7 +236,7 @@ impl Canvas {
             _ => Grip::Pull,
         };
         self.pulled |= grip == Grip::Pull;
-        // What is pinned is taken by its own position, so that the same node is found again.
+        // A pinned node is grabbed at its own position, so that the same node is found again.
         let pinned = pin.filter(|_| grip == Grip::Pin).map(|pin| {
             let of_left = shown.pins.iter().find(|left| (left.0, left.1) == (pin.0, pin.1));
             of_left.map_or(pin.2, |left| left.2)
@@ -252,7 +251,7 @@ impl Canvas {
         } else {
             asks.push(grab);
         }
-        // A push begins without force, though the pointer is somewhere beside the node; what is pulled comes to the pointer.
+        // A push begins without force although the pointer is next to the node; a pulled node moves to the pointer.
         let pressed = self.point(shown, rect, at, depth).filter(|_| grip == Grip::Push);
         self.doing = Doing::Holding(depth, pressed.map(|pressed| [pressed, under.point]));
     }
@@ -280,7 +279,7 @@ impl Canvas {
     }
 }
 
-/// The pin under the pointer, of a person or, where its nodes are those of the world, of the scene: body, node, position [m].
+/// The pin under the pointer, set by the user or, if its nodes are those of the world, by the scene: body, node, position [m].
 fn pin_under(shown: &Shown, under: &Under, own_nodes: bool) -> Option<(usize, u32, [f64; 3])> {
     let own = shown.bodies.iter().position(|body| body.number == under.body);
     let own = own.and_then(|index| shown.picture.bodies.get(index));
@@ -311,7 +310,7 @@ mod tests {
         let whole =
             [Event::PointerMoved(d), button(a, true), Event::PointerMoved(b), Event::PointerMoved(c), button(d, false)];
         assert_eq!(path(&whole, true), [a, b, c, d]);
-        // In the pictures between, and in the last one, after which the pointer goes on.
+        // In the pictures between, and in the last one, after which the pointer moves on.
         assert_eq!(path(&whole[2..4], false), [b, c]);
         assert_eq!(path(&[Event::PointerMoved(b), button(c, false), Event::PointerMoved(d)], false), [b, c]);
         assert!(path(&[], false).is_empty());

@@ -1,5 +1,5 @@
-//! A scene of space: drawn by the same renderer as the pictures of the command line, beside the interface, into a
-//! texture. It needs no graphics card and has depth, smooth shading and a soft shadow.
+//! A scene of space, drawn to a texture by the renderer of the command line, in parallel to the interface. It needs no graphics card and has depth,
+//! smooth shading and a soft shadow.
 
 use super::arrows::Longest;
 use super::look::Look;
@@ -12,13 +12,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// The colour of the outline of the selected body.
 const OUTLINE: [u8; 3] = [240, 150, 30];
 
-/// The longest side of a picture in pixels: finer screens are served by stretching.
+/// The longest side of a picture in pixels; it is stretched for screens with a higher resolution.
 const MOST_PIXELS: f64 = 1400.0;
 
-/// The share of the picture that a scene fills at most.
+/// The largest fraction of the picture that a scene fills.
 const FILLED: f64 = 0.96;
 
-/// A picture, and of what it is.
+/// A picture and what it shows.
 struct Drawn {
     image: Image,
     shown: Arc<Shown>,
@@ -36,19 +36,19 @@ struct Order {
     longest: Longest,
 }
 
-/// What a picture shows: scene, frame, eye, size, theme, what else is to be seen, the selected body.
+/// The contents of a picture: scene, frame, camera, size, theme, display options, selected body.
 type Last = (u64, u64, Eye, [u32; 2], bool, u64, Option<String>);
 
-/// The eye, and what is drawn of what it sees.
+/// The camera, and the pictures drawn for it.
 #[derive(Default)]
 pub(crate) struct Space {
     eye: Option<Eye>,
     done: Arc<Mutex<Option<Drawn>>>,
     busy: Arc<AtomicBool>,
     texture: Option<TextureHandle>,
-    /// What the picture on the screen shows, and from where: what is drawn over it and pressed on it is that.
+    /// The scene and camera of the picture on the screen, to which overlays and presses refer.
     seen: Option<(Arc<Shown>, Eye)>,
-    /// What the last order was for, so that the same is not drawn twice.
+    /// The last order, so that the same picture is not drawn twice.
     last: Option<Last>,
 }
 
@@ -63,13 +63,13 @@ impl Space {
         self.eye.as_ref()
     }
 
-    /// Looks at all of a view in a picture of this size.
+    /// Shows all of a view in a picture of this size.
     pub(crate) fn fit(&mut self, view: &View, size: Vec2) {
         self.eye = Some(whole(Eye::of(view), view, size));
         (self.last, self.seen) = (None, None);
     }
 
-    /// Draws its picture anew: what it was drawn on is gone.
+    /// Draws its picture again after its device was lost.
     #[cfg(target_arch = "wasm32")]
     pub(crate) fn forget_texture(&mut self) {
         (self.texture, self.last) = (None, None);
@@ -80,19 +80,19 @@ impl Space {
         self.busy.load(Ordering::Acquire) || self.done.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
-    /// Looks with the eye of another.
+    /// Takes over the camera of another one.
     pub(crate) fn share_eye(&mut self, other: &Space) {
         self.eye = other.eye;
     }
 
-    /// Looks from the same side, so that all of a view is seen.
+    /// Shows all of a view from the same direction.
     pub(crate) fn look_at_all(&mut self, view: &View, size: Vec2) {
         if let Some(eye) = &mut self.eye {
             *eye = whole(Eye { azimuth: eye.azimuth, elevation: eye.elevation, ..Eye::of(view) }, view, size);
         }
     }
 
-    /// Looks at a point from the same side.
+    /// Looks at a point from the same direction.
     pub(crate) fn look_at(&mut self, point: [f64; 3]) {
         if let Some(eye) = &mut self.eye {
             eye.target = point;
@@ -105,7 +105,7 @@ impl Space {
         }
     }
 
-    /// Turns about the point that is looked at; with a floor not below it, where nothing could be seen.
+    /// Rotates about the point in the centre of the view; if there is a floor, not below it, where nothing could be seen.
     pub(crate) fn turn(&mut self, delta: Vec2, floor: bool) {
         if let Some(eye) = &mut self.eye {
             eye.azimuth -= f64::from(delta.x) * 0.4;
@@ -123,25 +123,25 @@ impl Space {
         }
     }
 
-    /// What the picture on the screen shows.
+    /// The scene of the picture on the screen.
     pub(crate) fn seen(&self) -> Option<&Arc<Shown>> {
         self.seen.as_ref().map(|(shown, _)| shown)
     }
 
-    /// How far the camera of the picture on the screen is from the point that is looked at [m]: as the eye comes nearer, what is held
-    /// keeps its place behind that point.
+    /// The distance of the camera of the picture on the screen from the point in the centre of the view [m]. When the camera comes closer, a held
+    /// body keeps its position behind that point.
     pub(crate) fn distance(&self, scales: &View, rect: Rect) -> Option<f64> {
         let target = self.seen.as_ref().map(|(_, eye)| *eye).or(self.eye)?.target;
         self.lens(scales, rect)?.see(target).map(|(_, distance)| distance)
     }
 
-    /// What turns points of space into points of the rectangle, as in the picture on the screen.
+    /// The projection of points of space to points of the rectangle, as in the picture on the screen.
     pub(crate) fn lens(&self, scales: &View, rect: Rect) -> Option<Lens> {
         let eye = self.seen.as_ref().map(|(_, eye)| *eye).or(self.eye)?;
         Some(eye.lens(scales, [f64::from(rect.width()), f64::from(rect.height())]))
     }
 
-    /// Takes a picture that is done.
+    /// Receives a finished picture.
     pub(crate) fn receive(&mut self, ui: &Ui) {
         if let Some(Drawn { image, shown, eye }) = self.done.lock().unwrap_or_else(PoisonError::into_inner).take() {
             self.seen = Some((shown, eye));
@@ -169,7 +169,7 @@ impl Space {
         let shrink = (MOST_PIXELS / (f64::from(rect.width().max(rect.height())) * fine)).min(1.0) * fine;
         let side = |points: f32| ((f64::from(points) * shrink).round() as u32).max(1);
         let size = [side(rect.width()), side(rect.height())];
-        // The only body of a scene needs no mark.
+        // A mark is not necessary if a scene has only one body.
         let selected = selected.filter(|_| shown.bodies.len() > 1).map(String::from);
         let wanted: Last = (shown.opened, shown.frames, eye, size, paper.dark, fingerprint(shown), selected.clone());
         if self.last.as_ref() != Some(&wanted) && !self.busy.swap(true, Ordering::AcqRel) {
@@ -187,7 +187,7 @@ impl Space {
             };
             let (done, busy, context) = (Arc::clone(&self.done), Arc::clone(&self.busy), ui.ctx().clone());
             drop(crate::work::spawn(async move {
-                // A picture that cannot be drawn leaves the last one on the screen.
+                // If a picture cannot be drawn, the last one stays on the screen.
                 if let Some(drawn) = drawn(&order) {
                     *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(drawn);
                 }
@@ -195,7 +195,7 @@ impl Space {
                 context.request_repaint();
             }));
         }
-        // Where the picture shows this very moment, what has come to it since, such as the way of a pull, is drawn over it.
+        // If the picture shows this very moment, later additions, such as the displacement of a pull, are drawn over it.
         if self.last.as_ref() == Some(&wanted)
             && !self.is_drawing()
             && let Some((seen, _)) = &mut self.seen
@@ -209,16 +209,16 @@ impl Space {
     }
 }
 
-/// An eye that sees the box of a view whole, however narrow the picture is: where it does not, it goes back.
+/// Moves the camera back until it sees the whole box of a view, however narrow the picture is.
 fn whole(mut eye: Eye, view: &View, size: Vec2) -> Eye {
     let sides = [f64::from(size.x), f64::from(size.y)];
-    // What is nearer grows more slowly than the eye goes back: a few times get there.
+    // Closer parts shrink more slowly as the camera moves back, so a few iterations are needed.
     for _ in 0..8 {
         let lens = eye.lens(view, sides);
         let mut most = 0.0_f64;
         for corner in 0..8 {
             let point = std::array::from_fn(|d| if corner >> d & 1 == 0 { view.low[d] } else { view.high[d] });
-            // Behind the camera it is twice as far outside.
+            // A point behind the camera counts as twice as far outside.
             let far = lens.see(point).map_or(2.0, |(pixel, _)| {
                 [0, 1].map(|d| (pixel[d] / sides[d] - 0.5).abs() * 2.0).into_iter().fold(0.0, f64::max)
             });
@@ -232,13 +232,13 @@ fn whole(mut eye: Eye, view: &View, size: Vec2) -> Eye {
     eye
 }
 
-/// What else changes a picture of the same frame: what is shown of it.
+/// A fingerprint of everything that changes a picture of the same frame.
 fn fingerprint(shown: &Shown) -> u64 {
     let picture = &shown.picture;
     let label = picture.legend.as_ref().map_or(0, |legend| legend.label.len() as u64 * 31 + legend.unit.len() as u64);
     let map = picture.legend.as_ref().map_or(0, |legend| legend.map as u64);
     let lines: usize = picture.bodies.iter().map(|b| b.segments.len() + usize::from(b.nodes_drawn)).sum();
-    // A body that is set down elsewhere at the start is so in the same frame.
+    // A body that is moved at the start is elsewhere in the same frame.
     let corners = shown.extents.iter().flat_map(|extent| extent.corners).flatten();
     let corner_bits = corners.fold(0_u64, |sum, x| sum.rotate_left(7) ^ x.to_bits());
     let counted = map * 1_000_000_007
@@ -249,7 +249,7 @@ fn fingerprint(shown: &Shown) -> u64 {
     counted ^ corner_bits
 }
 
-/// Draws what is ordered.
+/// Draws an order.
 fn drawn(order: &Order) -> Option<Drawn> {
     let mut picture = order.shown.picture.clone();
     if let Some(legend) = &mut picture.legend {

@@ -1,8 +1,8 @@
-//! What a press of the pointer does.
+//! The action of a press of the pointer.
 
 use crate::words::Language;
 
-/// What a press of the first button does.
+/// The action of a press of the primary button.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tool {
     /// Pull.
@@ -10,7 +10,7 @@ pub enum Tool {
     Pull,
     /// Push.
     Push,
-    /// Pin, and move what is pinned.
+    /// Pin, and move pinned points.
     Pin,
     /// Move a body.
     Shift,

@@ -1,14 +1,14 @@
-//! Overrides of a call (`--set PATH=VALUE`) written into the text: the scene that is seen is the one that was run.
+//! Overrides of a call (`--set PATH=VALUE`) written into the text, so that the visible scene is the one that was run.
 
 use super::Document;
 use crate::view_errors::ViewError;
 use toml_edit::{Item, Table, TableLike, Value as Toml};
 
 impl Document {
-    /// Writes the value of an override where its path leads, as the reader of scenes understands both.
+    /// Writes the value of an override at its path, interpreting both as the scene reader does.
     ///
     /// # Errors
-    /// The path leads nowhere, or the value is none.
+    /// The path names nothing, or the value is invalid.
     pub fn take_override(&mut self, path: &str, value: &str) -> Result<(), ViewError> {
         let parts: Vec<&str> = path.split('.').collect();
         let word = || value.starts_with(char::is_alphabetic).then(|| Toml::from(value));
@@ -22,7 +22,7 @@ impl Document {
     }
 }
 
-/// Walks through tables; those that are not there yet are made.
+/// Walks through tables; missing ones are created.
 fn put(table: &mut dyn TableLike, parts: &[&str], value: Toml) -> Option<()> {
     let (head, rest) = parts.split_first()?;
     if rest.is_empty() {
@@ -30,7 +30,7 @@ fn put(table: &mut dyn TableLike, parts: &[&str], value: Toml) -> Option<()> {
         return Some(());
     }
     let item = table.entry(head).or_insert_with(|| Item::Table(Table::new()));
-    // A word alone stands for a table of its kind.
+    // A single word stands for a table of its kind.
     if let Some(kind) = item.as_str().map(String::from) {
         let mut long = toml_edit::InlineTable::new();
         long.insert("kind", kind.into());
@@ -46,7 +46,7 @@ fn put(table: &mut dyn TableLike, parts: &[&str], value: Toml) -> Option<()> {
     }
 }
 
-/// The same within a list: of tables, or of numbers.
+/// Does the same within a list of tables or of numbers.
 fn put_in(array: &mut toml_edit::Array, parts: &[&str], value: Toml) -> Option<()> {
     let (head, rest) = parts.split_first()?;
     if rest.is_empty() {
@@ -61,7 +61,7 @@ fn put_in(array: &mut toml_edit::Array, parts: &[&str], value: Toml) -> Option<(
     put_in(array.get_mut(head.parse().ok()?)?.as_array_mut()?, rest, value)
 }
 
-/// The index of the entry of a list that a number, or its `name`, `kind` or `do`, names.
+/// The index of the list entry with this number, `name`, `kind` or `do`.
 fn index_of<'t>(name: &str, tables: impl Iterator<Item = &'t dyn TableLike>) -> Option<usize> {
     let label = |table: &dyn TableLike| {
         ["name", "kind", "do"].into_iter().find_map(|key| table.get(key)?.as_str().map(String::from))
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
     use opruga::io::scene;
 
-    /// Whatever the path, the text with the value in it is read as the text with the override.
+    /// For every path, the text with the value in it is read like the text with the override.
     #[test]
     fn a_text_with_its_overrides_is_the_scene_that_was_run() {
         let ball = opruga::scenes::find("ball").expect("it comes with the program");

@@ -1,18 +1,18 @@
-//! A hand that is in the scene gives way to that of a person.
+//! Drags in a scene give way when the user grabs the same body.
 
 use super::{Document, tables};
 use toml_edit::{Item, Table};
 
 impl Document {
-    /// Ends the drags of a body among the first `kept` commands \[s\]: those that act now end now, or with the next frame where they
-    /// have just begun, and those that were still to come go. How many went; none where there was nothing to end.
+    /// Ends the drags of a body among the first `kept` commands \[s\]: active ones end now, or with the next frame if they have just begun; later
+    /// ones are removed. Returns the number of removed commands; none if there was nothing to end.
     pub fn take_over(&mut self, kept: usize, body: &str, [now, next]: [f64; 2]) -> Option<usize> {
         let commands = tables(self.text.get_mut("command")?)?;
         let seconds = |table: &Table, key: &str| {
             table.get(key).and_then(|item| item.as_float().or_else(|| item.as_integer().map(|whole| whole as f64)))
         };
         let has = |table: &Table, key: &str, word: &str| table.get(key).and_then(Item::as_str) == Some(word);
-        // Times in decimals may differ from those of frames by rounding.
+        // Decimal times may differ from those of frames by rounding.
         let rounding = 1e-9 * (next - now);
         let (mut gone, mut ended) = (0, 0);
         for number in (0..kept.min(commands.len())).rev() {
@@ -35,7 +35,7 @@ impl Document {
         (gone + ended > 0).then_some(gone)
     }
 
-    /// Takes those of the first `kept` commands back that begin on a body after a time \[s\]: it is not there any more then. How many went.
+    /// Removes those of the first `kept` commands that begin after a time \[s\] on a body that no longer exists then. Returns their number.
     pub fn forget_later(&mut self, kept: usize, body: &str, time: f64) -> usize {
         let Some(commands) = self.text.get_mut("command").and_then(tables) else { return 0 };
         let before = commands.len();
@@ -78,7 +78,7 @@ mod tests {
         let before = document.text();
         assert_eq!(document.take_over(3, "ball", [2.0, 2.1]), None, "nothing acts any more");
         assert_eq!(document.text(), before);
-        // What has just begun acts for one frame.
+        // A drag that has just begun acts for one frame.
         let mut document = Document::new("it", inline).expect("a text");
         assert_eq!(document.commands(), 1);
         assert_eq!(document.take_over(1, "ball", [1.0, 1.1]), Some(0));

@@ -6,11 +6,11 @@ use crate::shown::Show;
 use opruga::draw::{ArrowKind, ArrowPicture, Facets};
 use opruga::pictures::{Quantity, Scenery};
 
-/// Bodies up to which arrows are drawn: those of more could not be told apart.
+/// The largest number of bodies for which arrows are drawn; with more, the arrows could not be distinguished.
 const MOST_WITH_ARROWS: usize = 64;
 
 impl Living {
-    /// What there is to see.
+    /// Makes the picture of the world.
     pub(super) fn picture(&mut self, show: &Show) -> opruga::draw::Picture {
         let bodies = self.world.scene().body_count();
         if bodies != self.known {
@@ -41,7 +41,7 @@ impl Living {
         picture
     }
 
-    /// The arrows that a person wants to see, and the nodes that are held now: those of the scene may have been freed.
+    /// Adds the arrows that the user wants to see, and the nodes that are pinned now: pins of the scene may have been released.
     pub(super) fn add_arrows(&mut self, picture: &mut opruga::draw::Picture, show: &Show) {
         let living = self.world.bodies();
         if living.len() > MOST_WITH_ARROWS {

@@ -1,15 +1,14 @@
-//! Bodies that have left every measure: long before their positions lose digits there is nothing to be seen of them.
+//! Bodies that have grown beyond all proportions: long before their positions lose digits, nothing can be seen of them.
 
 use super::Living;
 use crate::exploded::Exploded;
 use opruga::{AnyBody, AnyWorld};
 
-/// A body that is larger than this many times the scene has exploded [1]. A body that a person pulls, or that gas inflates, comes to
-/// a few times its size; one that is torn apart by a step that is too long grows by a factor with every substep, so that the bound
-/// tells when it is noticed and not whether.
+/// A body has exploded if it is larger than this multiple of the scene [1]. A body that the user pulls, or that gas inflates, reaches a few times its
+/// size. A body that is torn apart by too long a step grows by a factor in every substep, so the limit determines when this is detected, not whether.
 const LARGEST: f64 = 100.0;
 
-/// What the world calls a step that is too long, or a rule without a stable one.
+/// The world's codes for too long a step, or for an integrator without a stable one.
 const STEPS: [&str; 3] = ["step.unstable", "step.no_stable_step", "step.outgrown"];
 
 /// The longest side of the box around points [m]; 0 where there are none.
@@ -36,7 +35,7 @@ impl Living {
             if size <= LARGEST * self.size {
                 return false;
             }
-            // What came later may be larger than everything was at the start; what has no size cannot be measured.
+            // A later body may be larger than everything was at the start; a body of zero size cannot be measured.
             let at_rest = self.world.scene().body(*body).map_or_else(Vec::new, AnyBody::rest_positions);
             let at_rest = longest_side(at_rest.into_iter());
             let scene = self.size.max(at_rest);

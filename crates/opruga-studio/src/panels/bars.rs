@@ -1,4 +1,4 @@
-//! The bars above and below: tools, time, numbers.
+//! The bars above and below the scene: tools, time, numbers.
 
 use super::keeping::What;
 use crate::session::Request;
@@ -9,28 +9,28 @@ use egui::{Align, Layout, PopupCloseBehavior, Rect, RichText, Sense, Slider, Str
 use opruga::draw::ColourMap;
 use opruga::pictures::Quantity;
 
-/// What was chosen in the bar above.
+/// The choice in the upper bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chosen {
-    /// Nothing that the window itself does.
+    /// Nothing that concerns the window itself.
     Nothing,
-    /// The scenes.
+    /// Open the gallery.
     Gallery,
-    /// The plots.
+    /// Show the plots.
     Plots,
-    /// The properties, where the window is too narrow to show them always.
+    /// Show the properties, if the window is too narrow to show them permanently.
     Properties,
-    /// The shortcuts.
+    /// Show the shortcuts.
     Help,
-    /// The other language.
+    /// Switch the language.
     Language,
-    /// The other theme.
+    /// Switch the theme.
     Theme,
-    /// A file.
+    /// Save a file.
     Keep(What),
-    /// An address that holds the scene; on a page.
+    /// Copy an address that contains the scene; on a web page.
     Link,
-    /// A file to be opened; on a page, where a phone cannot drop one.
+    /// Open a file; on a web page, because files cannot be dropped on a phone.
     File,
 }
 
@@ -91,7 +91,7 @@ pub fn tools(ui: &mut Ui, shown: &Shown, words: Language, narrow: bool, asks: &m
     chosen
 }
 
-/// What a file is called.
+/// The name of a type of file.
 pub fn file_name(words: Language, what: What) -> &'static str {
     match what {
         What::Scene => words.save_scene(),
@@ -102,7 +102,7 @@ pub fn file_name(words: Language, what: What) -> &'static str {
     }
 }
 
-/// What opens other parts of the window, from left to right or from the right.
+/// The buttons of other parts of the window, from left to right or from the right.
 fn windows(ui: &mut Ui, words: Language, chosen: &mut Chosen, from_right: bool) {
     let theme = if ui.visuals().dark_mode { words.light() } else { words.dark() };
     let mut buttons = [
@@ -125,7 +125,7 @@ fn windows(ui: &mut Ui, words: Language, chosen: &mut Chosen, from_right: bool) 
     }
 }
 
-/// Play, step and the way through time.
+/// Play, step, and the time slider.
 pub fn time(ui: &mut Ui, shown: &Shown, words: Language, narrow: bool, asks: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         flow(ui, shown, words, asks);
@@ -141,7 +141,7 @@ pub fn time(ui: &mut Ui, shown: &Shown, words: Language, narrow: bool, asks: &mu
     }
 }
 
-/// What lets time pass.
+/// The controls that start and stop time.
 fn flow(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
     if ui.button(words.reset()).on_hover_text(format!("{}  (Home)", words.reset_hint())).clicked() {
         asks.push(Request::Reset);
@@ -170,7 +170,7 @@ fn speed(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
     }
 }
 
-/// The way through time.
+/// The time slider.
 fn course(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
     let time = ui.label(words.time());
     let mut frame = shown.frames;
@@ -193,7 +193,7 @@ fn course(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) 
     }
 }
 
-/// How far a recording reaches on the way through time: a line along it, a mark at its end, and that in seconds.
+/// Marks how far a recording reaches: a line along the time slider, a mark at its end, and the time in seconds.
 fn end_of_recording(ui: &Ui, shown: &Shown, words: Language, until: u64, slider: Rect) {
     // The handle of the slider stays within its ends.
     let inner = slider.shrink2(vec2(0.5 * slider.height().min(slider.width()) * 0.8, 0.0));
@@ -209,13 +209,13 @@ fn end_of_recording(ui: &Ui, shown: &Shown, words: Language, until: u64, slider:
     response.on_hover_text(format!("{end}\n{}", words.recording_hint()));
 }
 
-/// What the colours tell, and what else is drawn.
+/// The menu for the colours and the other things that are drawn.
 pub fn view_menu(ui: &mut Ui, shown: &Shown, words: Language, now: Show, asks: &mut Vec<Request>) {
     let mut show = now;
     let drawn = shown.has_drawings && now.own_colours;
     let name = if drawn { words.own_colours() } else { quantity_name(words, now.quantity) };
     ui.menu_button(format!("{}: {name}", words.colour()), |ui| {
-        // A drawing is seen as it was drawn, until another colouring is chosen for it.
+        // A drawing has its own colours until another colouring is chosen for it.
         if shown.has_drawings {
             let choice = ui.radio(drawn, words.own_colours()).on_hover_text(words.own_colours_hint());
             if choice.clicked() {
@@ -254,7 +254,7 @@ pub fn view_menu(ui: &mut Ui, shown: &Shown, words: Language, now: Show, asks: &
             }
         }
     });
-    // Several of them are chosen at once.
+    // Several of them can be chosen at once.
     let open = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     MenuButton::new(words.overlays()).config(open).ui(ui, |ui| {
         ui.checkbox(&mut show.springs, words.springs());

@@ -1,4 +1,4 @@
-//! The scenes that come with the program, with pictures of them that are drawn beside the interface while they are looked at.
+//! The scenes that come with the program, with pictures that are drawn in the background while the gallery is open.
 
 use super::thumbnails::{self, Pixels, SIZE};
 use crate::words::Language;
@@ -15,10 +15,10 @@ pub struct Gallery {
     pub open: bool,
     /// The models and integrators of their scenes.
     registries: Registries,
-    /// Where pictures are kept from one start to the next.
+    /// The folder in which pictures are stored between starts.
     #[cfg(not(target_arch = "wasm32"))]
     pub cache: Option<std::path::PathBuf>,
-    /// Those that were drawn; none where that cannot be.
+    /// The pictures drawn so far; none if a scene cannot be drawn.
     pictures: BTreeMap<&'static str, Option<TextureHandle>>,
     coming: Option<(&'static str, Receiver<Option<Pixels>>)>,
     /// The scenes whose cards are in sight.
@@ -32,23 +32,23 @@ impl core::fmt::Debug for Gallery {
 }
 
 impl Gallery {
-    /// Pictures of scenes with these models and integrators.
+    /// A gallery for scenes with these models and integrators.
     pub fn new(registries: Registries) -> Gallery {
         Gallery { registries, ..Gallery::default() }
     }
 
-    /// Draws its pictures anew: what they were drawn on is gone.
+    /// Draws its pictures again after their device was lost.
     #[cfg(target_arch = "wasm32")]
     pub fn forget_textures(&mut self) {
         (self.pictures, self.coming) = (BTreeMap::new(), None);
     }
 
-    /// Whether pictures are still to come.
+    /// Whether pictures are still being drawn.
     pub fn is_drawing(&self) -> bool {
         self.open && self.coming.is_some()
     }
 
-    /// Shows the window if it is open; the name of the scene that was chosen.
+    /// Shows the window if it is open; returns the name of the scene that was chosen.
     pub fn show(&mut self, ui: &Ui, words: Language, now: &str) -> Option<&'static str> {
         if !self.open {
             return None;
@@ -122,7 +122,7 @@ impl Gallery {
         .inner
     }
 
-    /// Takes a picture that is done, and orders the first one that is seen and not there yet: those that nobody looks at are not drawn.
+    /// Receives a finished picture, and orders the first visible one that is missing; pictures out of sight are not drawn.
     fn take(&mut self, ui: &Ui) {
         if let Some((name, coming)) = &self.coming {
             let done = match coming.try_recv() {
@@ -159,7 +159,7 @@ impl Gallery {
 mod tests {
     use super::*;
 
-    /// A window of this size in which the gallery is looked at until nothing is drawn any more.
+    /// A gallery in a window of this size, shown until all visible pictures are drawn.
     fn looked_at(size: [f32; 2]) -> Gallery {
         let (context, mut gallery) = (egui::Context::default(), Gallery { open: true, ..Gallery::default() });
         let begin = std::time::Instant::now();

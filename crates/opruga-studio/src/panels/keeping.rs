@@ -1,6 +1,5 @@
-//! What is kept: the scene, pictures, films and tables. Films and tables are computed again from the scene, beside the
-//! interface: what is kept is what the command line would make of it. A window writes files, a page hands them over as
-//! downloads.
+//! Saving: the scene, pictures, films and tables. Films and tables are computed again from the scene in the background, so they are what the command
+//! line would make of it. A desktop window writes files, a web page gives them as downloads.
 
 use crate::differences::right_of;
 use crate::document::Document;
@@ -18,15 +17,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::Receiver;
 
-/// Pictures of a film for a simulated second.
+/// The number of pictures of a film per simulated second.
 const RATE: f64 = 30.0;
-/// The most frames of an animation as GIF: it would be too large.
+/// The largest number of frames of a GIF animation, which would otherwise be too large.
 const MOST_GIF_FRAMES: usize = 300;
 
-/// A kind of file.
+/// A type of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum What {
-    /// The scene with all that was done.
+    /// The scene with everything that was done.
     Scene,
     /// The present moment.
     Picture,
@@ -38,7 +37,7 @@ pub enum What {
     Table,
 }
 
-/// How much of a file is made.
+/// The progress of a file.
 #[derive(Clone, Debug, Default)]
 pub struct Progress(Arc<AtomicU32>);
 
@@ -48,7 +47,7 @@ impl Progress {
         self.0.store(hundredths as u32, Ordering::Relaxed);
     }
 
-    /// In hundredths.
+    /// The progress in per cent.
     pub fn hundredths(&self) -> u32 {
         self.0.load(Ordering::Relaxed)
     }
@@ -62,12 +61,12 @@ struct Making {
     stage: Stage,
 }
 
-/// How far a file is.
+/// The stage of a file.
 #[derive(Debug)]
 enum Stage {
-    /// The simulation was asked for the scene.
+    /// The scene was requested from the simulation.
     Asked(Show, Receiver<Copied>),
-    /// It is made beside the interface, of the text of this mark.
+    /// The file is being made in the background, from the text with this fingerprint.
     Made(Receiver<Result<Report, Report>>, u64),
 }
 
@@ -76,9 +75,9 @@ enum Stage {
 pub struct Keeping {
     making: Vec<Making>,
     message: Option<(Report, Severity)>,
-    /// How many messages there have been.
+    /// The number of messages so far.
     message_count: u64,
-    /// The files of the scene that was saved last; none where that was refused.
+    /// The files of the scene that was saved last; none if that failed.
     saved: Option<Vec<String>>,
 }
 
@@ -88,7 +87,7 @@ impl Keeping {
         !self.making.is_empty()
     }
 
-    /// The files that are being made, and how far they are.
+    /// The files that are being made, and their progress.
     pub fn working(&self) -> impl Iterator<Item = (What, u32)> {
         self.making.iter().map(|making| (making.what, making.progress.hundredths()))
     }
@@ -98,18 +97,18 @@ impl Keeping {
         self.making.iter().any(|making| making.what == What::Scene)
     }
 
-    /// The files of the scene that was saved last; none where that was refused.
+    /// The files of the scene that was saved last; none if that failed.
     pub fn saved(&self) -> Option<&[String]> {
         self.saved.as_deref()
     }
 
-    /// Begins to make a file, beside those that are being made.
+    /// Begins to make a file, in addition to those that are being made.
     pub fn begin(&mut self, what: What, link: &Link, show: Show) {
         self.message = None;
         self.making.push(Making { what, progress: Progress::default(), stage: Stage::Asked(show, link.copy()) });
     }
 
-    /// Looks whether something is done.
+    /// Checks whether something is finished.
     pub fn poll(&mut self, link: &Link) {
         let (message, message_count, saved) = (&mut self.message, &mut self.message_count, &mut self.saved);
         self.making.retain_mut(|Making { what, progress, stage }| match stage {
@@ -142,32 +141,32 @@ impl Keeping {
         });
     }
 
-    /// What there is to say.
+    /// The present message.
     pub fn message(&self) -> Option<&(Report, Severity)> {
         self.message.as_ref()
     }
 
-    /// How many messages there have been: the number of the last one.
+    /// The number of messages so far, which is also the number of the last one.
     pub fn message_count(&self) -> u64 {
         self.message_count
     }
 
-    /// Reports something else instead.
+    /// Replaces the present message.
     pub fn report(&mut self, severity: Severity, report: Report) {
         self.message_count += 1;
         self.message = Some((report, severity));
     }
 
-    /// The message was read.
+    /// Removes the message after it was read.
     pub fn forget_message(&mut self) {
         self.message = None;
     }
 }
 
-/// Writes a file; where it is.
+/// Writes a file; returns a report with its path.
 ///
 /// # Errors
-/// What there is to say to the person.
+/// The message for the user.
 async fn write(what: What, copied: &Copied, show: Show, progress: &Progress) -> Result<Report, Report> {
     let ending = match what {
         What::Scene => "toml",
@@ -194,7 +193,7 @@ async fn write(what: What, copied: &Copied, show: Show, progress: &Progress) -> 
 /// The bytes of a file.
 ///
 /// # Errors
-/// What there is to say to the person.
+/// The message for the user.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn content(what: What, copied: &Copied, show: Show) -> Result<Vec<u8>, Report> {
     work::finish(made(what, copied, show, &Progress::default()))
@@ -208,7 +207,7 @@ async fn made(what: What, copied: &Copied, show: Show, progress: &Progress) -> R
     }
 }
 
-/// The engine of the scene, from its start.
+/// The engine of the scene at its start.
 fn again(copied: &Copied) -> Result<Box<dyn engine::Engine>, Report> {
     let document = Document::new(&copied.name, &copied.text)?;
     let setting = Setting { registries: copied.registries.clone(), ..Setting::default() };
@@ -225,7 +224,7 @@ async fn table(copied: &Copied, progress: &Progress) -> Result<Vec<u8>, Report> 
         engine.frame()?;
         rows.push(engine.row());
     }
-    // Bodies come and go: a column for everything that there ever was.
+    // Bodies are added and removed; the table has columns for everything that ever existed.
     let mut names: Vec<String> = Vec::new();
     for (name, _) in rows.iter().flatten() {
         if !names.contains(name) {
@@ -247,7 +246,7 @@ async fn film(what: What, copied: &Copied, show: Show, progress: &Progress) -> R
     if what != What::Picture {
         pictures.push(engine.moment(&show));
     }
-    // Computing the scene is one half, drawing it the other.
+    // Computing the scene counts as one half, drawing it as the other.
     for frame in 0..copied.frames {
         breathe().await;
         progress.set(frame, 2 * copied.frames);

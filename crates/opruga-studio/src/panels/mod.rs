@@ -1,4 +1,4 @@
-//! What stands around the scene.
+//! The panels around the scene.
 
 pub mod bars;
 pub mod gallery;

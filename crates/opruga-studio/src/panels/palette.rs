@@ -11,7 +11,7 @@ type Sample = (fn(Language) -> &'static str, &'static str, f64, &'static str);
 
 const GAS: &str = "{ kind = \"mass_spring\", stiffness = 1600.0, damping = 1.0 }, { kind = \"pressure\", nRT = 40.0 }, \
                    { kind = \"bending\", stiffness = 0.02 }";
-/// Without springs along the diagonals nothing would keep its cells from folding flat.
+/// Without springs along the diagonals, nothing would prevent its cells from folding flat.
 const JELLY: &str = "{ kind = \"mass_spring\", stiffness = 800.0, damping = 0.5, edges = \"shear\" }";
 const ROPE: &str = "{ kind = \"mass_spring\", stiffness = 800.0, damping = 0.5 }";
 const BALLOON: &str =
@@ -56,7 +56,7 @@ const SPACE: [Sample; 4] = [
     (Language::of_jelly, "{ kind = \"grid\", size = [0.6, 0.6, 0.6], cells = [5, 5, 5] }", 0.8, JELLY),
 ];
 
-/// The menu of shapes; they are set down at a point, or near it where there is no room.
+/// The menu of shapes; a chosen shape is placed at a point, or near it if there is no space.
 pub fn menu(ui: &mut Ui, shown: &Shown, words: Language, at: [f64; 3], asks: &mut Vec<Request>) {
     let samples: &[Sample] = if shown.dimension == 3 { &SPACE } else { &PLANE };
     ui.menu_button(words.add(), |ui| {
@@ -106,7 +106,7 @@ mod tests {
         }
     }
 
-    /// What a body encloses: of a closed outline or surface its area or volume, of an open surface its area, of a line its length.
+    /// The volume of a closed surface, the area of a closed outline or an open surface, or the length of a line.
     fn enclosed(body: &BodyPicture) -> f64 {
         let at = |node: u32| body.positions[node as usize];
         let cross = |a: [f64; 3], b: [f64; 3]| {
@@ -124,7 +124,7 @@ mod tests {
                 let part =
                     |corners: &[u32; 3]| (0..3).map(|d| at(corners[0])[d] * normal(*corners)[d]).sum::<f64>() / 6.0;
                 let volume = triangles.iter().map(part).sum::<f64>().abs();
-                // Of a flat sheet it is nearly nothing, wherever that lies.
+                // The volume of a flat sheet is nearly zero, wherever it is.
                 if body.label.starts_with("cloth") { area } else { volume }
             }
             _ => body.segments.iter().map(|[a, b]| size(minus(at(*a), at(*b)))).sum(),

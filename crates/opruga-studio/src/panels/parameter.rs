@@ -1,50 +1,49 @@
-//! One parameter: its slider, unit and sentence, made from what its model says of it.
+//! A parameter in the panel: its slider, unit and description, all made from the specification of its model.
 
 use crate::words::{Language, Part};
 use egui::{ComboBox, DragValue, Response, RichText, Slider, SliderClamping, Ui};
 use opruga::core::spec::{Allowed, Bound, Condition, Default as Unset, Field, Spec, Value, Values};
 use std::collections::BTreeMap;
 
-/// A field of a kind in the panel of a scene of so many dimensions, in a language.
+/// A field of a kind in the panel, with the dimension of the scene and the language.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldContext<'a> {
-    /// Where the interface finds it.
+    /// The path that identifies it in the interface.
     pub path: &'a str,
-    /// What its kind is a kind of.
+    /// What its kind belongs to.
     pub part: Part,
     /// Its kind.
     pub kind: &'a str,
-    /// What it says of itself.
+    /// Its specification.
     pub field: &'a Field,
     /// The dimension of the scene.
     pub dimension: usize,
     /// The language of the interface.
     pub words: Language,
-    /// The values of all fields of the kind: some have no say among the others.
+    /// The values of all fields of the kind: some fields have no effect with others.
     pub values: Option<&'a Values>,
-    /// What the kind says of itself, where values can be given no longer.
+    /// The specification of the kind, if fields can also be removed.
     pub whole: Option<&'static Spec>,
 }
 
-/// What is asked for where a parameter is changed.
+/// The request after a parameter was changed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
     /// Another value of the field.
     Value(Value),
-    /// Other values of its kind: the field takes the place of another one, or is given no longer.
+    /// Other values of its kind: the field replaces another one, or is removed.
     Whole(Values),
 }
 
-/// What is being set: while a slider is grabbed it shows what the hand wants and not what came back.
+/// The values that are being set: a slider that is being dragged shows the value of the pointer, and not the one reported by the simulation.
 #[derive(Debug, Default)]
 pub struct Hand {
     grabbed: Option<(String, Value)>,
-    /// The upper ends of open sliders, so that they do not run away from the hand.
+    /// The upper ends of sliders without a limit, so that they do not change during a drag.
     ends: BTreeMap<String, f64>,
 }
 
-/// The values with which a kind can begin: its defaults, what must be given, and of fields of which exactly one is given
-/// the first.
+/// The initial values of a kind: its defaults, required fields, and the first of fields of which exactly one must be given.
 pub fn begin(spec: &'static Spec, dimension: usize) -> Values {
     let mut values = Values::defaults(spec, dimension);
     let chosen = |field: &&Field| match field.default {
@@ -54,14 +53,14 @@ pub fn begin(spec: &'static Spec, dimension: usize) -> Values {
     };
     for field in spec.fields.iter().filter(chosen) {
         if let Some(value) = starting(field) {
-            // A starting value is an allowed one: a test goes through all of them.
+            // Starting values are allowed ones: a test checks all of them.
             let _ = values.set(spec, field.name, value, dimension);
         }
     }
     values
 }
 
-/// The same values without those of some fields, which are silent or have their defaults again.
+/// The same values without those of some fields, which are removed or get their defaults again.
 fn without(spec: &'static Spec, values: &Values, names: &[&str], dimension: usize) -> Values {
     let mut rest = Values::defaults(spec, dimension);
     for (name, value) in values.iter().filter(|(name, _)| !names.contains(name)) {
@@ -71,16 +70,16 @@ fn without(spec: &'static Spec, values: &Values, names: &[&str], dimension: usiz
     rest
 }
 
-/// Fields that are given together with a field or not at all.
+/// Fields that must be given together with a field.
 fn companions(spec: &Spec, name: &str) -> &'static [&'static str] {
     spec.fields.iter().find(|field| field.name == name).map_or(&[], |field| field.companions)
 }
 
-/// The values with this field instead of the other ones of which exactly one is given; none where no value is known with which it
-/// could begin, or where it is no such field.
+/// The values with this field instead of the other one of the choice; none if no starting value is known for it, or if it does not belong to a
+/// choice.
 pub fn instead(spec: &'static Spec, values: &Values, field: &Field, dimension: usize) -> Option<Values> {
     let Unset::OneOf(set) = field.default else { return None };
-    // Words that only another field of the choice asks for go with it.
+    // Values that only another field of the choice requires are removed with it.
     let asked_for = |name: &&str| spec.fields.iter().find(|f| f.name == *name).into_iter().flat_map(words_of);
     let words = set.iter().flat_map(asked_for).map(|(name, _)| name);
     let companions = set.iter().flat_map(|name| companions(spec, name)).copied();
@@ -97,7 +96,7 @@ pub fn instead(spec: &'static Spec, values: &Values, field: &Field, dimension: u
     Some(new)
 }
 
-/// The words of other fields without which a field does not apply.
+/// The values of other fields that a field requires.
 fn words_of(field: &Field) -> impl Iterator<Item = (&'static str, &'static str)> {
     field.applies.iter().filter_map(|condition| match condition {
         Condition::Word(name, words) => words.first().map(|word| (*name, *word)),
@@ -105,7 +104,7 @@ fn words_of(field: &Field) -> impl Iterator<Item = (&'static str, &'static str)>
     })
 }
 
-/// A starting value for a field that the scene leaves silent.
+/// A starting value for a field that the scene does not give.
 pub fn starting(field: &Field) -> Option<Value> {
     let known = match field.start {
         Some(start) => start,
@@ -131,7 +130,7 @@ pub fn starting(field: &Field) -> Option<Value> {
     Some(Value::Number(known))
 }
 
-/// A usual size of a quantity.
+/// A typical magnitude of a quantity.
 fn usual(unit: &str) -> f64 {
     match unit {
         "Pa" => 1e4,
@@ -142,7 +141,7 @@ fn usual(unit: &str) -> f64 {
     }
 }
 
-/// Shows a parameter; what is asked for if it was changed. Values that no slider can hold are shown and not changed.
+/// Shows a parameter; returns the request if it was changed. Values that no slider can represent are shown but cannot be changed.
 pub fn show(ui: &mut Ui, hand: &mut Hand, context: FieldContext<'_>, now: Option<&Value>) -> Option<Change> {
     let FieldContext { path, part, kind, field, words, .. } = context;
     let grabbed =
@@ -156,7 +155,7 @@ pub fn show(ui: &mut Ui, hand: &mut Hand, context: FieldContext<'_>, now: Option
     if let Some(condition) = silent {
         about = format!("{about}\n{}", words.effect_only(part, kind, condition));
     }
-    // What was added can be taken away again.
+    // A field that was added can be removed again.
     let removed = |ui: &mut Ui| {
         let (spec, values) = (context.whole?, context.values?);
         let optional = field.default == Unset::Absent && companion_is_silent(spec, values, field.name);
@@ -185,23 +184,23 @@ pub fn show(ui: &mut Ui, hand: &mut Hand, context: FieldContext<'_>, now: Option
             .inner
         }
     };
-    // What would do nothing is seen, and why, but cannot be pressed.
+    // A control without effect is shown with the reason, but is disabled.
     ui.push_id(path, |ui| ui.add_enabled_ui(silent.is_none(), shown).inner).inner
 }
 
-/// Explains a control, whether it can be pressed or not.
+/// Explains a control, whether it is enabled or not.
 fn explain(response: Response, about: &str) -> Response {
     response.on_hover_text(about).on_disabled_hover_text(about)
 }
 
-/// Whether nothing that is given needs this field beside it.
+/// Whether no given field requires this field.
 fn companion_is_silent(spec: &Spec, values: &Values, name: &str) -> bool {
     let needs = |field: &Field| field.companions.contains(&name) && values.get(field.name).is_some();
     !spec.fields.iter().any(needs)
 }
 
-/// A field about which the scene is silent: a button that gives it a value, instead of another one where only one of them is
-/// given, or its name where a scene alone can.
+/// A field that the scene does not give: a button that gives it a value, possibly instead of another field, or its name if only a scene file can give
+/// it.
 fn absent(ui: &mut Ui, context: FieldContext<'_>, name: &str, unit: &str, about: &str) -> Option<Change> {
     let FieldContext { part, kind, field, words, .. } = context;
     let start = starting(field).map(Change::Value);
@@ -235,7 +234,7 @@ fn number(
     whole: bool,
 ) -> Option<f64> {
     let (low, high, open) = ends(field, now, whole);
-    // An open end stays where it was when the slider was first seen, unless the value has gone beyond it.
+    // An upper end without a limit stays as it was when the slider was first shown, unless the value has exceeded it.
     let high = if open {
         let end = hand.ends.entry(path.to_string()).or_insert(high);
         if now > *end {
@@ -247,7 +246,7 @@ fn number(
     };
     let mut x = now;
     let mut slider = Slider::new(&mut x, low..=high).clamping(SliderClamping::Never).max_decimals(6);
-    // Of a number that is typed the last digit counts, not every one on the way.
+    // For a number that is typed, only the final value counts.
     slider = slider.update_while_editing(false);
     if open || whole && high > 1000.0 {
         slider = slider.logarithmic(true).smallest_positive(if whole { 1.0 } else { high * 1e-6 });
@@ -268,13 +267,13 @@ fn number(
     changed.then_some(x)
 }
 
-/// The end of sliders of whole numbers that know none before it.
+/// The upper end of sliders for whole numbers whose range extends beyond it.
 const MOST_WHOLE: i64 = 100_000;
 
-/// Bounds beyond this are no ends of sliders.
+/// Limits beyond this are not used as ends of sliders.
 const FAR: f64 = 1e5;
 
-/// The ends of a slider, and whether the upper one is open.
+/// The ends of a slider, and whether the upper one may grow.
 fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
     let default = match field.default {
         Unset::Number(x) => x,
@@ -285,7 +284,7 @@ fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
     let wide = 10f64.powf((20.0 * size).log10().ceil());
     match field.range {
         Allowed::Number { least, greatest } => {
-            // Far ends say what has a meaning, not what is usual.
+            // Distant limits give the meaningful range, not the usual one.
             let low = match least {
                 Bound::Closed(x) | Bound::Open(x) if x >= -FAR => x,
                 _ if whole => 0.0,
@@ -297,7 +296,7 @@ fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
                 _ => (low, wide, true),
             }
         }
-        // Numbers of vertices and the like: as many as can be worked with.
+        // For numbers of vertices and the like: as many as are practical.
         Allowed::Integer { least, greatest } if greatest >= MOST_WHOLE => {
             (least as f64, (MOST_WHOLE as f64).max(wide), false)
         }
@@ -306,7 +305,7 @@ fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
     }
 }
 
-/// A value that is no number.
+/// Shows a value that is not a number.
 fn other(ui: &mut Ui, words: Language, name: egui::Id, range: &Allowed, now: &Value) -> Option<Value> {
     match (range, now) {
         (Allowed::Boolean, Value::Boolean(flag)) => {
@@ -357,7 +356,7 @@ mod tests {
         assert!(low == 3.0 && (200.0..1e6).contains(&high));
     }
 
-    /// A body of every sort: an outline with gas in it, one that has cells, and the same of space.
+    /// A body of every type: an outline with gas in it, one with cells, and the same in space.
     const BODIES: [(usize, &str); 4] = [
         (2, "kind = \"ring\", radius = 0.5, vertices = 16, center = [0.0, 2.0]"),
         (2, "kind = \"grid\", corner = [0.0, 1.0], size = [1.0, 1.0], cells = [2, 2]"),
@@ -373,7 +372,7 @@ mod tests {
         )
     }
 
-    /// Why a body of this scene cannot have these models; none where it can.
+    /// Why a body of this scene cannot have these models; none if it can.
     fn refused(text: &str, models: Vec<Values>) -> Option<String> {
         use crate::session::{Request, Session};
         let opened = Session::open("it", text, opruga::io::Files::default(), opruga::Options::default());

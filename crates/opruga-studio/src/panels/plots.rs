@@ -1,4 +1,4 @@
-//! Curves of the course of things: energy, gas, momentum, computing time.
+//! Curves over time: energy, gas, momentum, computing time.
 
 use crate::samples::Sample;
 use crate::shown::Shown;
@@ -8,10 +8,10 @@ use egui_plot::{AxisHints, GridInput, GridMark, Line, Plot, PlotPoints, VLine};
 use opruga::draw::{OKABE_ITO, format_tick, format_value, nice_ticks};
 use std::sync::PoisonError;
 
-/// A curve: its points in runs, between which nothing is known.
+/// A curve: its points in runs, between which the values are unknown.
 type Curve = Vec<Vec<[f64; 2]>>;
 
-/// Shows the curves side by side; those of gas of the selected body.
+/// Shows the curves side by side; those of gas belong to the selected body.
 pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>, available: egui::Vec2) {
     let samples = shown.samples.read().unwrap_or_else(PoisonError::into_inner);
     let selected = shown.bodies.iter().find(|body| selected == Some(body.name.as_str()));
@@ -20,7 +20,7 @@ pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>,
     let volume = shown.beside.as_ref().is_some_and(|beside| beside.volume.is_some());
     let count = 3 + usize::from(!readings.is_empty()) + 2 * usize::from(beside) + usize::from(volume);
     let size = egui::vec2((available.x / count as f32 - 10.0).max(180.0), available.y);
-    // Where one has gone back, the curves go on behind the moment that is seen.
+    // After going back in time, the curves extend beyond the displayed moment.
     let now = (shown.frames < shown.latest).then_some(shown.time);
     let curve = |of: &dyn Fn(&Sample) -> Option<f64>| -> Curve {
         let point = |sample: &Sample| Some([sample.time, of(sample).filter(|x| x.is_finite())?]);
@@ -54,7 +54,7 @@ pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>,
         let lines = energies.into_iter().zip(0..).map(|(name, k)| (name, curve(&|s| Some(s.energy[k])))).collect();
         plot(ui, "energy", words.energy(), size, now, lines);
         if let Some(body) = selected.filter(|_| !readings.is_empty()) {
-            // Volume and pressure differ in size: each is shown as a share of its largest value.
+            // Volume and pressure differ in magnitude: each is shown as a fraction of its largest value.
             let share = |name: &str| {
                 let value = |sample: &Sample| {
                     sample.readings_of(body.number).iter().find(|(other, _)| *other == name).map(|(_, x)| *x)
@@ -75,20 +75,19 @@ pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>,
     });
 }
 
-/// About so many round numbers on an axis. Their distance is that of all of them, so that all are seen alike.
+/// About `count` round numbers on an axis. All have the spacing of the grid as a whole, so that they look alike.
 fn marks(input: GridInput, count: usize) -> Vec<GridMark> {
     let ticks = nice_ticks(input.bounds.0, input.bounds.1, count);
     let step_size = ticks.windows(2).map(|pair| pair[1] - pair[0]).fold(input.bounds.1 - input.bounds.0, f64::min);
     ticks.into_iter().map(|value| GridMark { value, step_size }).collect()
 }
 
-/// The figure of a mark, with as many digits as it takes to tell it from its neighbours.
+/// The number at a mark, with as many digits as needed to distinguish it from its neighbours.
 fn figure(mark: &GridMark) -> String {
     if mark.step_size > 0.0 { format_tick(mark.value, mark.step_size) } else { format_value(mark.value) }
 }
 
-/// A curve as so many columns of a screen show it: of those points that share a column the first, the lowest, the highest and the
-/// last.
+/// A curve thinned for a number of screen columns: of the points in one column it keeps the first, the lowest, the highest and the last.
 fn thinned(points: Vec<[f64; 2]>, columns: usize) -> Vec<[f64; 2]> {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return points };
     if points.len() <= 4 * columns || last[0] <= first[0] {
@@ -108,7 +107,7 @@ fn thinned(points: Vec<[f64; 2]>, columns: usize) -> Vec<[f64; 2]> {
     kept
 }
 
-/// One field of curves; a line where `now` is.
+/// Shows one plot, with a vertical line at `now`.
 fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, now: Option<f64>, lines: Vec<(&str, Curve)>) {
     let dark = ui.visuals().dark_mode;
     let ink = |number: usize| {
@@ -119,7 +118,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, now: Option<f64>, 
     ui.vertical(|ui| {
         let top = ui.cursor().top();
         ui.set_width(size.x);
-        // One line: a second one would push the curve down. The pointer on it shows all of it.
+        // One line: a second one would push the curve down. Hovering over it shows the whole text.
         ui.add(egui::Label::new(RichText::new(title).size(12.0).strong()).truncate());
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = egui::vec2(8.0, 0.0);
@@ -127,7 +126,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, now: Option<f64>, 
                 ui.label(RichText::new(*name).size(11.0).color(ink(number)));
             }
         });
-        // Short words, which may stand close to one another.
+        // Short labels, which may be close to one another.
         let seconds = AxisHints::new_x().label_spacing(24.0..=32.0);
         let seconds = seconds.formatter(|mark, _| format!("{} s", figure(&mark)));
         let plot = Plot::new(id)
@@ -143,7 +142,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, now: Option<f64>, 
             .y_axis_formatter(|mark, _| figure(&mark))
             .y_axis_min_width(30.0);
         let weak = ui.visuals().weak_text_color();
-        // What the screen cannot tell apart is not drawn: a minute has thousands of moments.
+        // Points that the screen cannot distinguish are not drawn: a minute has thousands of moments.
         let ends = lines.iter().flat_map(|(_, curve)| curve).flat_map(|run| run.first().into_iter().chain(run.last()));
         let (first, last) = ends.fold((f64::MAX, f64::MIN), |(a, b), point| (a.min(point[0]), b.max(point[0])));
         let columns = |run: &[[f64; 2]]| {
@@ -192,7 +191,7 @@ mod tests {
         assert_eq!((kept[0], kept[kept.len() - 1]), (curve[0], curve[2999]));
         assert!(kept.contains(&curve[1234]) && kept.contains(&curve[2345]));
         assert!(kept.windows(2).all(|pair| pair[0][0] < pair[1][0]), "in the order of time");
-        // Few points, and those of one moment, stay as they are.
+        // Curves with few points, and points of the same moment, stay as they are.
         assert_eq!(thinned(curve[..700].to_vec(), 180).len(), 700);
         assert_eq!(thinned(vec![[1.0, 2.0]; 900], 180).len(), 900);
         assert!(thinned(Vec::new(), 180).is_empty());

@@ -1,5 +1,5 @@
-//! The panel at the side: the body that was pressed, the world, the obstacles. All of it is made from what models,
-//! integrators, shapes and obstacles say of themselves, so that those that come later appear in it too.
+//! The side panel: the selected body, the world, the obstacles. All of it is made from the specifications of models, integrators, shapes and
+//! obstacles, so that new ones appear without further work.
 
 use super::parameter::{self, Change, FieldContext, Hand};
 use crate::session::{Edit, Placed, Request};
@@ -10,20 +10,20 @@ use opruga::core::spec::{Allowed, Spec, Value, Values};
 use opruga::io::Catalogue;
 use opruga::world::schema::MOST_SUBSTEPS;
 
-/// The largest gravity of the arrow [m/s²].
+/// The largest gravity of the arrow control [m/s²].
 const MOST_GRAVITY: f64 = 20.0;
 
-/// The panel and what the hand holds in it.
+/// The panel with the state of its controls.
 #[derive(Debug)]
 pub struct Properties {
-    /// What it offers.
+    /// The specifications that it offers.
     catalogue: Catalogue,
     hand: Hand,
-    /// A field of a shape that waits until the hand lets go.
+    /// A field of a shape that is set when the pointer is released.
     pending: Option<(String, &'static str, Value)>,
-    /// Whether the hash of the state is looked at.
+    /// Whether the hash of the state is displayed.
     pub hash: bool,
-    /// The substeps that the hand holds.
+    /// The number of substeps while it is being dragged.
     substeps: Option<u32>,
 }
 
@@ -43,7 +43,7 @@ impl Kinds {
 }
 
 impl Properties {
-    /// A panel that offers what a catalogue lists.
+    /// A panel that offers the contents of a catalogue.
     pub fn new(catalogue: Catalogue) -> Properties {
         Properties { catalogue, hand: Hand::default(), pending: None, hash: false, substeps: None }
     }
@@ -106,7 +106,7 @@ impl Properties {
         });
     }
 
-    /// Shows a parameter; `whole` is what to ask for where its kind gets other values.
+    /// Shows a parameter; `whole` makes the request if its kind gets other values.
     fn set(
         &mut self,
         ui: &mut Ui,
@@ -127,7 +127,7 @@ impl Properties {
             ui.label(RichText::new(&body.title).strong().size(14.0));
             ui.label(RichText::new(format!("{} {}", body.nodes, words.nodes())).weak());
         });
-        // Those of single chambers are in the table and in the colours.
+        // Those of single chambers are shown in the table and by the colours.
         let readings: Vec<_> = body.readings.iter().filter(|(name, _)| !name.contains('.')).take(4).collect();
         let half = 0.5 * ui.available_width() - 10.0;
         for two in readings.chunks(2) {
@@ -136,13 +136,13 @@ impl Properties {
                 for (name, x) in two {
                     let unit = match &**name {
                         "pressure" => " Pa",
-                        // As the plots have it: what a body of the plane encloses is an area.
+                        // As in the plots: a body of the plane encloses an area.
                         "volume" if kinds.dimension == 3 => " m³",
                         "volume" => " m²",
                         "nRT" => " J",
                         _ => "",
                     };
-                    // Each in a room of its own: what is below stays where it is, however many figures there are.
+                    // Each has a fixed height, so that the items below stay where they are, however many numbers there are.
                     let text = format!("{} {}{unit}", words.reading(name), opruga::draw::format_value(*x));
                     let layout = egui::Layout::left_to_right(egui::Align::Center);
                     ui.allocate_ui_with_layout(Vec2::new(half, 14.0), layout, |ui| {
@@ -215,7 +215,7 @@ impl Properties {
         });
     }
 
-    /// Another model instead of this one, or none.
+    /// Chooses another model instead of this one, or none.
     fn another_model(
         &mut self,
         ui: &mut Ui,
@@ -315,7 +315,7 @@ impl Properties {
         let title = RichText::new(format!("{}: {}", words.shape(), words.kind(Part::Shape, spec.kind))).strong();
         CollapsingHeader::new(title).id_salt(("shape", &body.title)).default_open(false).show(ui, |ui| {
             for field in spec.fields.iter().filter(|f| f.name != "center" && f.name != "corner") {
-                // It is another body with every value, and the same one for the person.
+                // Every value makes another body, but for the user it is the same one.
                 let path = &format!("shape.{}.{}", body.title, field.name);
                 let now = shape.get(field.name);
                 let context = FieldContext {
@@ -338,7 +338,7 @@ impl Properties {
                     None => continue,
                 };
                 if slider && ui.input(|i| i.pointer.any_down()) {
-                    // A new mesh for every step of the hand would be too much: the last one counts.
+                    // A new mesh for every movement of the pointer would be too much, so only the last value counts.
                     self.pending = Some((body.name.clone(), field.name, value));
                 } else {
                     asks.push(Request::Edit(Edit::Shape(body.name.clone(), field.name, value)));
@@ -352,7 +352,7 @@ impl Properties {
         }
     }
 
-    /// Whether and how bodies touch one another.
+    /// Whether and how bodies come into contact.
     fn contact(&mut self, ui: &mut Ui, shown: &Shown, dimension: usize, words: Language, asks: &mut Vec<Request>) {
         let mut touch = shown.contact.is_some();
         if ui.checkbox(&mut touch, words.bodies_touch()).on_hover_text(words.bodies_touch_hint()).changed() {
@@ -360,7 +360,7 @@ impl Properties {
         }
         let Some(values) = &shown.contact else { return };
         let spec = values.spec();
-        // A choice of one word is none.
+        // A choice of one word is not shown.
         for field in spec.fields.iter().filter(|field| !matches!(field.range, Allowed::Choice([_]))) {
             let path = &format!("contact.{}", field.name);
             let row = FieldContext {
@@ -407,21 +407,21 @@ impl Properties {
         self.integrator(ui, words, own, None, kinds, asks);
         let label = ui.label(words.substeps()).on_hover_text(words.substeps_hint());
         let mut substeps = self.substeps.unwrap_or(shown.substeps);
-        // A slider that ends before its value would set that to its end.
+        // A slider whose range ends before its value would set the value to its end.
         let most = (4 * shown.substeps.max(16)).next_power_of_two().min(MOST_SUBSTEPS);
         let response = ui.add(Slider::new(&mut substeps, 1..=most).logarithmic(true)).labelled_by(label.id);
-        // Where the hand lets go counts, and not what it has passed on the way.
+        // Only the value at release counts, not those in between.
         self.substeps = response.dragged().then_some(substeps);
         if (response.changed() || response.drag_stopped()) && !response.dragged() && substeps != shown.substeps {
             asks.push(Request::Set("time.substeps".into(), Value::Integer(i64::from(substeps))));
         }
-        // The row is there in any case: what is below stays where it is.
+        // The row always exists, so that the items below stay where they are.
         let limit = (shown.stable_step.is_finite() && shown.stable_step > 0.0).then_some(shown.stable_step);
         let least_text = limit.map_or("–".into(), |limit| (shown.frame / limit).ceil().max(1.0).to_string());
         ui.label(RichText::new(format!("{} {least_text}", words.stable())).weak().size(11.5));
         if let Some(limit) = limit {
             let least = (shown.frame / limit).ceil().max(1.0);
-            // Where the limit lies on the rail, which has small numbers as wide as large ones.
+            // The position of the limit on the slider, which has a logarithmic scale.
             let rail = response.rect.left() + 6.0 + 156.0 * (least.ln() / f64::from(most).ln()).clamp(0.0, 1.0) as f32;
             let y = response.rect.center().y;
             let mark = [Pos2::new(rail, y - 8.0), Pos2::new(rail, y + 8.0)];
@@ -442,12 +442,12 @@ impl Properties {
     }
 }
 
-/// Gives a control without a label beside it a name for those who cannot see it.
+/// Gives a control without a label a name for screen readers.
 fn name(response: &egui::Response, text: &str) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, text));
 }
 
-/// Gravity as an arrow whose end can be dragged; the new gravity if it was.
+/// Gravity as an arrow with a draggable tip; returns the new gravity if it was changed.
 fn gravity_arrow(ui: &mut Ui, now: [f64; 3], y_down: bool, words: Language) -> Option<[f64; 3]> {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(84.0), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, words.gravity()));
@@ -465,7 +465,7 @@ fn gravity_arrow(ui: &mut Ui, now: [f64; 3], y_down: bool, words: Language) -> O
     let at = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())?;
     let from = (at - rect.center()) / radius;
     let from = if from.length() > 1.0 { from.normalized() } else { from };
-    // Near the middle and near the earth's own gravity the end of the arrow holds on.
+    // The tip of the arrow snaps to zero and to the gravity of the earth.
     let mut gravity = [f64::from(from.x) * MOST_GRAVITY, sign * f64::from(from.y) * MOST_GRAVITY];
     for x in &mut gravity {
         *x = if x.abs() < 0.8 { 0.0 } else { (*x * 10.0).round() / 10.0 };

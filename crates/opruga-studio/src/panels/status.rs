@@ -1,5 +1,4 @@
-//! The line on top: the numbers of the machine. Every number has the room of its longest form, so that nothing below moves while they
-//! change.
+//! The status line: performance and other numbers. Every number has the space of its longest form, so that nothing below moves while they change.
 
 use super::bars::file_name;
 use super::keeping::What;
@@ -10,17 +9,17 @@ use egui::{Align, Color32, FontId, Label, Layout, Popup, RichText, ScrollArea, S
 use opruga::Warning;
 use std::time::Duration;
 
-/// The size of what is written in the line [points].
+/// The font size of the line [points].
 const SIZE: f32 = 11.5;
-/// The height of a row, and the room between two numbers [points].
+/// The height of a row, and the space between two numbers [points].
 const TALL: f32 = 16.0;
 const GAP: f32 = 14.0;
-/// The least room for what is said behind the numbers [points].
+/// The least space for the text after the numbers [points].
 const REST: f32 = 100.0;
-/// The width from which on there is room for everything in a row, in every language [points].
+/// The width from which everything fits into one row, in every language [points].
 const BROAD: f32 = 1000.0;
 
-/// A number: what is written, its longest usual form, whether it asks for attention, and what it is.
+/// A number: its text, its longest usual form, whether it needs attention, and its explanation.
 struct Number {
     text: String,
     longest: String,
@@ -28,8 +27,8 @@ struct Number {
     about: String,
 }
 
-/// The line on top: the numbers of the machine, and what draws. The rate of pictures where they follow one another, and for how long a
-/// frame has been computed that is not done, with the share of a preparation. The room that it takes depends on the width of the window alone.
+/// Shows the status line: the numbers, and the renderer. It includes the rate of pictures, if they are consecutive, and how long the present frame
+/// has been computed, with the progress of its preparation. Its height depends only on the width of the window.
 pub fn status(
     ui: &mut Ui,
     shown: &Shown,
@@ -39,7 +38,7 @@ pub fn status(
     drawn_by: Option<&[String; 2]>,
     mut making: impl Iterator<Item = (What, u32)>,
 ) {
-    // Where a row more would be needed for it, by how much it is slower is told where the pointer is.
+    // If another row would be needed for the slowdown, it is shown only on hovering.
     let numbers = numbers(shown, words, rate, narrow || ui.available_width() < BROAD);
     let font = FontId::proportional(SIZE);
     let wide: Vec<f32> = numbers
@@ -57,7 +56,7 @@ pub fn status(
                 let layout = Layout::left_to_right(Align::Center);
                 ui.allocate_ui_with_layout(vec2(wide[number], TALL), layout, |ui| {
                     ui.set_min_size(vec2(wide[number], TALL));
-                    // The figures behind the first are those of the frame before.
+                    // The numbers after the first belong to the previous frame.
                     if busy.is_some() && number > 0 {
                         ui.disable();
                     }
@@ -84,7 +83,7 @@ pub fn status(
                     notes.push((small(text).color(theme::attention(ui.visuals())), String::new()));
                 }
                 for (what, hundredths) in making.by_ref() {
-                    // Where there is little room, the name is cut.
+                    // If there is little space, the name is cut.
                     let text = small(format!("{hundredths} % {}", file_name(words, what)));
                     notes.push((text.strong(), words.working().into()));
                 }
@@ -106,7 +105,7 @@ pub fn status(
     }
 }
 
-/// The numbers that are always there.
+/// The numbers that are always shown.
 fn numbers(shown: &Shown, words: Language, rate: Option<f64>, narrow: bool) -> Vec<Number> {
     let nodes: usize = shown.bodies.iter().map(|body| body.nodes).sum();
     let cost = shown.pace.frame_cost;
@@ -135,7 +134,7 @@ fn numbers(shown: &Shown, words: Language, rate: Option<f64>, narrow: bool) -> V
             "",
         ),
         number(format!("{}: {margin}", words.margin()), format!("{}: 000 %", words.margin()), words.substeps_hint()),
-        // What has the longest form stands last.
+        // The number with the longest form is last.
         Number {
             attention: slow,
             ..number(
@@ -147,7 +146,7 @@ fn numbers(shown: &Shown, words: Language, rate: Option<f64>, narrow: bool) -> V
     ]
 }
 
-/// Which numbers of these widths stand in which row; the last row has room behind them.
+/// Distributes numbers of these widths over rows; the last row has space after them.
 fn rows(wide: &[f32], available: f32) -> Vec<core::ops::Range<usize>> {
     let (mut rows, mut first, mut used) = (Vec::new(), 0, 0.0);
     for (index, wide) in wide.iter().enumerate() {
@@ -164,7 +163,7 @@ fn rows(wide: &[f32], available: f32) -> Vec<core::ops::Range<usize>> {
     rows
 }
 
-/// The beginning of the first warning, and how many more there are; pressed, it shows all of them.
+/// Shows the beginning of the first warning, and the number of the others; a click shows all of them.
 fn warnings(ui: &mut Ui, shown: &Shown, words: Language) {
     let warnings = of_both(shown);
     let Some(&(right, first)) = warnings.first() else { return };
@@ -191,7 +190,7 @@ fn warnings(ui: &mut Ui, shown: &Shown, words: Language) {
     }
 }
 
-/// The warnings, and behind them those of the scene on the right that are its own; whether they are.
+/// The warnings, followed by those that only the right scene has; for each, whether it is one of these.
 fn of_both(shown: &Shown) -> Vec<(bool, &Warning)> {
     let own =
         |warning: &&Warning| !shown.warnings.iter().any(|w| (&w.code, &w.message) == (&warning.code, &warning.message));
@@ -199,7 +198,7 @@ fn of_both(shown: &Shown) -> Vec<(bool, &Warning)> {
     shown.warnings.iter().map(|warning| (false, warning)).chain(right.map(|warning| (true, warning))).collect()
 }
 
-/// The step over the largest stable one, of two scenes in that which is nearer to its limit; none where nothing limits it.
+/// The step divided by the largest stable one; of two scenes, the larger ratio; none if there is no limit.
 fn margin(shown: &Shown) -> Option<f64> {
     let limited = shown.stable_step.is_finite() && shown.stable_step > 0.0;
     let own = limited.then(|| shown.frame / f64::from(shown.substeps.max(1)) / shown.stable_step);
@@ -207,20 +206,20 @@ fn margin(shown: &Shown) -> Option<f64> {
     own.into_iter().chain(of_right).max_by(f64::total_cmp)
 }
 
-/// The beginning of a sentence, as far as the line has room for it: what comes before its first aside, in whole words.
+/// The beginning of a sentence up to its first aside, as far as it fits, in whole words.
 fn beginning(sentence: &str) -> String {
     const MOST: usize = 60;
     let whole = sentence.split_whitespace().collect::<Vec<_>>().join(" ");
     let aside = [" (", "; "].into_iter().filter_map(|mark| whole.find(mark)).min();
     let first = &whole[..aside.unwrap_or(whole.len())];
     let limit = first.char_indices().nth(MOST).map_or(first.len(), |(end, _)| end);
-    // A word that is longer by itself is cut.
+    // A single word that is too long is cut.
     let end = if limit < first.len() { first[..limit].rfind(' ').unwrap_or(limit) } else { limit };
     let cut = first[..end].trim_end_matches([',', ':']);
     if end < whole.len() { format!("{cut} …") } else { whole }
 }
 
-/// A count in six letters at most: from a million on in millions (M), from a thousand of them on in thousands of millions (G).
+/// A count with at most six characters: from a million in millions (M), from a thousand million in thousand millions (G).
 fn short(count: f64) -> String {
     if count < 999_999.5 {
         return format!("{count:.0}");

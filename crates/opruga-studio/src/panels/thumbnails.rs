@@ -1,5 +1,5 @@
-//! Small pictures of the scenes that come with the program. A window keeps them in the folder for what can be made again, by a mark of
-//! what they are drawn from, so that they need not be drawn at every start.
+//! Small pictures of the scenes that come with the program. A desktop window stores them in the cache folder, with a fingerprint of their sources, so
+//! that they need not be drawn at every start.
 
 use crate::work;
 use opruga::draw::{View, draw_scene};
@@ -9,13 +9,13 @@ use opruga::{AnyWorld, Options, Registries, catalogue_of};
 
 /// The size of a picture in pixels.
 pub(super) const SIZE: [u32; 2] = [256, 160];
-/// Nodes times substeps up to which a scene is run for its picture.
+/// The largest product of nodes and substeps for which a scene is run for its picture.
 const WORK: u64 = 96_000_000;
 
 /// The pixels of a picture: red, green, blue and opacity.
 pub(super) type Pixels = Vec<u8>;
 
-/// A picture of a scene a little after its start; of a large one at its start.
+/// Draws a scene a little after its start; a large one at its start.
 pub(super) async fn draw(name: &str, registries: &Registries) -> Option<Pixels> {
     let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
     let text = opruga::scenes::find(name)?;
@@ -57,11 +57,11 @@ mod kept {
     use std::io::{Read as _, Write as _};
     use std::path::{Path, PathBuf};
 
-    /// The bytes of a picture.
+    /// The size of a picture in bytes.
     const BYTES: usize = 4 * SIZE[0] as usize * SIZE[1] as usize;
 
-    /// The picture of a scene: that which is kept in a folder, or one that is drawn now and kept there. Where it cannot be kept it is
-    /// drawn anew another time.
+    /// The picture of a scene: the one stored in a folder, or one that is drawn now and stored there. If it cannot be stored, it is drawn again the
+    /// next time.
     pub(crate) async fn kept_or_drawn(
         name: &'static str,
         registries: &Registries,
@@ -77,7 +77,7 @@ mod kept {
         Some(pixels)
     }
 
-    /// A mark of all that a picture is drawn from: the scene, its files, and the program, by the file that it was started from.
+    /// A fingerprint of everything that determines a picture: the scene, its files, and the program, identified by its executable.
     pub(super) fn mark(name: &str, registries: &Registries) -> Option<u64> {
         let text = opruga::scenes::find(name)?;
         let mut hasher = DefaultHasher::new();
@@ -99,7 +99,7 @@ mod kept {
         encoder.write_all(pixels)?;
         let packed = encoder.finish()?;
         std::fs::create_dir_all(folder)?;
-        // Those of the same scene as it was, or as another program draws it, are of no use any more.
+        // Pictures of an earlier version of the scene, or by another program, are no longer needed.
         let beginning = format!("{name}-");
         for old in std::fs::read_dir(folder)?.flatten() {
             let file = old.file_name();
@@ -128,18 +128,18 @@ mod kept {
             };
             let first = drawn();
             assert_eq!((first.len(), files().len()), (BYTES, 1));
-            // Another one in its place is what is shown: nothing was drawn.
+            // Another picture in its place is shown, so nothing was drawn.
             let other = vec![7; BYTES];
             keep(&folder, "two-chambers", &files()[0], &other).expect("it is kept");
             assert_eq!(drawn(), other);
-            // What is damaged, or belongs to a scene as it was, is drawn anew, and takes the place of that.
+            // A picture that is damaged, or belongs to an earlier version of a scene, is drawn again and replaced.
             std::fs::write(&files()[0], b"cut").expect("written");
             std::fs::write(folder.join("two-chambers-0123456789abcdef.rgba"), b"").expect("written");
             std::fs::write(folder.join("heart-0123456789abcdef.rgba"), b"").expect("written");
             assert_eq!(drawn(), first);
             assert_eq!(files().len(), 2, "that of another scene stays: {:?}", files());
             std::fs::remove_dir_all(&folder).expect("it goes");
-            // A file stands where the folder should be.
+            // There is a file in place of the folder.
             std::fs::write(&folder, b"").expect("a file");
             assert_eq!(drawn(), first);
             std::fs::remove_file(&folder).expect("it goes");

@@ -1,5 +1,5 @@
-//! The simulation in the time that a picture of the window leaves, where there are no threads: it has its turn before every
-//! picture. Frames that take longer than that slow simulated time down, and the line below says by how much.
+//! The simulation in the time that a picture of the window leaves, if there are no threads: it has a turn before every picture. Longer frames slow
+//! simulated time down; the status line shows by how much.
 
 use super::{Ask, Copied, Course};
 use crate::session::{Request, Session};
@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// How long frames are computed in a turn: at sixty pictures a second as much is left for the interface.
+/// How long frames are computed in a turn: at sixty pictures per second, this leaves the same time for the interface.
 const BUDGET: Duration = Duration::from_millis(8);
 
 /// The simulation and its last picture.
@@ -31,38 +31,38 @@ impl core::fmt::Debug for Link {
 }
 
 impl Link {
-    /// Takes a session; `wake` is called whenever there shall be a new picture of the window.
+    /// Takes over a session; `wake` is called whenever a new picture of the window is needed.
     ///
     /// # Errors
-    /// None; where there are threads, one may be refused.
+    /// None; on systems with threads, the system may refuse one.
     pub fn start(mut session: Session, wake: impl Fn() + 'static) -> std::io::Result<Link> {
         let last = Arc::new(session.shown());
         let inner = Inner { course: Course::new(session), asks: Vec::new(), last };
         Ok(Link { inner: RefCell::new(inner), wake: Box::new(wake) })
     }
 
-    /// Calls another one from now on.
+    /// Replaces the function that is called.
     pub fn wake_by(&mut self, wake: impl Fn() + 'static) {
         self.wake = Box::new(wake);
     }
 
-    /// For how long it has been at what it does now: here the window waits for it, and it is never at anything.
+    /// How long the simulation has been busy: always none here, because the window waits for it.
     pub fn busy(&self) -> Option<Duration> {
         None
     }
 
-    /// The share that is done of a preparation: none either.
+    /// The progress of a preparation: always none here.
     pub fn prepared(&self) -> Option<f64> {
         None
     }
 
-    /// Asks for something; it is done in the next turn.
+    /// Sends a request, which is handled in the next turn.
     pub fn ask(&self, request: Request) {
         self.inner.borrow_mut().asks.push(Ask::Do(request));
         (self.wake)();
     }
 
-    /// Asks for a copy of the scene; it comes with the next turn.
+    /// Requests a copy of the scene, which is available after the next turn.
     pub fn copy(&self) -> Receiver<Copied> {
         let (sender, receiver) = channel();
         self.inner.borrow_mut().asks.push(Ask::Copy(sender));
@@ -75,7 +75,7 @@ impl Link {
         Arc::clone(&self.inner.borrow().last)
     }
 
-    /// The turn of the simulation before a picture of the window.
+    /// Gives the simulation its turn before a picture of the window.
     pub fn turn(&self) {
         let mut inner = self.inner.borrow_mut();
         let moving = inner.course.session.is_moving();
@@ -91,7 +91,7 @@ impl Link {
         }
     }
 
-    /// Looks at the session itself.
+    /// Gives access to the session itself.
     pub fn with_session<T>(&self, look: impl FnOnce(&Session) -> T) -> T {
         look(&self.inner.borrow().course.session)
     }

@@ -10,23 +10,23 @@ use std::time::{Duration, Instant};
 
 /// How long frames are computed before a new picture is shown.
 const BUDGET: Duration = Duration::from_millis(14);
-/// How long a frame takes before it is broken off for what cannot wait.
+/// How long a frame may take before it is interrupted for a request that cannot wait.
 const PATIENCE: Duration = Duration::from_millis(250);
-/// How long the thread sleeps while time passes and no frame is due.
+/// How long the thread sleeps while the simulation plays and no frame is due.
 const NAP: Duration = Duration::from_millis(3);
 
-/// The end of the thread that the interface holds. When it goes, the thread ends.
+/// The interface's end of the connection to the thread. When it is dropped, the thread ends.
 pub struct Link {
     asks: Sender<Ask>,
     last: Arc<Mutex<Arc<Shown>>>,
-    /// When the thread began what it does now; none while it waits.
+    /// When the thread began its present work; none while it waits.
     since: Arc<Mutex<Option<Instant>>>,
-    /// Ends a frame that takes long.
+    /// Interrupts a frame that takes long.
     break_off: Arc<BreakOff>,
 }
 
-/// Pictures that the thread has made and somebody may still look at. They are taken apart here once nobody does: to free what a
-/// thousand bodies hold would take the interface a millisecond.
+/// Pictures that the thread has made and that may still be in use. The thread frees them after their last use: freeing the data of a thousand bodies
+/// would take the interface a millisecond.
 #[derive(Default)]
 struct Old(Vec<Arc<Shown>>);
 
@@ -47,7 +47,7 @@ impl Link {
     /// Starts the thread of a session; `wake` is called whenever there is a new picture.
     ///
     /// # Errors
-    /// Where the system gives no thread.
+    /// The system provides no thread.
     pub fn start(mut session: Session, wake: impl Fn() + Send + 'static) -> std::io::Result<Link> {
         let (asks, asked) = channel();
         let last = Arc::new(Mutex::new(Arc::new(session.shown())));
@@ -59,41 +59,41 @@ impl Link {
         Ok(Link { asks, last, since, break_off })
     }
 
-    /// Asks for something; it is done between two frames. One that takes long is broken off for what cannot wait.
+    /// Sends a request, which is handled between two frames. A frame that takes long is interrupted for a request that cannot wait.
     pub fn ask(&self, request: Request) {
         if request.breaks_off() {
             self.break_a_long_frame_off();
         }
-        // Where the thread has ended there is nobody to ask: the last picture stays.
+        // If the thread has ended, nobody handles the request, and the last picture stays.
         let _ = self.asks.send(Ask::Do(request));
     }
 
-    /// Asks for a copy of the scene; it comes when the present frame is done.
+    /// Requests a copy of the scene, which is available when the present frame is done.
     pub fn copy(&self) -> Receiver<Copied> {
         let (sender, receiver) = channel();
         let _ = self.asks.send(Ask::Copy(sender));
         receiver
     }
 
-    /// The same at once: a frame that takes long is broken off for it.
+    /// Requests a copy immediately: a frame that takes long is interrupted for it.
     pub fn copy_now(&self) -> Receiver<Copied> {
         self.break_a_long_frame_off();
         self.copy()
     }
 
     fn break_a_long_frame_off(&self) {
-        // The thread takes this back once it has heard of what comes next.
+        // The thread resets this when it receives the next request.
         if self.busy().is_some_and(|busy| busy > PATIENCE) {
             self.break_off.ask(true);
         }
     }
 
-    /// For how long the thread has been at what it does now.
+    /// How long the thread has been busy with its present work.
     pub fn busy(&self) -> Option<Duration> {
         self.since.lock().unwrap_or_else(PoisonError::into_inner).map(|since| since.elapsed())
     }
 
-    /// The share that is done of a preparation that takes long.
+    /// The progress of a preparation that takes long.
     pub fn prepared(&self) -> Option<f64> {
         self.break_off.prepared()
     }
@@ -115,7 +115,7 @@ fn run(
     let break_off = session.break_off();
     let (mut course, mut old) = (Course::new(session), Old::default());
     loop {
-        // While nothing moves the thread sleeps until somebody asks for something.
+        // While nothing moves, the thread sleeps until it receives a request.
         let first = if course.session.is_moving() {
             match asked.recv_timeout(if course.session.is_seeking() { Duration::ZERO } else { NAP }) {
                 Ok(ask) => Some(ask),

@@ -1,8 +1,8 @@
-//! What changes the scene: parameters, models, integrators, bodies that come, go and are moved.
+//! Edits of the scene: parameters, models and integrators; bodies that are added, removed and moved.
 //!
-//! At the start an edit is written into the scene itself, and its world is built anew. Later it is a command: parameters,
-//! models and integrators change on the moving body; a body that is moved, turned, scaled or given another resolution is
-//! taken away and set down anew at rest in its new form.
+//! At the start, an edit is written into the scene itself, and its world is rebuilt. Later, it becomes a command. Parameters, models and integrators
+//! change on the moving body; a body that is moved, rotated, scaled or given another resolution is removed and replaced by one at rest in its new
+//! form.
 
 use super::Session;
 use super::travel::Past;
@@ -13,35 +13,35 @@ use crate::shown::Severity;
 use opruga::core::spec::{Value, Values};
 use toml_edit::{InlineTable, Value as Toml};
 
-/// How a body is set down: moved, turned about its middle and scaled [m, rad].
+/// A transformation of a body: displacement, rotation about its centre and scale [m, rad].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// By how much it is moved [m].
+    /// The displacement [m].
     pub moved: [f64; 3],
-    /// The angle by which it is turned about its middle, counter-clockwise; in space about the y axis [rad].
+    /// The angle of rotation about its centre, counter-clockwise; in space about the y axis [rad].
     pub turned: f64,
-    /// The factor on its lengths.
+    /// The factor by which its lengths are scaled.
     pub scaled: f64,
 }
 
-/// A change of which bodies there are.
+/// A change of the bodies of the scene.
 #[derive(Clone, Debug)]
 pub enum Edit {
-    /// A new body; its table as in the scene file, with a name that others may have.
+    /// A new body; its table as in the scene file, with a name that another body may already have.
     Add(InlineTable),
-    /// The same, set down with its middle at a point, or at the nearest position where it is in no other body and no obstacle \[m\].
+    /// The same with its centre at a point, or at the nearest position at which it intersects no other body and no obstacle \[m\].
     Drop(InlineTable, [f64; 3]),
-    /// A copy of a body beside it.
+    /// A copy of a body next to it.
     Duplicate(String),
-    /// Moves, turns or scales a body.
+    /// Moves, rotates or scales a body.
     Transform(String, Placed),
     /// Another value of a field of its shape, such as its number of vertices.
     Shape(String, &'static str, Value),
-    /// A field of its shape is given no longer.
+    /// Removes a field of its shape.
     ShapeWithout(String, &'static str),
-    /// Takes a body away.
+    /// Removes a body.
     Delete(String),
-    /// Lets bodies touch one another, or pass through one another.
+    /// Switches contact between bodies on or off.
     Contact(bool),
 }
 
@@ -50,7 +50,7 @@ impl Session {
         self.engine.frames() == 0
     }
 
-    /// Takes a document that differs at its start.
+    /// Continues with a document that differs at its start.
     fn begin_with(&mut self, document: crate::document::Document, own_commands: usize) -> Result<(), Report> {
         let had_pins = self.grabbed.is_some() || !self.pins_shown().is_empty();
         self.take(document, own_commands, [0; 2])?;
@@ -61,7 +61,7 @@ impl Session {
         Ok(())
     }
 
-    /// Sets a parameter; one that is drawn by a hand in a press of a number of its own.
+    /// Sets a parameter; for a value that is being dragged, `press` is the number of the press.
     pub(super) fn set(&mut self, path: &str, value: Value, press: Option<u64>) -> Result<(), Report> {
         self.branch()?;
         let past = Past { press, ..self.past(Step::Set(path.into())) };
@@ -84,8 +84,7 @@ impl Session {
         Ok(())
     }
 
-    /// Gives a field of an obstacle no longer: at the start the scene is silent about it then; later it gets the value that does the
-    /// same, where there is one.
+    /// Removes a field of an obstacle. At the start, the scene then does not give it; later, it gets the equivalent value, if there is one.
     pub(super) fn unset(&mut self, path: &str) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Set(path.into()));
@@ -145,8 +144,8 @@ impl Session {
         Ok(())
     }
 
-    /// Gives a body the integrator of the scene again. At the start it has none of its own then; a body that moves goes on with
-    /// one of its own that is the same.
+    /// Resets the integrator of a body to that of the scene. At the start, it then has none of its own; a moving body continues with an integrator of
+    /// its own that is the same.
     pub(super) fn as_the_scene(&mut self, body: usize) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Integrator);
@@ -168,7 +167,7 @@ impl Session {
         }
     }
 
-    /// Another integrator for all bodies that have none of their own.
+    /// Changes the integrator of all bodies without one of their own.
     pub(super) fn integrator(&mut self, values: &Values) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Integrator);
@@ -179,7 +178,7 @@ impl Session {
             self.remember(past);
             return Ok(());
         }
-        // Every body gets it as its own: commands speak of bodies.
+        // Every body gets its own integrator, because commands refer to bodies.
         let shown = self.engine.shown(&self.show);
         let (before, documents) = (self.engine.snapshot(), self.document.clone());
         for body in &shown.bodies {
@@ -188,7 +187,7 @@ impl Session {
                     self.write(given);
                 }
                 Err(error) => {
-                    // None of them, rather than some.
+                    // None of them instead of some.
                     self.document = documents;
                     self.engine = self.build(&self.document)?;
                     self.engine.rewind(&before).map_err(Report::World)?;
@@ -233,7 +232,8 @@ impl Session {
             Edit::Transform(name, placed) => {
                 let mut table = self.table_of(name)?;
                 self.transform(name, &mut table, placed)?;
-                // Handles turn and scale about the other side or the middle: what was meant is not the displacement of the middle.
+                // Handles rotate and scale about the opposite side or the centre, so the displacement of the centre does not tell which edit was
+                // meant.
                 let step = match placed {
                     Placed { scaled, .. } if *scaled != 1.0 => Step::Scale,
                     Placed { turned, .. } if *turned != 0.0 => Step::Turn,
@@ -271,7 +271,7 @@ impl Session {
         }
     }
 
-    /// There is a body more: it is looked at from now on.
+    /// Registers a new body, which becomes selected.
     fn made(&mut self, name: String) {
         self.newest = Some((self.newest.as_ref().map_or(1, |(count, _)| count + 1), name));
     }
@@ -284,7 +284,7 @@ impl Session {
         self.document.body(name).ok_or_else(|| Report::Copy(name.to_string()))
     }
 
-    /// How far the middle of a body has gone from where it was set down [m].
+    /// The displacement of the centre of a body from where it was placed [m].
     fn displacement_of(&mut self, name: &str) -> [f64; 3] {
         if self.at_start() {
             return [0.0; 3];
@@ -311,7 +311,7 @@ impl Session {
         if high > low { high - low } else { 1.0 }
     }
 
-    /// Writes a move, a turn about the body's middle and a factor into its table.
+    /// Writes a displacement, a rotation about the body's centre and a factor into its table.
     fn transform(&mut self, name: &str, table: &mut InlineTable, placed: &Placed) -> Result<(), Report> {
         let dimension = self.dimension();
         let shown = self.engine.shown(&self.show);
@@ -322,7 +322,7 @@ impl Session {
             return Err(Report::Scaled(placed.scaled));
         }
         let (sin, cos) = placed.turned.sin_cos();
-        // The middle of the mesh after the turn; the position makes up for what it has moved.
+        // The position compensates for the displacement of the mesh's centre by the rotation.
         let turned = match dimension {
             2 => [cos * middle[0] - sin * middle[1], sin * middle[0] + cos * middle[1], 0.0],
             _ => [cos * middle[0] + sin * middle[2], middle[1], cos * middle[2] - sin * middle[0]],
@@ -351,7 +351,7 @@ impl Session {
         Ok(())
     }
 
-    /// Takes a body away, sets one down, or both.
+    /// Removes a body, adds one, or both.
     fn exchange(&mut self, step: Step, old: Option<&str>, new: Option<InlineTable>) -> Result<(), Report> {
         let past = self.past(step);
         let mut document = self.document.clone();
@@ -392,7 +392,7 @@ impl Session {
                 Err(errors) => Err(Report::Scene(errors)),
             };
             if let Err(refusal) = added {
-                // It is said of the body that was to be another, and not of one that there never was.
+                // The message names the body that was to be changed, not the one that was never made.
                 let refusal = self.titled(refusal);
                 self.back_to(past)?;
                 if old.is_some() {
@@ -408,7 +408,7 @@ impl Session {
         Ok(())
     }
 
-    /// Undoes the first half of what was refused in its second.
+    /// Undoes the first half of an exchange whose second half was refused.
     pub(super) fn back_to(&mut self, past: Past) -> Result<(), Report> {
         let frame = past.frame;
         self.take(past.document, past.own_commands, [frame; 2])?;
@@ -436,7 +436,7 @@ pub(super) fn shift(table: &mut InlineTable, by: [f64; 3], dimension: usize) {
     table.insert("position", Toml::Array(numbers(&position)));
 }
 
-/// The axis times its angle of a turn and then one about the y axis: the product of their quaternions.
+/// The rotation vector of a rotation followed by one about the y axis, computed as the product of their quaternions.
 fn turn_about_y(angle: f64, first: [f64; 3]) -> [f64; 3] {
     let size = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
     let half = 0.5 * size(first);
@@ -459,7 +459,7 @@ mod tests {
         let [x, y, z] = turn_about_y(0.4, [0.0, 0.7, 0.0]);
         assert!((y - 1.1).abs() < 1e-12 && x.abs() + z.abs() < 1e-12, "{x} {y} {z}");
         let quarter = core::f64::consts::FRAC_PI_2;
-        // About x and then about y: a turn by 120° about (1, 1, −1)/√3.
+        // First about x, then about y: a rotation by 120° about (1, 1, −1)/√3.
         let turn = turn_about_y(quarter, [quarter, 0.0, 0.0]);
         let third = 2.0 * core::f64::consts::FRAC_PI_3 / 3.0_f64.sqrt();
         assert!(turn.iter().zip([third, third, -third]).all(|(a, b)| (a - b).abs() < 1e-12), "{turn:?}");

@@ -1,28 +1,28 @@
-//! What attracts attention at the end of a scene: shapes are looked at there, and where time stands still behind it.
+//! Warnings at the end of a scene: shapes are checked there, and whenever time is stopped after it.
 
 use super::Session;
 use crate::report::Report;
 use crate::shown::{Severity, Shown};
 use opruga::Warning;
 
-/// What was reported so far.
+/// The warnings reported so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ends {
-    /// What attracted attention at the start.
+    /// The warnings at the start.
     early: Vec<Warning>,
-    /// The warnings about the shapes, and the frame from which on.
+    /// The warnings about the shapes, and the frame from which they apply.
     shape_warnings: Option<(u64, Vec<Warning>)>,
-    /// The codes of what was reported to the person at the end: once is enough.
+    /// The codes of the warnings that were shown to the user at the end; each is shown once.
     reported: Vec<String>,
 }
 
 impl Ends {
-    /// Nothing yet, of a scene that begins with this.
+    /// No warnings yet, for a scene with these warnings at its start.
     pub(super) fn of(early: Vec<Warning>) -> Ends {
         Ends { early, ..Ends::default() }
     }
 
-    /// Adds the warnings at the end to what attracts attention at a frame.
+    /// Adds the warnings at the end to those of a frame.
     pub(super) fn add(&self, shown: &mut Shown) {
         let shape_warnings =
             self.shape_warnings.iter().filter(|(since, _)| *since <= shown.frames).flat_map(|(_, list)| list);
@@ -35,7 +35,7 @@ impl Ends {
 }
 
 impl Session {
-    /// Looks at the shapes where the scene ends for the command line, and says what the command line would say there.
+    /// Checks the shapes at the end of the scene on the command line, and shows the warnings that the command line would print there.
     pub(super) fn look_at_the_end(&mut self) {
         if self.engine.frames() != self.engine.end() {
             return;
@@ -43,7 +43,7 @@ impl Session {
         let all = self.look_at_shapes();
         let new_warnings: Vec<Warning> = all.iter().filter(|w| !self.ends.early.contains(w)).cloned().collect();
         let refused = self.message.as_ref().is_some_and(|message| message.severity == Severity::Refused);
-        // Numbers in it may differ when the end comes again: what was reported is recognised by its code.
+        // Numbers in them may differ when the end is reached again, so reported warnings are recognised by their codes.
         let codes: Vec<String> = all.into_iter().map(|warning| warning.code.to_string()).collect();
         if !new_warnings.is_empty() && !refused && self.ends.reported != codes {
             let time = self.engine.time();
@@ -52,14 +52,14 @@ impl Session {
         }
     }
 
-    /// Looks at the shapes where time stands still behind the end.
+    /// Checks the shapes if time is stopped after the end.
     pub(super) fn look_where_time_stands(&mut self) {
         if self.engine.frames() > self.engine.end() {
             self.look_at_shapes();
         }
     }
 
-    /// Everything that attracts attention now.
+    /// All present warnings.
     fn look_at_shapes(&mut self) -> Vec<Warning> {
         let all = self.engine.warnings_at_the_end();
         self.ends.shape_warnings = Some((self.engine.frames(), all.clone()));

@@ -1,4 +1,4 @@
-//! Where a new body is set down: at the pointer, or as near to it as it is in no other body and in no obstacle.
+//! Places a new body: at the pointer, or at the nearest position at which it intersects no other body and no obstacle.
 
 use super::Session;
 use super::edits::shift;
@@ -9,11 +9,10 @@ use toml_edit::InlineTable;
 /// The lowest and the highest corner of a box [m].
 type Ends = [[f64; 3]; 2];
 
-/// How far apart tried positions are, in sizes of the body, and how many of them to each side, in the plane and in space: up to six sizes
-/// and four sizes away.
+/// The spacing of the positions that are tried, in sizes of the body, in the plane and in space; they reach up to six and four sizes away.
 const APART: [f64; 2] = [0.25, 0.5];
 const TRIED: [i32; 2] = [24, 8];
-/// The gap that is left between a body and what is beside it, in sizes of the body.
+/// The gap between a body and its neighbours, in sizes of the body.
 const GAP: f64 = 0.02;
 
 /// The box around points.
@@ -35,13 +34,13 @@ fn grown(ends: Ends, by: f64) -> Ends {
     [ends[0].map(|x| x - by), ends[1].map(|x| x + by)]
 }
 
-/// Whether two boxes have a point in common; a scene of the plane has no third side.
+/// Whether two boxes intersect; in the plane only two axes count.
 fn meet(a: &Ends, b: &Ends, dimension: usize) -> bool {
     (0..dimension).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
 }
 
-/// Whether a body in this box may be in an obstacle. A container is none for what is in it, and one that is drawn alike whether it is
-/// solid or not is told by `hollow`.
+/// Whether a body in this box may intersect an obstacle. A container does not count for a body inside it. `hollow` says whether an obstacle that
+/// looks the same in both cases is hollow.
 fn is_in(ends: &Ends, obstacle: &ColliderPicture, hollow: bool, dimension: usize) -> bool {
     let meets = |other: &Ends| meet(ends, other, dimension);
     match obstacle {
@@ -67,8 +66,8 @@ fn is_in(ends: &Ends, obstacle: &ColliderPicture, hollow: bool, dimension: usize
     }
 }
 
-/// The displacement nearest to a wanted one that is free, of those that are tried; the wanted one where none is. Of two that are
-/// equally far the higher one.
+/// The free displacement nearest to the desired one, among those that are tried; the desired one if none is free. Of two at equal distance, the
+/// higher one.
 fn nearest(wanted: [f64; 3], size: f64, dimension: usize, free: impl Fn([f64; 3]) -> bool) -> [f64; 3] {
     if free(wanted) {
         return wanted;
@@ -84,29 +83,29 @@ fn nearest(wanted: [f64; 3], size: f64, dimension: usize, free: impl Fn([f64; 3]
 }
 
 impl Session {
-    /// Moves the table of a new body so that its middle is at a point, or as near to that as it is free.
+    /// Moves the table of a new body so that its centre is at a point, or at the nearest free position.
     pub(super) fn land(&mut self, table: &mut InlineTable, at: [f64; 3]) {
         let dimension = self.dimension();
-        // What cannot be read is refused where it is added.
+        // A table that cannot be read is refused when it is added.
         let Some([low, high]) = self.box_of(table) else { return shift(table, at, dimension) };
         let by = self.free_displacement(table, [0, 1, 2].map(|d| at[d] - 0.5 * (low[d] + high[d])));
-        // To a hundredth of its size: nobody points more finely.
+        // Rounded to a hundredth of its size: nobody points more precisely.
         let size = (0..dimension).map(|d| high[d] - low[d]).fold(0.0, f64::max);
         let unit = if size > 0.0 { 10f64.powi(size.log10().floor() as i32 - 2) } else { 0.01 };
         let rounded = by.map(|x| {
-            // Times its reciprocal where that is whole, so that 0.01 is written and not 0.010000000000000002.
+            // Divided by its reciprocal if that is whole, to write 0.01 and not 0.010000000000000002.
             if unit < 1.0 { (x / unit).round() / (1.0 / unit).round() } else { (x / unit).round() * unit }
         });
         shift(table, rounded, dimension);
     }
 
-    /// The displacement nearest to a wanted one by which a body of this table is moved out of everything that is there.
+    /// The displacement nearest to a desired one that moves a body with this table out of everything that exists.
     pub(super) fn free_displacement(&mut self, table: &InlineTable, wanted: [f64; 3]) -> [f64; 3] {
         let Some(own) = self.box_of(table) else { return wanted };
         let shown = self.engine.shown(&self.show);
         let dimension = usize::from(shown.dimension);
         let size = (0..dimension).map(|d| own[1][d] - own[0][d]).fold(0.0, f64::max);
-        // Nothing is tried for what has no size.
+        // A body of zero size needs no search.
         if !(size > 0.0 && wanted.iter().all(|x| x.is_finite())) {
             return wanted;
         }
@@ -119,7 +118,7 @@ impl Session {
         nearest(wanted, size, dimension, free)
     }
 
-    /// The box around a body as its table sets it down; none where that cannot be read.
+    /// The box around a body as placed by its table; none if the table cannot be read.
     fn box_of(&self, table: &InlineTable) -> Option<Ends> {
         let (blueprint, _) = read(&self.document.alone(table), &self.files, &self.setting.registries).ok()?;
         let body = blueprint.scene().bodies().last()?;
@@ -146,7 +145,7 @@ mod tests {
             (ball(1.4), true),
             (room(false), true),
             (room(true), false),
-            // The box around the whole line holds it, but none of its sides meets it.
+            // The box is inside the box around the whole line, but intersects none of its segments.
             (line, false),
         ] {
             assert_eq!(is_in(&unit, &obstacle, false, 2), wanted, "{obstacle:?}");

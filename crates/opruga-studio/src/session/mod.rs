@@ -1,5 +1,5 @@
-//! A scene that runs while a person works on it, without any window: everything that is done is written into the text of
-//! the scene as a command, so that the command line computes the same bits from it.
+//! A scene that runs while the user works on it, without a window. Every action is written into the text of the scene as a command, so that the
+//! command line computes the same bits from it.
 //!
 //! ```text
 //! text ─read→ world ─frames→ keyframes        a new command behind the present: `act`, and its table into the text
@@ -48,13 +48,13 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockWriteGuard};
 use std::time::Duration;
 use travel::Past;
 
-/// What the keyframes may take [bytes]; less on a page, which may be open on a phone.
+/// The memory budget of the keyframes [bytes]; less on a web page, which may be open on a phone.
 const KEYFRAME_BYTES: usize = if cfg!(target_arch = "wasm32") { 64 << 20 } else { 256 << 20 };
 
-/// The most frames that are computed to go to a moment before the interface is served again.
+/// How long frames are computed on the way to another moment before the interface is served again.
 const SEEK_BUDGET: Duration = Duration::from_millis(40);
 
-/// What can be asked of a session.
+/// A request to a session.
 #[derive(Clone, Debug)]
 pub enum Request {
     /// Open a scene.
@@ -63,71 +63,71 @@ pub enum Request {
         name: String,
         /// Its text.
         text: String,
-        /// Where the files are that it names.
+        /// Where the files that it names are.
         files: Files,
     },
-    /// Take a shape from a file into the scene, with its middle at a point and of this size [m]; where it is of the other dimension,
-    /// open a scene around it with as many substeps as it needs.
+    /// Add a shape from a file to the scene, with its centre at a point and this size [m]. If its dimension differs, open a scene around it with as
+    /// many substeps as it needs.
     Take(Shape, [f64; 3], f64),
-    /// Let time pass, or not.
+    /// Start or stop time.
     Play(bool),
-    /// One frame.
+    /// Compute one frame.
     Step,
-    /// To the start, without what was done since.
+    /// Return to the start and remove what was recorded since.
     Reset,
-    /// To the start, with what was done since: it happens again.
+    /// Return to the start and keep what was recorded since, which then happens again.
     Replay,
-    /// To a frame.
+    /// Go to a frame.
     Seek(u64),
-    /// Simulated seconds in a real one.
+    /// Set the number of simulated seconds per real second.
     Speed(f64),
-    /// Take hold of a body at a point.
+    /// Grab a body at a point.
     Grab(Grip, usize, [f64; 3]),
-    /// Take hold of a body at a point of the scene beside it: what is done there is done to both.
+    /// Grab a body at a point of the scene beside it; the action applies to both.
     GrabBeside(Grip, usize, [f64; 3]),
     /// The pointer has moved.
     Lead([f64; 3]),
-    /// Let go.
+    /// Release.
     Release,
-    /// Let go of a pinned point.
+    /// Unpin a point.
     Unpin(usize, u32),
     /// Set a parameter.
     Set(String, Value),
-    /// Give a field of an obstacle no longer.
+    /// Remove a field of an obstacle.
     Unset(String),
-    /// Set a parameter by a hand that is down since the press of this number: all that it sets is undone as one.
+    /// Set a parameter by dragging, since the press of this number: everything that is set during the press is undone together.
     Draw(u64, String, Value),
-    /// Give a body other models.
+    /// Change the models of a body.
     Models(usize, Vec<Values>),
-    /// Give the scene (none) or a body another integrator.
+    /// Change the integrator of the scene (none) or of a body.
     Integrator(Option<usize>, Values),
-    /// Give a body the integrator of the scene again.
+    /// Reset the integrator of a body to that of the scene.
     AsTheScene(usize),
-    /// Change which bodies there are, and where.
+    /// Add, remove or move bodies.
     Edit(Edit),
     /// Undo.
     Undo,
     /// Redo.
     Redo,
-    /// Accept what a message offers.
+    /// Accept the offer of a message.
     Accept(Offer),
-    /// What shall be seen.
+    /// Set the display options.
     Show(Show),
     /// Show the scene twice, side by side, or no longer.
     Compare(bool),
-    /// Let the right one differ in this.
+    /// Add a difference of the right scene.
     Differ(Difference),
-    /// The scene of this mark was saved.
+    /// The scene with this fingerprint was saved.
     Saved(u64),
 }
 
 impl Request {
-    /// Whether it cannot wait until a frame is done that takes long.
+    /// Whether a long frame should be interrupted for it.
     #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn breaks_off(&self) -> bool {
         use Request::{Accept, Draw, Open, Play, Replay, Reset, Seek};
         let now = matches!(self, Open { .. } | Play(false) | Replay | Reset | Seek(_) | Accept(_));
-        // What a hand draws comes with every picture: no frame would ever be done.
+        // Values that are being dragged come with every picture, so no frame would ever be completed.
         now || self.is_edit() && !matches!(self, Draw(..))
     }
 
@@ -139,60 +139,60 @@ impl Request {
     }
 }
 
-/// A scene that runs while a person works on it.
+/// A scene that runs while the user works on it.
 pub struct Session {
     document: Document,
     files: Files,
     setting: Setting,
     engine: Box<dyn Engine>,
-    /// In what the scene on the right differs, where there is one.
+    /// The differences of the right scene, if there is one.
     differences: Option<Vec<Difference>>,
-    /// Bodies that were set down anew under another name: old and new.
+    /// Bodies that were replaced under another name: old and new names.
     renamed: Vec<(String, String)>,
-    /// The last body that was added or copied, with a number that counts them.
+    /// The last body that was added or copied, with a running number.
     newest: Option<(u64, String)>,
-    /// Commands that the scene had when it was opened; those behind them were recorded.
+    /// The number of commands that the scene had when it was opened; later ones were recorded.
     own_commands: usize,
-    /// The scene as it begins, without anything that was recorded: what a reset comes back to. A hand that takes over from a
-    /// recorded one changes the commands of the scene itself.
+    /// The scene at its start, without anything that was recorded, which a reset restores. When the user grabs a body that the scene itself drags,
+    /// the commands of the scene change.
     start: Document,
     keyframes: Keyframes,
-    /// The curves; the interface reads them.
+    /// The samples of the curves; the interface reads them.
     samples: Arc<RwLock<Samples>>,
-    /// The last frame of this course of things.
+    /// The last frame of this run.
     latest: u64,
-    /// Where to go, frame by frame.
+    /// The frame to go to.
     goal: Option<u64>,
     undo: Vec<Past>,
     redo: Vec<Past>,
     grabbed: Option<Grabbed>,
-    /// Pulls that ended of late.
+    /// Pulls that have ended recently.
     released: Vec<pointer::Released>,
-    /// Points that are pinned, and those that were.
+    /// Points that are or were pinned.
     pins: Vec<pointer::Pinned>,
     playing: bool,
     speed: f64,
     pacing: Pacing,
-    /// What a frame took of late [s], also while one is computed.
+    /// The recent time of a frame [s], also while one is computed.
     cost: f64,
     show: Show,
     message: Option<Message>,
     messages: u64,
     opened: u64,
-    /// How often another state took the place of the one before at once.
+    /// How often the state was replaced by a different one at once.
     replaced: u64,
-    /// How often a person went back to the start and left what was done.
+    /// How often the user has reset the scene to its start.
     resets: u64,
-    /// What was told of the end of the scene.
+    /// The reports at the end of the scene.
     ends: ends::Ends,
-    /// A mark of the text of the scene as it was opened or saved.
+    /// A fingerprint of the text of the scene as it was opened or saved.
     clean: u64,
-    /// What was refused because its step was too long, or was broken off because a frame of it took too long.
+    /// The request that was refused because its step was too long, or interrupted because a frame took too long.
     refused: Option<Request>,
     patience: Patience,
     /// The recording that it was opened from.
     recording: Option<recorded::Viewed>,
-    /// The session before another scene was opened, where something had been done in it.
+    /// The session before another scene was opened, if it contained work.
     before: Option<Box<Session>>,
 }
 
@@ -202,7 +202,7 @@ impl core::fmt::Debug for Session {
     }
 }
 
-/// A mark of a text.
+/// The fingerprint of a text.
 fn mark(text: &str) -> u64 {
     let mut hasher = DefaultHasher::new();
     text.hash(&mut hasher);
@@ -210,17 +210,17 @@ fn mark(text: &str) -> u64 {
 }
 
 impl Session {
-    /// Opens a scene: by [`opruga::Options`] alone, with the models and integrators of the library.
+    /// Opens a scene with [`opruga::Options`], with the models and integrators of the library by default.
     ///
     /// # Errors
-    /// Everything that is wrong with it.
+    /// All errors in it.
     pub fn open(name: &str, text: &str, files: Files, setting: impl Into<Setting>) -> Result<Session, Report> {
         let setting = setting.into();
         let document = Document::unread(name, text, &files, &setting.registries, None)?;
         Session::begin(document, files, setting)
     }
 
-    /// A session of a text that was read.
+    /// Makes a session from a document that was read.
     fn begin(document: Document, files: Files, setting: Setting) -> Result<Session, Report> {
         let engine = pair::build(&document, None, &files, &setting)?;
         let mut session = Session {
@@ -263,7 +263,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Does what is asked. What cannot be done is told by [`Shown::message`] and leaves everything as it was.
+    /// Handles a request. If it cannot be done, [`Shown::message`] reports that, and nothing changes.
     pub fn handle(&mut self, request: Request) {
         let again = request.clone();
         let (before, edits) = (self.messages, request.is_edit());
@@ -337,7 +337,7 @@ impl Session {
             }
         };
         match outcome {
-            // What was refused before is over where something else was accepted.
+            // An earlier refusal is obsolete when something else was accepted.
             Ok(()) if edits && self.messages == before => {
                 self.message = self.message.take().filter(|message| message.severity != Severity::Refused);
             }
@@ -348,7 +348,7 @@ impl Session {
         }
     }
 
-    /// Lets real time pass; at most `budget` is spent on frames, as `clock` measures them.
+    /// Lets real time pass; at most `budget` is spent on frames, measured by `clock`.
     pub fn tick(&mut self, elapsed: Duration, budget: Duration, clock: &dyn Fn() -> Duration) {
         if self.goal.is_some() {
             let start = clock();
@@ -375,7 +375,7 @@ impl Session {
         let mut pacing = std::mem::take(&mut self.pacing);
         let outcome = pacing.run(elapsed, speed, length, budget, || {
             let start = clock();
-            // A frame may have stopped time by itself.
+            // A frame may have stopped time.
             if !self.playing || self.stops_at_the_end() {
                 return Err(None);
             }
@@ -392,7 +392,7 @@ impl Session {
         }
     }
 
-    /// One frame, with the pointer led before it and a keyframe behind it.
+    /// Computes one frame; before it the pointer is updated, after it a keyframe is kept.
     fn frame(&mut self) -> Result<(), WorldError> {
         if self.recorded_frame()? {
             self.sample();
@@ -424,7 +424,7 @@ impl Session {
         self.samples.write().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Keeps the numbers of the curves for the present frame, if they are not known.
+    /// Adds the sample of the present frame to the curves, if it does not exist.
     fn sample(&mut self) {
         if self.samples().wants(self.engine.frames()) {
             let mut sample = self.engine.sample();

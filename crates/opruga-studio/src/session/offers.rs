@@ -1,4 +1,4 @@
-//! What is offered where something was refused or a motion has ended, and what becomes of it where a person accepts.
+//! The remedies that are offered if something was refused or a motion has failed, and their execution when the user accepts them.
 
 use super::{Edit, Request, Session};
 use crate::document::{Document, read};
@@ -9,18 +9,18 @@ use opruga::io::Files;
 use opruga::world::schema::MOST_SUBSTEPS;
 use opruga::{Registries, WorldError, catalogue_of};
 
-/// The integrator that is offered instead of one without a stable step: it costs as little.
+/// The integrator that is offered instead of one without a stable step; it is equally cheap.
 fn steady(registries: &Registries) -> Option<&'static Spec> {
     catalogue_of(registries).integrators.into_iter().find(|spec| spec.has_role(Role::OfferedExplicit))
 }
 
-/// What a frame may take before a person is told of it [s].
+/// The time of a frame above which the user is informed [s].
 const LONG: f64 = 1.0;
-/// What a frame may take that is offered [s]: nothing else can be done meanwhile.
+/// The largest time of a frame with an offered remedy [s]: nothing else can be done in the meantime.
 const TOO_LONG: f64 = 4.0;
-/// What a node takes in a substep where nothing was measured yet [s], and at least.
+/// The time of a node in a substep if nothing has been measured yet, and its lower limit [s].
 const NODE: [f64; 2] = [2e-8, 1e-8];
-/// What a substep takes at most however few the nodes [s].
+/// The largest time of a substep however few nodes there are [s].
 const OVERHEAD: f64 = 5e-6;
 
 impl Session {
@@ -44,7 +44,7 @@ impl Session {
                         None => session.integrator(values),
                     };
                     match take(self, &values) {
-                        // It has a stable step, and that may be a shorter one.
+                        // It has a stable step, which may be shorter.
                         Err(Report::World(WorldError::UnstableStep { substeps, .. }))
                             if substeps <= MOST_SUBSTEPS
                                 && self.frame_would_take(self.nodes_now(), with_a_margin(substeps)) <= TOO_LONG =>
@@ -60,7 +60,7 @@ impl Session {
             }
             Offer::Substeps(substeps) => {
                 let refused = self.refused.take();
-                // A scene that was not opened has substeps of its own.
+                // A scene that was not opened has its own substeps.
                 if let Some(Request::Open { name, text, files }) = refused {
                     return self.open_with(&name, &text, files, *substeps);
                 }
@@ -102,11 +102,11 @@ impl Session {
         Ok(())
     }
 
-    /// What would help where the motion of a body has failed.
+    /// The remedy after the motion of a body has failed.
     pub(super) fn offer_after_a_failure(&mut self, body: &str) -> Option<Offer> {
         let shown = self.engine.shown(&self.show);
         let more = 2 * u64::from(shown.substeps) <= u64::from(MOST_SUBSTEPS);
-        // Where no step is stable, half of it is not either.
+        // If no step is stable, half of it is not, either.
         let steady = steady(&self.setting.registries);
         let another =
             without_a_stable_step(&shown, body).zip(steady).map(|(body, spec)| Offer::Steady(body, spec.kind));
@@ -119,7 +119,7 @@ impl Session {
             WorldError::Diverged { body, .. }
             | WorldError::Step { body, .. }
             | WorldError::NotConverged { body, .. } => self.offer_after_a_failure(body),
-            // Where a frame cannot have as many, the message says what else helps.
+            // If a frame cannot have that many, the message names other remedies.
             WorldError::UnstableStep { substeps, .. } if *substeps <= MOST_SUBSTEPS => {
                 let wanted = with_a_margin(*substeps);
                 let nodes = self.nodes_with(request.as_ref());
@@ -132,7 +132,7 @@ impl Session {
                     self.refused = request;
                     Some(Offer::Substeps(wanted))
                 } else {
-                    // As many as there are already: fewer were asked for, and what is there stays.
+                    // The number is the present one: fewer were requested, and the present one stays.
                     None
                 }
             }
@@ -148,7 +148,7 @@ impl Session {
         self.engine.positions().len()
     }
 
-    /// How many nodes there would be with what is asked for.
+    /// The number of nodes after a request.
     fn nodes_with(&self, request: Option<&Request>) -> usize {
         let now = self.nodes_now();
         let of = |document: &Document, files: &Files| -> Vec<usize> {
@@ -166,7 +166,7 @@ impl Session {
                 let with = |other: &Value| {
                     let mut table = self.document.body(name)?;
                     table.get_mut("shape")?.as_inline_table_mut()?.insert(*field, crate::document::toml(other));
-                    // Which nodes it has pinned does not matter.
+                    // Its pinned nodes do not matter.
                     table.remove("pin");
                     table.insert("name", self.document.free_name(name).into());
                     let mut bare = self.document.without_nodes();
@@ -182,8 +182,8 @@ impl Session {
         }
     }
 
-    /// What a frame of so many nodes and substeps would take [s], as far as the frames of late tell: a substep takes something by
-    /// itself, and the rest goes with the nodes.
+    /// The estimated time of a frame with this many nodes and substeps [s], according to recent frames: a substep has a fixed cost, and the rest is
+    /// proportional to the number of nodes.
     fn frame_would_take(&self, nodes: usize, substeps: u32) -> f64 {
         let now = f64::from(self.engine.substeps().max(1));
         let one = self.pacing.cost() / now;
@@ -195,7 +195,7 @@ impl Session {
         f64::from(substeps) * (itself + node * nodes as f64)
     }
 
-    /// A shape between the one that there is and the one that was refused, of which a frame would not take long.
+    /// A shape between the present one and the refused one, with which a frame would not take long.
     fn coarser(&mut self, request: Option<&Request>, nodes: usize, substeps: u32) -> Option<Offer> {
         let Some(Request::Edit(Edit::Shape(name, field, Value::Integer(wanted)))) = request else { return None };
         let shape = self.document.shape(name, self.engine.dimension())?;
@@ -207,7 +207,7 @@ impl Session {
         if *now < 1 || ratio <= 0.0 {
             return None;
         }
-        // Both grow by powers of the value, as far as these two tell.
+        // Both are assumed to grow by powers of the value, which these two points determine.
         let of_steps = (f64::from(substeps) / needed).ln() / ratio;
         let of_nodes = (nodes as f64 / self.nodes_now().max(1) as f64).ln() / ratio;
         let takes = |value: i64| {
@@ -224,7 +224,7 @@ impl Session {
     }
 }
 
-/// Whether the world warns that no step is stable for the integrator of a body: then its number, or none where it has that of the
+/// Whether the world warns that no step is stable for the integrator of a body: then the index of the body, or none if it uses the integrator of the
 /// scene.
 fn without_a_stable_step(shown: &Shown, name: &str) -> Option<Option<usize>> {
     let body = shown.bodies.iter().find(|body| body.name == name)?;
@@ -233,7 +233,7 @@ fn without_a_stable_step(shown: &Shown, name: &str) -> Option<Option<usize>> {
     shown.warnings.iter().any(warned).then(|| body.integrator.is_some().then_some(body.number))
 }
 
-/// A little more substeps than the least, so that the next change does not fail at once; never more than a frame may have.
+/// Slightly more substeps than the minimum, so that the next change does not fail at once, but never more than a frame may have.
 pub(super) fn with_a_margin(substeps: u32) -> u32 {
     substeps.saturating_add(substeps / 8 + 1).min(MOST_SUBSTEPS)
 }

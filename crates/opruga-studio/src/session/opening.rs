@@ -1,4 +1,4 @@
-//! What opens another scene, the way back to the one before, and shapes from files, which are taken into the scene.
+//! Opens another scene, returns to the previous one, and adds shapes from files to the scene.
 
 use super::offers::with_a_margin;
 use super::{Edit, Session};
@@ -15,32 +15,32 @@ use std::path::Path;
 use std::sync::Arc;
 
 impl Session {
-    /// Another scene. The one before can be come back to where something was done in it.
+    /// Opens another scene. If the previous one contains work, the user can return to it.
     pub(super) fn open_another(&mut self, name: &str, text: &str, files: Files) -> Result<(), Report> {
         let next = Session::open(name, text, files, self.setting.clone())?;
         self.go_over_to(next, true);
         Ok(())
     }
 
-    /// Puts another session in the place of this one.
+    /// Replaces this session by another one.
     fn go_over_to(&mut self, mut next: Session, playing: bool) {
         self.release();
         (next.show, next.speed, next.playing) = (self.show, self.speed, playing);
         (next.opened, next.messages, next.patience) = (self.opened + 1, self.messages, self.patience.anew());
         next.resets = self.resets;
         let before = std::mem::replace(self, next);
-        // One way back and no more: every session holds its states.
+        // Only one previous session is kept, because every session contains its states.
         let worked_on = before.document.commands() > before.own_commands || !before.undo.is_empty();
         self.before = worked_on.then(|| Box::new(Session { before: None, ..before }));
         self.pacing.rest();
     }
 
-    /// What an undo would do where nothing was done in this scene: the way back to the one before.
+    /// The step that an undo would revert if nothing was done in this scene: the opening of this scene.
     pub(super) fn opening(&self) -> Option<Step> {
         self.before.as_ref().map(|before| Step::Open(before.document.name.clone()))
     }
 
-    /// Goes back to the scene that was open before, as it was left, if there is one.
+    /// Returns to the scene that was open before, as it was left, if there is one.
     pub(super) fn open_before(&mut self) {
         let (Some(step), Some(before)) = (self.opening(), self.before.take()) else { return };
         self.go_over_to(*before, false);
@@ -48,14 +48,14 @@ impl Session {
         self.report(Severity::Done, Report::Undone(step, time), None);
     }
 
-    /// A shape from a file as one more body; a scene around it where this one has another dimension.
+    /// Adds a shape from a file as another body; opens a scene around it if its dimension differs.
     pub(super) fn take_shape(&mut self, shape: &Shape, middle: [f64; 3], size: f64) -> Result<(), Report> {
         let fits = (self.dimension() == 3) == shape.space;
         let files: Vec<(String, Arc<[u8]>)> = match fits {
             true => named_files(&shape.name, &shape.text, &shape.files, &self.setting.registries).into_iter().collect(),
             false => Vec::new(),
         };
-        // Where it cannot be read, or is of several files, the scene around it tells or shows so.
+        // If it cannot be read, or consists of several files, the scene around it reports or shows this.
         let [(_, bytes)] = &files[..] else { return self.open_around(shape) };
         let file = self.free_file(&shape.file, bytes);
         let Some(body) = shape.body(&file, size) else { return Err(Report::NameOfFile(shape.file.clone())) };
@@ -65,7 +65,7 @@ impl Session {
         outcome.map_err(|report| {
             self.files = before;
             match report {
-                // What is said of no other file is said of this one.
+                // Errors about no other file are errors about this one.
                 Report::Scene(mut errors) => {
                     errors.iter_mut().filter(|e| e.file.is_empty()).for_each(|e| e.file.clone_from(&shape.file));
                     Report::Scene(errors)
@@ -75,22 +75,22 @@ impl Session {
         })
     }
 
-    /// A name under which the scene can hold a file of these bytes: its own, or one with a number.
+    /// A name under which the scene can store a file with these bytes: its own, or one with a number.
     fn free_file(&self, file: &str, bytes: &Arc<[u8]>) -> String {
         let (stem, ending) = file.rsplit_once('.').unwrap_or((file, ""));
         let numbered = |number: u32| if number == 1 { file.to_string() } else { format!("{stem}-{number}.{ending}") };
         let free = |name: &String| match self.files.file_in_memory(name) {
             Some(other) => other == bytes,
-            // The same file may lie beside the scene already.
+            // The same file may already exist next to the scene.
             None => self.files.path_of(name).is_none_or(|path| !path.exists() || holds(&path, bytes)),
         };
         (1..=u32::MAX).map(numbered).find(free).unwrap_or_else(|| file.to_string())
     }
 
-    /// A session of the scene around a shape, with as many substeps as it needs.
+    /// A session of a scene around a shape, with as many substeps as it needs.
     ///
     /// # Errors
-    /// What is wrong with the file.
+    /// The errors of the file.
     pub fn around(shape: &Shape, setting: &Setting) -> Result<Session, Report> {
         let document =
             Document::unread(&shape.name, &shape.text, &shape.files, &setting.registries, Some(&shape.file))?;
@@ -111,7 +111,7 @@ impl Session {
         Ok(())
     }
 
-    /// Opens a scene with so many substeps.
+    /// Opens a scene with this number of substeps.
     pub(super) fn open_with(&mut self, name: &str, text: &str, files: Files, substeps: u32) -> Result<(), Report> {
         let mut document = Document::new(name, text)?;
         document.set("time.substeps", &Value::Integer(i64::from(substeps)));
@@ -119,7 +119,7 @@ impl Session {
     }
 }
 
-/// Whether a file holds these bytes and no others.
+/// Whether a file has exactly these bytes.
 fn holds(path: &Path, bytes: &[u8]) -> bool {
     let long = std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() == bytes.len() as u64);
     long && std::fs::read(path).is_ok_and(|content| content == bytes)

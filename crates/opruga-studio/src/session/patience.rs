@@ -1,4 +1,4 @@
-//! How long a frame may take where nobody can ask for its end meanwhile, as on a page, which has one thread.
+//! The time limit of a frame for environments in which nobody can interrupt it, such as a web page, which has one thread.
 
 use super::{Request, Session};
 use crate::report::Report;
@@ -7,58 +7,58 @@ use opruga::BreakOff;
 use std::sync::{Arc, OnceLock};
 use web_time::Instant;
 
-/// How many times as long a frame may take once a person says that it shall be waited for.
+/// The factor by which the limit grows when the user chooses to wait.
 const MORE: f64 = 4.0;
 
-/// Seconds since it was first asked.
+/// Seconds since the first call.
 fn seconds() -> f64 {
     static BEGIN: OnceLock<Instant> = OnceLock::new();
     BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// What ends frames that take long, also by the time.
+/// An interrupter of long frames that also watches the clock.
 pub fn by_the_clock() -> Arc<BreakOff> {
     Arc::new(BreakOff::with_clock(seconds))
 }
 
-/// How long frames are waited for.
+/// The time limit of a frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patience {
-    /// At first [s].
+    /// The initial limit [s].
     first: f64,
-    /// Now [s].
+    /// The present limit [s].
     pub(super) now: f64,
 }
 
 impl Patience {
-    /// Frames are waited for without end.
+    /// No limit.
     pub(super) const ENDLESS: Patience = Patience { first: f64::INFINITY, now: f64::INFINITY };
 
-    /// That of a scene that was just opened.
+    /// The limit for a scene that was just opened.
     pub(super) fn anew(self) -> Patience {
         Patience { now: self.first, ..self }
     }
 }
 
 impl Session {
-    /// What ends a frame that takes long.
+    /// The interrupter of long frames.
     pub fn break_off(&self) -> Arc<BreakOff> {
         Arc::clone(&self.setting.options.break_off)
     }
 
-    /// Ends frames that take longer than this [s] at the last good one, and asks the person whether they shall be waited for. The options
-    /// must hold what [`by_the_clock`] gives.
+    /// Interrupts frames that take longer than this [s], returns to the last good one, and asks the user whether to wait. The options must contain
+    /// the result of [`by_the_clock`].
     pub fn wait_for_frames(&mut self, seconds: f64) {
         self.patience = Patience { first: seconds, now: seconds };
     }
 
-    /// A frame begins.
+    /// Starts the clock of a frame.
     pub(super) fn look_at_the_clock(&self) {
         self.setting.options.break_off.end_after(self.patience.now);
     }
 
-    /// A frame was broken off on the way to what was asked for. Who asked for that has asked for something else; where it took too long,
-    /// time stands and the person is asked.
+    /// Handles the interruption of a frame that was needed for a request. If another request interrupted it, that one takes its place; if it took too
+    /// long, time stops and the user is asked.
     pub(super) fn broken_off(&mut self, wanted: Request) {
         if self.setting.options.break_off.is_asked() || self.patience.now.is_infinite() {
             return;
@@ -70,7 +70,7 @@ impl Session {
         self.report(Severity::Refused, Report::TakesLong(self.patience.now), Some(offer));
     }
 
-    /// Waits longer, and does again what was broken off.
+    /// Waits longer, and repeats the interrupted request.
     pub(super) fn wait_longer(&mut self, seconds: f64) {
         self.patience.now = seconds;
         if let Some(request) = self.refused.take() {

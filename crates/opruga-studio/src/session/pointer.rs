@@ -1,4 +1,4 @@
-//! What the pointer does to bodies: it pulls, pushes and pins.
+//! The actions of the pointer on bodies: pulling, pushing and pinning.
 
 use super::Session;
 use crate::document::Document;
@@ -7,17 +7,17 @@ use crate::report::{Report, Step};
 use crate::shown::Severity;
 use opruga::WorldError;
 
-/// The force of a push for each metre of the displacement of the pointer from where it was pressed [N/m].
+/// The force of a push per metre of displacement of the pointer from the point of the press [N/m].
 const PUSH_STIFFNESS: f64 = 20.0;
 
-/// What a press of the pointer does.
+/// The action of a press of the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grip {
-    /// Pull the nearest node by a spring.
+    /// Pull the nearest node with a spring.
     Pull,
-    /// Push the nearest node by a force in proportion to the displacement of the pointer from the point of the press.
+    /// Push the nearest node with a force proportional to the displacement of the pointer from the point of the press.
     Push,
-    /// Pin the nearest node, or take a pinned one elsewhere.
+    /// Pin the nearest node, or move a pinned one.
     Pin,
 }
 
@@ -27,11 +27,11 @@ pub(super) struct Grabbed {
     grip: Grip,
     body: usize,
     node: u32,
-    /// Command of the world and of the document; none while a push has no force.
+    /// The command in the world and in the document; none while a push has no force.
     command: Option<[usize; 2]>,
     /// The frame at which that command began.
     since: u64,
-    /// Where the body was pressed [m].
+    /// The point of the body that was pressed [m].
     pressed: [f64; 3],
     pointer: [f64; 3],
     /// Whether the pointer has moved since the last push began.
@@ -43,22 +43,22 @@ pub(super) struct Grabbed {
 }
 
 impl Grabbed {
-    /// The force of a push: it follows the pointer alone, wherever the node goes [N].
+    /// The force of a push, which depends only on the pointer, wherever the node moves [N].
     fn force(&self) -> [f64; 3] {
         [0, 1, 2].map(|d| PUSH_STIFFNESS * (self.pointer[d] - self.pressed[d]))
     }
 }
 
-/// A pull that has ended: the world leaves it out with its next frame, the person sees at once that it is over.
+/// A pull that has ended: the world removes it in its next frame, but the display at once.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Released {
     body: usize,
     node: u32,
-    /// The frame at which it was let go, and the last one at which it acts.
+    /// The frame at which it was released, and the last one in which it acts.
     at: [u64; 2],
 }
 
-/// A point that a person has pinned.
+/// A point that the user has pinned.
 #[derive(Clone, Debug)]
 pub(super) struct Pinned {
     body: usize,
@@ -66,7 +66,7 @@ pub(super) struct Pinned {
     command: [usize; 2],
     /// The frame at which it was pinned.
     at: u64,
-    /// The frame at which it was let go.
+    /// The frame at which it was released.
     until: Option<u64>,
 }
 
@@ -78,7 +78,7 @@ impl Pinned {
 }
 
 impl Session {
-    /// Writes a command down; its number in the document.
+    /// Adds a command to the document; returns its numbers in the world and in the document.
     pub(super) fn write(&mut self, given: Given) -> [usize; 2] {
         [given.number, self.document.push_command(given.table)]
     }
@@ -115,7 +115,7 @@ impl Session {
                 }
                 self.remember(past);
             }
-            // It begins with the displacement of the pointer.
+            // It begins when the pointer moves.
             Grip::Push => {}
             Grip::Pin => {
                 let past = self.past(Step::Pin);
@@ -124,7 +124,7 @@ impl Session {
                     self.remember(past);
                     return Ok(());
                 }
-                // A pinned point goes with the pointer and is pinned where that lets go.
+                // A pinned point moves with the pointer and is pinned where it is released.
                 self.take_over(body)?;
                 self.unpin(body, node)?;
                 let given = self.engine.pull(body, node, point)?;
@@ -136,14 +136,14 @@ impl Session {
         Ok(())
     }
 
-    /// The document as it is once the hand has let go of what it holds: nobody would hold it for ever.
+    /// The document as it will be after the pointer has released what it holds, which otherwise would be held for ever.
     pub(super) fn let_go_of_all(&self) -> Document {
         let mut document = self.document.clone();
         if let Some((grabbed, [_, written])) =
             self.grabbed.as_ref().and_then(|grabbed| Some((grabbed, grabbed.command?)))
         {
             let now = self.engine.frames();
-            // What has just begun acts for one frame.
+            // A command that has just begun acts for one frame.
             let until = if grabbed.since < now { self.engine.time() } else { self.time_of(now + 1) };
             document.end_command(written, until);
         }
@@ -163,9 +163,9 @@ impl Session {
         self.pins.iter().position(|pin| (pin.body, pin.node) == (body, node) && pin.holds(now))
     }
 
-    /// Frees a node that a person or the scene has pinned.
+    /// Releases a node that the user or the scene has pinned.
     pub(super) fn let_go(&mut self, body: usize, node: u32) -> Result<(), Report> {
-        // The second press of a double click holds what is freed.
+        // The second press of a double click grabs the released node.
         self.release();
         self.branch()?;
         let past = self.past(Step::Unpin);
@@ -186,7 +186,7 @@ impl Session {
         Ok(())
     }
 
-    /// The pins of a future that is cut off: those that are pinned now stay.
+    /// The pins of a future that is dropped: points that are pinned now stay pinned.
     pub(super) fn cut_pins(&mut self) {
         let now = self.engine.frames();
         self.pins.retain(|pin| pin.at < now);
@@ -210,7 +210,7 @@ impl Session {
         }
     }
 
-    /// Before a frame: the path of a pull grows by a row, a push takes its new force.
+    /// Before a frame: extends the path of a pull by a row, and updates the force of a push.
     pub(super) fn lead_grabbed(&mut self) {
         let Some(mut grabbed) = self.grabbed.take() else { return };
         match (grabbed.grip, grabbed.command) {
@@ -235,7 +235,7 @@ impl Session {
         self.grabbed = Some(grabbed);
     }
 
-    /// A push takes its new force; the first one after the press can be undone.
+    /// Updates the force of a push; the first push after the press can be undone.
     fn begin_to_push(&mut self, grabbed: &mut Grabbed) {
         let first = (!grabbed.has_pushed && grabbed.force() != [0.0; 3]).then(|| self.past(Step::Push));
         if first.is_some()
@@ -250,7 +250,7 @@ impl Session {
         }
     }
 
-    /// A hand that is in the scene itself lets go of a body, now and for good: the person has taken hold of it. A reset gives it back.
+    /// Ends the drags of the scene itself on a body, permanently, because the user has grabbed it. A reset restores them.
     fn take_over(&mut self, body: usize) -> Result<(), Report> {
         let Some(name) = self.engine.name(body) else { return Ok(()) };
         let times = [self.engine.time(), self.time_of(self.engine.frames() + 1)];
@@ -259,7 +259,7 @@ impl Session {
         self.go_on_with(document, gone)
     }
 
-    /// What the scene would do to a body that is taken away now does not come about.
+    /// Removes later actions of the scene on a body that is removed now.
     pub(super) fn forget_later(&mut self, name: &str) -> Result<(), Report> {
         let mut document = self.document.clone();
         match document.forget_later(self.own_commands, name, self.engine.time()) {
@@ -268,12 +268,12 @@ impl Session {
         }
     }
 
-    /// Goes on from here with a document in which so many commands of the scene itself are gone.
+    /// Continues from here with a document from which `gone` commands of the scene itself were removed.
     fn go_on_with(&mut self, document: Document, gone: usize) -> Result<(), Report> {
         let mut engine = self.build(&document)?;
         engine.rewind(&self.engine.snapshot()).map_err(Report::World)?;
         (self.document, self.engine) = (document, engine);
-        // What was recorded stands behind the commands of the scene.
+        // Recorded commands follow those of the scene.
         self.own_commands -= gone;
         for pin in &mut self.pins {
             pin.command[1] -= gone;
@@ -281,7 +281,7 @@ impl Session {
         Ok(())
     }
 
-    /// A push in proportion to the displacement of the pointer; none where that is back where it was pressed.
+    /// Applies a push proportional to the displacement of the pointer; none if the pointer is back at the point of the press.
     fn push_now(&mut self, grabbed: &Grabbed) -> Option<[usize; 2]> {
         let force = grabbed.force();
         if force == [0.0; 3] {
@@ -314,8 +314,8 @@ impl Session {
         }
     }
 
-    /// What the hand does now, which the world learns with its next frame: while time stands still a pull follows the pointer, and
-    /// one that was let go is over. `position_of` gives the position of a node in the scene of these pulls.
+    /// Displays the present action of the pointer, which the world receives in its next frame: while time is stopped, a pull follows the pointer, and
+    /// a released one is gone. `position_of` returns the position of a node in the scene of these pulls.
     pub(super) fn show_hand(
         &self,
         pulls: &mut Vec<[[f64; 3]; 3]>,
@@ -324,7 +324,7 @@ impl Session {
         let now = self.engine.frames();
         for over in self.released.iter().filter(|over| (over.at[0]..=over.at[1]).contains(&now)) {
             let position = position_of(over.body, over.node);
-            // Who has taken hold of the same node since pulls it behind the one that is over.
+            // If the same node was grabbed again, the new pull comes after the one that has ended.
             if let Some(first) = pulls.iter().position(|[node, ..]| Some(*node) == position) {
                 pulls.remove(first);
             }
@@ -342,7 +342,7 @@ impl Session {
         (*pointer, *force) = (grabbed.pointer, stretched.map(|f| share * f));
     }
 
-    /// The push of the hand: its node, where its arrow ends, its force [m, m, N].
+    /// The push of the pointer: its node, the end of its arrow, its force [m, m, N].
     pub(super) fn push_shown(&self, position_of: &dyn Fn(usize, u32) -> Option<[f64; 3]>) -> Option<[[f64; 3]; 3]> {
         let grabbed =
             self.grabbed.as_ref().filter(|grabbed| grabbed.grip == Grip::Push && grabbed.pointer != grabbed.pressed)?;

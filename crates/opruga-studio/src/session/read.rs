@@ -1,4 +1,4 @@
-//! What can be read of a session without changing it.
+//! Read-only access to a session.
 
 use super::{Session, mark};
 use crate::differences::Difference;
@@ -6,35 +6,35 @@ use opruga::Registries;
 use opruga::io::Files;
 
 impl Session {
-    /// The scene with everything that was done up to now; the command line ends at the present frame with the same hash.
+    /// The scene with everything that was done so far; the command line ends at the present frame with the same hash.
     pub fn saved(&self) -> String {
         let mut document = self.let_go_of_all();
         document.set_seconds(self.engine.time().max(self.time_of(self.latest)));
         document.text()
     }
 
-    /// In what the scene on the right differs, where there is one.
+    /// The differences of the right scene, if there is one.
     pub fn differences(&self) -> Option<&[Difference]> {
         self.differences.as_deref()
     }
 
-    /// Whether anything was edited or recorded since it was opened or saved.
+    /// Whether anything was edited or recorded after it was opened or saved.
     pub fn is_edited(&self) -> bool {
         self.mark() != self.clean
     }
 
-    /// A mark of the text of the scene and of what the one beside it differs in, by which they are told from others.
+    /// A fingerprint of the text of the scene and of the differences of the scene beside it.
     pub fn mark(&self) -> u64 {
         let differences = self.differences.iter().flatten().map(|difference| format!("\n{difference:?}"));
         mark(&std::iter::once(self.document.text()).chain(differences).collect::<String>())
     }
 
-    /// The text of the scene as it stands.
+    /// The present text of the scene.
     pub fn text(&self) -> String {
         self.document.text()
     }
 
-    /// Where the files are that the scene names.
+    /// Where the files that the scene names are.
     pub fn files(&self) -> &Files {
         &self.files
     }
@@ -49,7 +49,7 @@ impl Session {
         self.engine.hash()
     }
 
-    /// Frames since the start.
+    /// The number of frames since the start.
     pub fn frames(&self) -> u64 {
         self.engine.frames()
     }
@@ -64,22 +64,22 @@ impl Session {
         &self.document.name
     }
 
-    /// The last frame of this course of things.
+    /// The last frame of this run.
     pub fn latest(&self) -> u64 {
         self.latest
     }
 
-    /// How many messages there have been.
+    /// The number of messages so far.
     pub fn message_count(&self) -> u64 {
         self.messages
     }
 
-    /// Whether it goes to another moment.
+    /// Whether it is going to another moment.
     pub fn is_seeking(&self) -> bool {
         self.goal.is_some()
     }
 
-    /// Whether anything moves: time passes, or another moment is gone to.
+    /// Whether anything moves: time passes, or the session is going to another moment.
     pub fn is_moving(&self) -> bool {
         self.playing || self.goal.is_some()
     }

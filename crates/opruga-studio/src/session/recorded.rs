@@ -1,4 +1,4 @@
-//! A recorded run in the window: its states are there, and what a person does from one of them on is a new course.
+//! A recorded run in the window: its states are available, and the actions of the user from one of them on start a different run.
 
 use super::{KEYFRAME_BYTES, Session};
 use crate::document::Document;
@@ -11,21 +11,20 @@ use opruga::io::Files;
 use opruga::io::recording::{Ending, Recording};
 use std::io::{Read, Seek};
 
-/// A recording that is viewed: frames whose states are there are not computed.
+/// A recording that is viewed: frames with recorded states are not computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Viewed {
     /// The last frame that is as it was recorded.
     until: u64,
-    /// Whether a person has begun a course of their own.
+    /// Whether the user has started a different run.
     left: bool,
 }
 
 impl Session {
-    /// Opens a recorded run at its first frame. As many of its states are held as the memory for keyframes takes; those
-    /// between are computed.
+    /// Opens a recorded run at its first frame. As many of its states are held as fit into the memory for keyframes; those between are computed.
     ///
     /// # Errors
-    /// Why there is nothing to see: a run that a program has led, a scene that this version does not read, damage.
+    /// Why it cannot be viewed: a run that a program controlled, a scene that this version does not read, damage.
     pub fn view<R: Read + Seek>(mut recording: Recording<R>, setting: impl Into<Setting>) -> Result<Session, Report> {
         let header = recording.header().clone();
         if recording.inputs().next().is_some() {
@@ -50,7 +49,7 @@ impl Session {
         for frame in kept.into_iter().step_by(apart) {
             let state = recording.read(frame).map_err(damaged)?.to_vec();
             if frame == 0 {
-                // Where all begins, the scene inside and the states must agree: else they are of other programs.
+                // The scene inside and the states must agree at the start, otherwise another program recorded them.
                 let hash = session.hash();
                 session.engine.rewind(&state.into())?;
                 if session.hash() != hash {
@@ -69,7 +68,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Takes the next frame from the recording, if its state is there and nobody holds anything.
+    /// Takes the next frame from the recording, if its state is there and the pointer holds nothing.
     pub(super) fn recorded_frame(&mut self) -> Result<bool, WorldError> {
         let next = self.engine.frames() + 1;
         if self.recording.is_none() || self.grabbed.is_some() || next > self.latest {
@@ -86,12 +85,12 @@ impl Session {
         self.recording.map(|viewed| viewed.until).filter(|until| *until > 0)
     }
 
-    /// Whether a recording is seen in which nobody has begun a course of their own.
+    /// Whether a recording is viewed and the user has not started a different run.
     pub(super) fn is_as_recorded(&self) -> bool {
         self.recording.is_some_and(|viewed| !viewed.left)
     }
 
-    /// At the end of a recording time stands: what comes later was not recorded, and the person is asked for it.
+    /// Stops time at the end of a recording, because what follows was not recorded, and asks the user.
     pub(super) fn stops_at_the_end(&mut self) -> bool {
         let stops = self.is_as_recorded() && self.engine.frames() >= self.latest && self.grabbed.is_none();
         if stops {
@@ -102,7 +101,7 @@ impl Session {
         stops
     }
 
-    /// From a frame on things take a course of their own.
+    /// Starts a different run from a frame on.
     pub(super) fn leave_the_recording(&mut self, frame: u64) {
         let Some(viewed) = &mut self.recording else { return };
         let first = !viewed.left;

@@ -1,4 +1,4 @@
-//! What there is to see of a session.
+//! The picture of a session.
 
 use super::Session;
 use super::titles::Titles;
@@ -9,7 +9,7 @@ use opruga::core::spec::Values;
 use std::sync::Arc;
 
 impl Session {
-    /// Everything that there is to see now.
+    /// Everything that can be seen now.
     pub fn shown(&mut self) -> Shown {
         let mut shown = self.engine.shown(&self.show);
         self.ends.add(&mut shown);
@@ -63,14 +63,14 @@ impl Session {
         shown
     }
 
-    /// The names by which a person knows the bodies that are there.
+    /// The names under which the user knows the existing bodies.
     fn titles(&self) -> Titles {
-        // Most sessions have renamed nothing; in a crowd bodies are not told one by one.
+        // Most sessions have renamed nothing; in a crowd single bodies have no labels.
         let present = if self.renamed.is_empty() { Vec::new() } else { self.engine.names() };
         if present.len() > 64 { Titles::default() } else { Titles::new(self.renamed.clone(), present) }
     }
 
-    /// A report with the names by which a person knows the bodies.
+    /// A report with the names under which the user knows the bodies.
     pub(super) fn titled(&self, report: Report) -> Report {
         self.titles().in_report(report)
     }
@@ -82,7 +82,7 @@ impl Session {
             if let Difference::Shape(body, field, value) = difference
                 && body == name
             {
-                // A value that the scene on the right was built with is allowed.
+                // The scene on the right was built with this value, so it is allowed.
                 let _ = values.set(values.spec(), field, value.clone(), dimension);
             }
         }
@@ -90,7 +90,7 @@ impl Session {
     }
 }
 
-/// Bodies that were set down anew keep the name of the body they were, also in what is said of them.
+/// Replaced bodies keep the name of the original body, also in messages about them.
 fn give_titles(shown: &mut Shown, titles: &Titles) {
     if titles.is_empty() {
         return;

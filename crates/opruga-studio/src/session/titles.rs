@@ -1,4 +1,4 @@
-//! The names by which a person knows bodies: one that was set down anew has another in the scene.
+//! The names under which the user knows bodies: a replaced body has another name in the scene.
 
 use crate::exploded::Exploded;
 use crate::report::Report;
@@ -8,12 +8,12 @@ use opruga::math::message::AnyMessage;
 use opruga::world::error::Part;
 use opruga::{Warning, WorldError};
 
-/// How bodies were renamed, and which there are.
+/// How bodies were renamed, and which ones exist.
 #[derive(Debug, Default)]
 pub(super) struct Titles {
     /// Old and new names, in the order in which they were given.
     renamed: Vec<(String, String)>,
-    /// The names of those that are there.
+    /// The names of the existing bodies.
     present: Vec<String>,
 }
 
@@ -22,15 +22,15 @@ impl Titles {
         Titles { renamed, present }
     }
 
-    /// Whether every body is known by its name.
+    /// Whether every body is known by its name in the scene.
     pub(super) fn is_empty(&self) -> bool {
         self.renamed.is_empty()
     }
 
-    /// The name of the body that this one was, unless there is another one of that name.
+    /// The name of the original of this body, unless another body has that name.
     pub(super) fn of<'a>(&'a self, name: &'a str) -> &'a str {
         let mut title = name;
-        // From the last that was renamed to the first: after an undo the same names may go round in a circle.
+        // From the last renamed to the first: after an undo, the names may form a cycle.
         for (old, new) in self.renamed.iter().rev() {
             if new == title {
                 title = old;
@@ -39,7 +39,7 @@ impl Titles {
         if self.present.iter().any(|other| other == title) { name } else { title }
     }
 
-    /// The same for what stands in quotes in a text: a name, or a path that begins with one.
+    /// The same for the parts of a text in quotes: a name, or a path that begins with one.
     pub(super) fn in_text(&self, text: &str) -> String {
         if self.is_empty() {
             return text.into();

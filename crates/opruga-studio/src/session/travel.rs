@@ -1,4 +1,4 @@
-//! Back and forth in time: keyframes, other futures, undo and redo.
+//! Travel in time: keyframes, different futures, undo and redo.
 
 use super::pointer::Pinned;
 use super::{KEYFRAME_BYTES, Session};
@@ -11,26 +11,26 @@ use crate::report::{Report, Step};
 use crate::samples::Samples;
 use crate::shown::Severity;
 
-/// A moment that can be gone back to.
+/// A moment to which the user can return.
 #[derive(Clone, Debug)]
 pub(super) struct Past {
-    /// What was done after it.
+    /// The action after it.
     pub(super) label: Step,
     pub(super) document: Document,
     pub(super) own_commands: usize,
-    /// The scene as it began then.
+    /// The scene at its start at that time.
     pub(super) start: Document,
     pub(super) frame: u64,
-    /// The frame up to which the course of things that is left for this one is the same.
+    /// The frame up to which the run that was left is identical with this one.
     pub(super) common: u64,
     pub(super) pins: Vec<Pinned>,
     pub(super) differences: Option<Vec<Difference>>,
-    /// The press of the hand that drew a parameter, where one did.
+    /// The press during which a parameter was dragged, if any.
     pub(super) press: Option<u64>,
 }
 
 impl Session {
-    /// Goes to a frame: to the nearest keyframe before it, and from there frame by frame in the coming ticks.
+    /// Goes to a frame: to the nearest keyframe before it, and from there frame by frame in the next ticks.
     pub(super) fn seek(&mut self, frame: u64) {
         let frame = frame.min(self.latest);
         let now = self.engine.frames();
@@ -44,7 +44,7 @@ impl Session {
         self.head_for(frame);
     }
 
-    /// Makes a frame the one to go on to in the coming ticks, or stays there.
+    /// Makes a frame the goal of the next ticks, or stays there.
     fn head_for(&mut self, frame: u64) {
         self.replaced += 1;
         self.goal = (frame > self.engine.frames()).then_some(frame);
@@ -55,8 +55,8 @@ impl Session {
         self.pacing.rest();
     }
 
-    /// Ends the way to a moment. At the end of what is known, what was done there while time stood still is seen at once;
-    /// earlier it is not, since what is done anew there takes the place of all that followed.
+    /// Arrives at a moment. At the end of the computed run, the commands given there while time was stopped take effect at once. At an earlier moment
+    /// they do not, because new actions replace everything that followed.
     pub(super) fn arrive(&mut self) {
         self.replaced += 1;
         self.goal = None;
@@ -69,14 +69,14 @@ impl Session {
         self.stop_where_a_body_exploded();
     }
 
-    /// Goes to the end of the scene, frame by frame, as if it had been there already.
+    /// Goes to the end of the scene, frame by frame, as if it had been computed already.
     pub fn go_to_the_end(&mut self) {
         let end = self.engine.shown(&self.show).seconds / self.engine.frame_seconds();
         self.latest = self.latest.max(end.round() as u64);
         self.seek(self.latest);
     }
 
-    /// What is done now replaces what was recorded later: the future is written anew from here.
+    /// Starts a different future from here: new actions replace what was recorded later.
     pub(super) fn branch(&mut self) -> Result<(), Report> {
         let now = self.engine.frames();
         if now >= self.latest {
@@ -98,7 +98,7 @@ impl Session {
         Ok(())
     }
 
-    /// A point to come back to. What the hand holds then it holds no longer when one comes back.
+    /// The present moment, to return to later; the pointer then no longer holds what it holds now.
     pub(super) fn past(&self, label: Step) -> Past {
         Past {
             label,
@@ -113,10 +113,10 @@ impl Session {
         }
     }
 
-    /// Remembers the moment before something was done.
+    /// Remembers the moment before an action.
     pub(super) fn remember(&mut self, past: Past) {
-        // A slider that is drawn is one edit, from the press to where it is let go, however much time passes meanwhile; two
-        // bodies that are added at one moment are two.
+        // A slider that is dragged is one edit, from the press to the release, however much time passes; two bodies that are added at the same moment
+        // are two edits.
         let together = |last: &Past| match (last.press, past.press) {
             (Some(one), Some(other)) => one == other,
             _ => last.frame == past.frame,
@@ -131,20 +131,20 @@ impl Session {
         }
     }
 
-    /// Builds the world of a document, and the one on its right.
+    /// Builds the world of a document, and that of the scene on its right.
     pub(super) fn build(&self, document: &Document) -> Result<Box<dyn Engine>, Report> {
         pair::build(document, self.differences.as_deref(), &self.files, &self.setting)
     }
 
-    /// Shows the scene twice, the second time with differences, or once (none). Both go from the start to the present
-    /// moment again: what differs has differed all the time.
+    /// Shows the scene twice, the second time with differences, or once (none). Both are computed from the start to the present moment again, because
+    /// the differences apply from the start.
     pub(super) fn compare(&mut self, differences: Option<Vec<Difference>>) -> Result<(), Report> {
         if differences == self.differences {
             return Ok(());
         }
         let newest = differences.as_ref().and_then(|list| list.last()).map(Difference::about);
         let past = self.past(newest.map_or(Step::Compare, Step::Differ));
-        // Where both are still on the way to a moment, that moment.
+        // If both are still on the way to a moment, that moment.
         let (latest, goal) = (self.latest, self.goal.unwrap_or(self.engine.frames()));
         self.with_differences(differences, |session| {
             session.take(session.document.clone(), session.own_commands, [latest; 2])?;
@@ -156,7 +156,7 @@ impl Session {
         Ok(())
     }
 
-    /// Takes other differences along with what `act` does. Where that is refused they stay as they were.
+    /// Changes the differences together with `act`; if that is refused, they stay as they were.
     fn with_differences(
         &mut self,
         differences: Option<Vec<Difference>>,
@@ -165,7 +165,7 @@ impl Session {
         if differences == self.differences {
             return act(self);
         }
-        // Keyframes are those of other worlds.
+        // The keyframes belong to other worlds.
         let keyframes = std::mem::replace(&mut self.keyframes, Keyframes::new(KEYFRAME_BYTES));
         let before = std::mem::replace(&mut self.differences, differences);
         let outcome = act(self);
@@ -175,7 +175,7 @@ impl Session {
         outcome
     }
 
-    /// Builds the world of a document and goes to a frame; up to the second one it is the same as the present course of things.
+    /// Builds the world of a document and goes to a frame; up to frame `shared` it is identical with the present run.
     pub(super) fn take(
         &mut self,
         document: Document,
@@ -186,7 +186,7 @@ impl Session {
         let mut engine = self.build(&document)?;
         let shared = frame.min(common).min(self.engine.frames().max(self.latest));
         let state = self.keyframes.before(shared).map(|(_, state)| state.clone());
-        // Where the start itself was changed there is no common past, and the way goes from the start.
+        // If the start itself was changed, there is no common past, and everything is computed from the start.
         let common = shared > 0 && state.is_some_and(|state| engine.rewind(&state).is_ok());
         (self.document, self.engine, self.own_commands) = (document, engine, own_commands);
         if common {
@@ -213,14 +213,14 @@ impl Session {
             self.open_before();
             return Ok(());
         };
-        // Done again, it leaves the course that there is then where this one is left now.
+        // A redo leaves the run at the same point at which this one is left now.
         let present = Past { common: past.common, ..self.past(past.label.clone()) };
         self.with_differences(past.differences, |session| {
             session.take(past.document, past.own_commands, [past.frame, past.common])
         })?;
         (self.pins, self.start) = (past.pins, past.start);
         self.undo.pop();
-        // What is redone begins where it was done.
+        // A redone action begins where it was done.
         self.redo.push(present);
         let time = self.time_of(past.frame);
         self.report(Severity::Done, Report::Undone(past.label, time), None);
@@ -252,11 +252,11 @@ impl Session {
             self.seek(0);
             return Ok(());
         }
-        // What is done after it begins anew.
+        // Actions after it start a new run.
         let past = Past { common: 0, ..self.past(Step::Reset) };
         let start = self.start.clone();
         let own_commands = start.commands();
-        // A hand may have taken over from a recorded one without writing anything behind it.
+        // A pull may have replaced a recorded drag without recording anything.
         let recorded = past.document.text() != start.text();
         self.take(start, own_commands, [0; 2])?;
         if recorded {

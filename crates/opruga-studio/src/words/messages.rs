@@ -1,4 +1,4 @@
-//! Messages in words.
+//! The texts of messages.
 
 use super::{Language, Part};
 use crate::differences::Difference;
@@ -7,7 +7,7 @@ use crate::report::{Report, Step};
 use opruga::core::spec::Value;
 use opruga::draw::ArrowKind;
 
-/// A sentence of both languages, the right one of which is taken.
+/// Chooses between a sentence in English and one in Croatian.
 macro_rules! either {
     ($language:expr, $english:literal, $croatian:literal) => {
         match $language {
@@ -18,10 +18,10 @@ macro_rules! either {
 }
 
 impl Language {
-    /// What can be undone, in a word or two.
+    /// The name of an action that can be undone, in a word or two.
     pub fn done(self, step: &Step) -> String {
         match step {
-            // Of a path the last name is that of the field; what comes before it is seen in the panel.
+            // The last name of a path is the field; the rest is visible in the panel.
             Step::Set(path) | Step::Differ(path) => self.field_word(path.rsplit('.').next().unwrap_or(path)),
             Step::Shape(field) => self.field_word(field),
             Step::Models => self.step_models().into(),
@@ -43,7 +43,7 @@ impl Language {
         }
     }
 
-    /// What an arrow of a kind stands for.
+    /// The meaning of a kind of arrow.
     pub fn arrow(self, kind: ArrowKind) -> &'static str {
         match kind {
             ArrowKind::Velocity => self.arrow_of_velocity(),
@@ -54,7 +54,7 @@ impl Language {
         }
     }
 
-    /// In what the right side differs, in a few words for the picture.
+    /// A difference of the right side in a few words, for the picture.
     pub fn difference(self, difference: &Difference) -> String {
         let named = |field: &str, value: &Value| match value {
             Value::Number(x) => format!("{} {}", self.field_word(field), opruga::draw::format_value(*x)),
@@ -71,7 +71,7 @@ impl Language {
         }
     }
 
-    /// What a message says.
+    /// The text of a report.
     #[expect(clippy::too_many_lines, reason = "a table: one arm for every message")]
     pub fn report(self, report: &Report) -> String {
         match report {

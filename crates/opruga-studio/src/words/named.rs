@@ -1,13 +1,13 @@
-//! How integrators, models, shapes, obstacles and their parameters are called, and what is said of them. In English that is what
-//! they say of themselves; in other languages what stands in the translation, to which a program adds the names of its own kinds
-//! (`Translation::add_names`). A kind without a name there is called as in the scene file, and its English sentence is marked as such.
+//! The names of integrators, models, shapes, obstacles and their parameters, and their descriptions. In English these come from the specifications.
+//! In other languages they come from the translation, to which a program adds the names of its own kinds (`Translation::add_names`). A kind without a
+//! name there has its name from the scene file, and its English description is marked as such.
 
 use super::{Language, scene_titles};
 use opruga::Warning;
 use opruga::core::spec::{Allowed, Condition, Default as Unset, Field, Spec};
 use opruga::words::Named;
 
-/// What a kind is a kind of.
+/// The part of a scene that a kind belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// An integrator.
@@ -18,7 +18,7 @@ pub enum Part {
     Shape,
     /// An obstacle.
     Obstacle,
-    /// How bodies touch one another.
+    /// Contact between bodies.
     Contact,
 }
 
@@ -34,18 +34,18 @@ impl Part {
     }
 }
 
-/// A word of the scene file as it is read aloud.
+/// A word of the scene file in readable form.
 fn plain(word: &str) -> String {
     word.replace('_', " ")
 }
 
 impl Language {
-    /// What a path names, in a language that has names of its own.
+    /// The name of a path in a language with translated names.
     fn named(self, path: &[&str]) -> Option<Named> {
         self.translation().and_then(|known| known.named(path))
     }
 
-    /// What a parameter of a kind is called, likewise.
+    /// The name of a parameter of a kind in such a language.
     fn parameter(self, part: Part, of: &str, word: &str) -> Option<Named> {
         self.translation().and_then(|known| known.named_parameter(part.word(), of, word))
     }
@@ -65,7 +65,7 @@ impl Language {
         self.parameter(part, of, word).map_or_else(|| plain(word), |known| known.name.into())
     }
 
-    /// The name of a field of which the last word of its path alone is known.
+    /// The name of a field of which only the last word of its path is known.
     pub(super) fn field_word(self, word: &str) -> String {
         let of_world = match (self, word) {
             (Language::English, _) => return plain(word),
@@ -84,7 +84,7 @@ impl Language {
         known.map_or_else(|| plain(word), |known| known.name.into())
     }
 
-    /// The sentence of a field, what it may be, and what it is where nobody says.
+    /// The description of a field, with its allowed values and its default.
     pub fn sentence(self, part: Part, of: &str, about: &Field, dimension: usize) -> String {
         let known = self.parameter(part, of, about.name);
         let sentence = known.map_or_else(|| self.english(about.documentation), |known| known.about.into());
@@ -99,7 +99,7 @@ impl Language {
         format!("{sentence}\n{allowed}; {}: {default}", self.unsaid())
     }
 
-    /// What must hold for a field to have an effect.
+    /// The condition under which a field has an effect.
     pub fn effect_only(self, part: Part, of: &str, condition: &Condition) -> String {
         if self == Language::English {
             return format!("Has an effect only {}.", condition.text());
@@ -122,12 +122,12 @@ impl Language {
         format!("Djeluje samo {condition}.")
     }
 
-    /// The name of a word that a field may take.
+    /// The name of a word that is a value of a field.
     pub fn choice(self, word: &str) -> String {
         self.named(&["choice", word]).map_or_else(|| plain(word), |known| known.name.into())
     }
 
-    /// The name of what a model tells of a body.
+    /// The name of a reading of a model.
     pub fn reading(self, word: &str) -> String {
         self.named(&["reading", word]).map_or_else(|| plain(word), |known| known.name.into())
     }
@@ -143,7 +143,7 @@ impl Language {
         if flag { self.yes() } else { self.no() }
     }
 
-    /// What values are allowed.
+    /// The allowed values.
     fn allowed(self, range: &Allowed, dimension: usize) -> String {
         if let Allowed::Choice(choices) = range {
             return choices.iter().map(|word| self.choice(word)).collect::<Vec<_>>().join(", ");
@@ -157,7 +157,7 @@ impl Language {
         warning.about.as_ref().map_or_else(|| warning.message.clone(), |about| self.in_full(&**about))
     }
 
-    /// Words of which there are English ones alone, told as such.
+    /// English words without a translation, marked as such.
     pub(crate) fn english(self, text: &str) -> String {
         match self {
             Language::English => text.into(),
@@ -172,7 +172,7 @@ mod tests {
     use opruga::core::spec::Bound;
     use std::collections::BTreeSet;
 
-    /// Everything that the program knows, in both dimensions.
+    /// All kinds that the program knows, in both dimensions.
     fn all() -> Vec<(Part, &'static Spec)> {
         let registry = opruga::Registry::<2>::default();
         let space = opruga::Registry::<3>::default();

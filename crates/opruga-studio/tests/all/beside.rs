@@ -1,6 +1,6 @@
-//! The same scene under two configurations, side by side.
+//! The same scene in two configurations, side by side.
 #![allow(missing_docs)]
-// Distances in pictures may differ in a last bit.
+// Distances in pictures may differ in the last bit.
 #![allow(clippy::disallowed_methods)]
 
 use opruga::Options;
@@ -34,7 +34,7 @@ fn pass(session: &mut Session, frames: u32) {
     (0..frames).for_each(|_| ask(session, Request::Step));
 }
 
-/// In what the right side differs, in words.
+/// The differences of the right side in words.
 fn words(beside: &Beside) -> Vec<String> {
     beside.differences.iter().map(|difference| Language::English.difference(difference)).collect()
 }
@@ -114,7 +114,7 @@ fn the_right_side_is_the_scene_with_the_differences_and_the_distance_is_that_bet
     assert_eq!(beside(&mut session).right.hash, None, "nobody looks at it");
     ask(&mut session, Request::Show(Show { hash: true, ..Show::default() }));
     assert_eq!(beside(&mut session).right.hash, Some(right.hash()));
-    // Back and forth in time, both go along.
+    // Both sides go back and forth in time together.
     ask(&mut session, Request::Seek(7));
     ask(&mut session, Request::Seek(42));
     assert_eq!(beside(&mut session).distances, Some([mean, told]));
@@ -148,7 +148,7 @@ fn a_difference_that_is_refused_leaves_everything_as_it_was() {
 
 #[test]
 fn a_right_side_that_diverges_says_where_and_the_left_one_goes_on() {
-    // A force without measure, which the scene shortens and the right side does not.
+    // An excessive force, which the scene limits and the right side does not.
     let text = opruga::scenes::find("ball").expect("it").replace("[world]", "[world]\nlargest_force = 100.0").replace(
         "[[collider]]",
         "[[load]]\nkind = \"force\"\nbody = \"ball\"\nvalue = [1e300, 0.0]\ncurve = [[0.0, 0.0], [0.2, 0.0], [0.3, 1.0]]\n\n[[collider]]",
@@ -169,7 +169,7 @@ fn a_right_side_that_diverges_says_where_and_the_left_one_goes_on() {
     // Before that moment it still moves.
     ask(&mut session, Request::Seek(0));
     assert!(beside(&mut session).stopped.is_none());
-    // What is set behind it goes on in two worlds that are built anew and know the reason all the same.
+    // Values that are set after it apply in two worlds that are rebuilt, and the reason is still known.
     ask(&mut session, Request::Seek(38));
     ask(&mut session, Request::Set("world.gravity".into(), Value::Numbers(vec![0.5, -5.0])));
     assert_eq!((session.latest(), beside(&mut session).stopped), (38, stopped));
@@ -226,7 +226,7 @@ fn the_sides_can_differ_in_resolution_and_are_compared_by_what_both_have() {
     assert_eq!((shown.bodies[0].nodes, right.right.bodies[0].nodes, right.right.frames), (36, 90, 0));
     assert_eq!(words(right), ["vertices 90"]);
     assert!(right.distances.is_none(), "there is no distance between nodes that are not the same");
-    // A polygon of n corners in a circle: n/2 sin(2π/n) of its square.
+    // The area of a polygon of n corners in a circle: n/2 sin(2π/n) times the square of the radius.
     let polygon = |n: f64| 0.5 * n * (std::f64::consts::TAU / n).sin() * 0.5 * 0.5;
     let wanted = polygon(90.0) - polygon(36.0);
     let found = right.volume.expect("areas");
@@ -264,7 +264,7 @@ fn a_pull_on_either_side_takes_the_nodes_that_lie_at_the_same_place_at_rest_and_
         ask(&mut session, Request::Release);
         ask(&mut session, Request::Grab(Grip::Pin, 0, shown.picture.bodies[0].positions[27]));
         pass(&mut session, 4);
-        // The scene that is saved of the right side comes to its state.
+        // The saved scene of the right side reaches the same state.
         let differences = session.differences().expect("two scenes").to_vec();
         let document = Document::new("ball", &session.saved()).expect("a text");
         let (right, _) = right_of(&document, &differences, &opruga::scenes::files(), &opruga::Registries::default())
@@ -277,7 +277,7 @@ fn a_pull_on_either_side_takes_the_nodes_that_lie_at_the_same_place_at_rest_and_
         for name in ["kinetic", "elastic", "gas", "work_user"] {
             assert_eq!(column(&mut session, &format!("right.{name}")), column(&mut alone, name), "{on_right} {name}");
         }
-        // And what is computed again from the start comes to the same.
+        // Computed again from the start, it reaches the same state as well.
         let before = session.shown().beside.expect("two").right.picture.bodies[0].positions.clone();
         ask(&mut session, Request::Seek(0));
         let last = session.latest();

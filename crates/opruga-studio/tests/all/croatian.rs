@@ -1,4 +1,4 @@
-//! What is refused and warned of while somebody works on a scene is said in Croatian too, to the last word.
+//! Errors and warnings while the user works on a scene have a complete Croatian translation.
 
 use opruga::core::error::BuildError;
 use opruga::core::spec::{Value, Values};
@@ -50,7 +50,7 @@ fn integrator(kind: &str, given: &[(&str, Value)]) -> Values {
     values(registry.integrators().into_iter().find(|spec| spec.kind == kind).expect("an integrator"), given)
 }
 
-/// What is said in Croatian of what is refused.
+/// The Croatian text about a refused request.
 fn refused(session: &mut Session, request: Request) -> String {
     session.handle(request.clone());
     let message = session.shown().message.filter(|message| message.severity == Severity::Refused);
@@ -103,7 +103,7 @@ fn what_models_integrators_and_the_world_refuse_is_said_in_croatian() {
     assert!(english.is_empty(), "{english:#?}");
 }
 
-/// Numbers have the digits that a person reads, and the body stands there in Croatian.
+/// Numbers are rounded to a readable number of digits, and the body is named in Croatian.
 #[test]
 fn places_and_numbers_of_the_world_are_said_in_croatian_as_in_english() {
     let (time, last) = (0.101_041_666_666_666_67, 0.1);
@@ -182,7 +182,7 @@ fn meshes() -> Vec<(u8, &'static str, &'static str, Vec<u8>)> {
     samples.filter(|(_, _, shape, _)| shape.starts_with("kind = \"mesh\"")).collect()
 }
 
-/// What is wrong with a scene of one body from a file; nothing where it is sound.
+/// The errors of a scene with one body from a file; none if the file is sound.
 fn wrong_with(dimension: u8, name: &str, shape: &str, bytes: &[u8]) -> Option<String> {
     let named = name.replace(".node", ".ele");
     let text = format!(
@@ -195,7 +195,7 @@ fn wrong_with(dimension: u8, name: &str, shape: &str, bytes: &[u8]) -> Option<St
     Some(Language::Croatian.report(&said))
 }
 
-/// Mesh files that are cut off, with words that cannot be, or with lines too many or too few.
+/// Mesh files that are truncated, contain invalid words, or have too many or too few lines.
 #[test]
 fn what_is_wrong_with_mesh_files_is_said_in_croatian() {
     let samples = meshes();
@@ -210,7 +210,7 @@ fn what_is_wrong_with_mesh_files_is_said_in_croatian() {
             let starts = (0..bytes.len()).filter(|at| !blank(at) && (*at == 0 || blank(&(at - 1))));
             starts.map(|from| (from, (from..bytes.len()).find(blank).unwrap_or(bytes.len()))).collect()
         };
-        // As many of a long file as of a short one.
+        // The same number for a long file as for a short one.
         for &(from, to) in words.iter().step_by(words.len().div_ceil(48)) {
             tampered.push(bytes[..from].to_vec());
             tampered.push([&bytes[..from], &bytes[to..]].concat());
@@ -219,17 +219,17 @@ fn what_is_wrong_with_mesh_files_is_said_in_croatian() {
                 tampered.push([&bytes[..from], word.as_bytes(), &bytes[to..]].concat());
             }
         }
-        // Some as they are, without what mends them.
+        // Some as they are, without the repairs.
         let plain = tampered.iter().step_by(4).map(|bytes| (bytes, "kind = \"mesh\""));
         for (bytes, shape) in tampered.iter().map(|bytes| (bytes, *shape)).chain(plain) {
             let Some(said) = wrong_with(*dimension, name, shape, bytes) else { continue };
             count += 1;
             for line in said.lines() {
-                // Places and lines of the file stand beside what is said.
+                // Locations and lines of the file are next to the message.
                 let own = line.split_once("]: ").map(|(_, said)| said);
                 let own = own.or(line.strip_prefix("  = dopušteno: ")).or(line.strip_prefix("  = savjet: "));
                 let Some(own) = own else { continue };
-                // What others say of a text stays as it is, in quotes; `a` is a word of both languages.
+                // Texts of other programs stay as they are, in quotes; `a` is a word of both languages.
                 let own: String = own.split(['„', '”']).step_by(2).collect();
                 let words = [" the ", " an ", " is ", " are ", " of ", " or ", " in ", " and ", "whole", "only "];
                 if own.contains(ENGLISH) || words.iter().any(|word| format!(" {own} ").contains(word)) {

@@ -1,4 +1,4 @@
-//! Scenes that are kept: with the files that they name, and against the loss of the window.
+//! Saved scenes: with the files that they name, and against the loss of the window.
 
 use opruga::Options;
 use opruga::io::Files;
@@ -10,7 +10,7 @@ use opruga_studio::share::Shared;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// A folder that goes with the test.
+/// A folder that is removed at the end of the test.
 struct Room(PathBuf);
 
 impl Room {
@@ -33,7 +33,7 @@ fn open(name: &str) -> Session {
     Session::open(name, text, opruga::scenes::files(), Options::default()).expect("it opens")
 }
 
-/// Frames with a pull in the middle of them.
+/// Frames with a pull in the middle.
 fn pull(session: &mut Session) {
     (0..8).for_each(|_| session.handle(Request::Step));
     let node = session.shown().picture.bodies[0].positions[0];
@@ -46,7 +46,7 @@ fn pull(session: &mut Session) {
     (0..5).for_each(|_| session.handle(Request::Step));
 }
 
-/// The hash at the end of a scene file, with the files that lie beside it.
+/// The hash at the end of a scene file, with the files next to it.
 fn run(path: &Path) -> u64 {
     let text = std::fs::read_to_string(path).expect("the scene is there");
     let opened = Session::open("again", &text, Files::beside(path), Options::default());
@@ -77,7 +77,7 @@ fn a_saved_scene_that_names_files_lies_beside_them_and_runs_to_the_same_bits() {
         assert!(written.len() > 1 && written.iter().all(|path| path.is_file()), "{written:?}");
         assert_eq!(run(&written[0]), session.hash());
     }
-    // A scene without files is a file by itself, and replaces none.
+    // A scene without files is a single file, and replaces none.
     let ball = open("ball");
     for expected in ["ball.toml", "ball-2.toml"] {
         let written = folder.scene("ball", &ball.saved(), ball.files(), ball.registries()).expect("it is written");
@@ -132,7 +132,7 @@ fn row_93_what_is_done_is_kept_while_it_is_done() {
     let mut again = rescue::resume(&rescue::read(&path).expect("it is read"), Options::default()).expect("opens");
     to_the_end(&mut again);
     assert_eq!((again.frames(), again.hash()), (frames, hash));
-    // Beside it stands that it is not saved yet, until it is.
+    // A second file says that it is not saved yet, until it is.
     let until = |rescue: &mut Rescue, edited: bool| {
         while rescue::mark_of(&path).exists() != edited {
             assert!(begin.elapsed() < Duration::from_secs(120), "edited: {edited}");

@@ -1,4 +1,4 @@
-//! What a page in a browser does, tried without one: scenes in addresses, the simulation in turns, work beside the interface.
+//! The functions of a web page, tested without one: scenes in addresses, the simulation in turns, work in the background.
 #![allow(missing_docs)]
 
 use opruga::Options;
@@ -95,7 +95,7 @@ fn a_long_time_without_a_turn_is_not_made_up_for() {
     let before = link.shown().frames;
     std::thread::sleep(Duration::from_millis(600));
     link.turn();
-    // A tenth of a second at most, of which the first turn may have owed a frame.
+    // At most a tenth of a second, of which a frame may have been due before the first turn.
     let frames = link.shown().frames - before;
     assert!((1..=7).contains(&frames), "{frames} frames");
 }

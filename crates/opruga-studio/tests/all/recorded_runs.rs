@@ -17,7 +17,7 @@ use std::io::Cursor;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-/// Records the ball with overrides, a state in so many frames; the bytes, and the hash of every frame.
+/// Records the ball with overrides, with one state every `every` frames; returns the bytes, and the hash of every frame.
 fn record(every: u64, led: bool) -> (Vec<u8>, Vec<u64>) {
     let text = opruga::scenes::find("ball").expect("it comes with the program");
     let overrides: Vec<(String, String)> =
@@ -66,7 +66,7 @@ fn arrive(session: &mut Session) {
     }
 }
 
-/// Any moment of a recorded run is that of the run, wherever one comes from.
+/// Any moment of a recorded run is that of the run, whatever moment was shown before.
 #[test]
 fn every_frame_of_a_recording_is_seen_as_it_was() {
     for every in [1, 7, 32] {
@@ -78,7 +78,7 @@ fn every_frame_of_a_recording_is_seen_as_it_was() {
             arrive(&mut session);
             assert_eq!((session.frames(), session.hash()), (frame, hashes[frame as usize]), "every {every}");
         }
-        // Played, it comes by the same frames.
+        // Played, it shows the same frames.
         for frame in 33..=90 {
             session.handle(Request::Step);
             assert_eq!(session.hash(), hashes[frame], "every {every}, frame {frame}");
@@ -86,7 +86,7 @@ fn every_frame_of_a_recording_is_seen_as_it_was() {
     }
 }
 
-/// Where a recording ends time stands and the person is asked; what comes then is marked as a course of its own.
+/// At the end of a recording time stops and the user is asked; what follows is marked as a different run.
 #[test]
 fn time_stands_at_the_end_of_a_recording_until_somebody_wants_a_course_of_their_own() {
     let (bytes, hashes) = record(7, false);
@@ -116,7 +116,7 @@ fn time_stands_at_the_end_of_a_recording_until_somebody_wants_a_course_of_their_
     assert_eq!(shown.recorded_until, Some(90), "the recording still ends where it ended");
 }
 
-/// What a person does within a recording is a new course, which the command line repeats from the saved scene.
+/// Actions of the user within a recording start a different run, which the command line repeats from the saved scene.
 #[test]
 fn a_recording_goes_on_by_hand() {
     let (bytes, hashes) = record(1, false);
@@ -159,7 +159,7 @@ fn what_cannot_be_viewed_says_why() {
     other[place + 6] = b'6';
     let changed = Recording::open(Cursor::new(&other[..])).map(|_| refused(&other));
     assert!(changed.is_err() || changed == Ok(Report::Recording(ViewError::OtherProgram {})), "{changed:?}");
-    // One bit of a state is another one: its bytes are named.
+    // One bit of a state is changed: its bytes are named.
     let mut damaged = bytes.clone();
     let place = damaged.len() * 2 / 3;
     damaged[place] ^= 1;
@@ -169,7 +169,7 @@ fn what_cannot_be_viewed_says_why() {
     assert!((from..to).contains(&(place as u64)), "{from} {place} {to}");
 }
 
-/// A run that was killed before its first frame, and one behind whose frames there is something else.
+/// A run that was killed before its first frame, and one with something else after its frames.
 #[test]
 fn a_recording_without_frames_and_one_with_damage_behind_them_are_not_viewed() {
     let (bytes, _) = record(1, false);

@@ -1,4 +1,4 @@
-//! A model that only this test knows: a program that registers it finds it in the studio, with its start value and its words.
+//! A model that only this test knows: a program that registers it finds it in the studio, with its initial value and its texts.
 
 use super::screen::window::{SIZE, Window};
 use egui_kittest::kittest::Queryable;
@@ -23,7 +23,7 @@ const SPEC: Spec = Spec {
     roles: &[],
 };
 
-/// U = ½ k |x − X|² for every node; the bed refuses bodies of more than 100 nodes.
+/// U = ½ k |x − X|² for every node; the bed refuses bodies with more than 100 nodes.
 struct BedModel;
 impl Model<2> for BedModel {
     fn spec(&self) -> &'static Spec {
@@ -96,7 +96,7 @@ fn a_registered_model_has_its_own_words_in_both_languages() {
     assert_eq!(Language::Croatian.summary(Part::Model, &SPEC), format!("{} (na engleskom)", SPEC.summary));
     let sentence = Language::English.sentence(Part::Model, SPEC.kind, &K, 2);
     assert!(sentence.starts_with(K.documentation) && sentence.contains("a number > 0"), "{sentence}");
-    // Its program brings the names of the other language.
+    // Its program provides the names in the other language.
     let names = "model-bed_of_a_test = ležaj\n    .about = ležaj koji zna samo test\n\
                  model-bed_of_a_test-tightness = napetost\n    .about = Krutost k svakog čvora.\n";
     assert_eq!(Translation::croatian().add_names(names), Ok(()));
@@ -121,7 +121,7 @@ fn what_a_registered_model_refuses_is_told_and_the_scene_goes_on_with_what_it_ta
     let before = small.hash();
     small.handle(Request::Step);
     assert_eq!((small.shown().frames, small.shown().bodies[0].models.clone()), (1, vec![bed()]));
-    // What was saved is opened again, beside the recorded way.
+    // The saved scene is opened again, next to the recorded one.
     small.handle(Request::Reset);
     assert_eq!(small.hash(), before);
 }

@@ -1,4 +1,4 @@
-//! Bodies that leave every measure.
+//! Bodies that grow beyond all proportions.
 
 use super::{ask, pass, quiet};
 use crate::report::Report;
@@ -8,7 +8,7 @@ use opruga::Options;
 use opruga::core::spec::Value;
 use std::time::Duration;
 
-/// The undamped ball under a rule without a stable step, and a gentle scene of falling.
+/// The undamped ball with an integrator without a stable step, and a gentle scene of falling bodies.
 fn growing() -> Session {
     let text = opruga::scenes::find("ball").expect("it");
     let end = text.find("[[command]]").expect("its pull");
@@ -63,7 +63,7 @@ fn a_body_that_explodes_stops_time_while_it_can_still_be_seen_also_side_by_side(
                 Some("`ball` exploded: explicit euler is unstable at this step")
             );
         }
-        // It is told again where somebody insists, and where both are computed anew.
+        // It is reported again if the user insists, and if both sides are computed again.
         let (message_count, frames) = (message.number, session.frames());
         play(&mut session, 5);
         assert!(session.frames() <= frames + 1 && session.message_count() > message_count && !session.is_moving());
@@ -71,7 +71,7 @@ fn a_body_that_explodes_stops_time_while_it_can_still_be_seen_also_side_by_side(
         arrive(&mut session);
         let message = session.shown().message.expect("it is told");
         assert!(message.text.contains("exploded"), "{}", message.text);
-        // Going back is no explosion.
+        // Going back in time is not an explosion.
         let message_count = session.message_count();
         session.handle(Request::Seek(3));
         arrive(&mut session);

@@ -1,4 +1,4 @@
-//! The hand of a person beside those that are in the scene.
+//! Pulls of the user together with the drags in a scene.
 
 use super::{ask, assert_replays, pass, quiet};
 use crate::report::Step;
@@ -30,15 +30,14 @@ fn a_pull_and_a_push_are_undone_and_done_again() {
         assert_replays(&session);
         ask(&mut session, Request::Undo);
     }
-    // A press without a way is no push, and leaves nothing to be undone.
+    // A press without movement is not a push, and leaves nothing to be undone.
     ask(&mut session, Request::Grab(Grip::Push, 0, [0.4, 2.0, 0.0]));
     pass(&mut session, 3);
     ask(&mut session, Request::Release);
     assert_eq!(session.shown().undo, None);
 }
 
-/// The ball with a hand that has hold of it from the eighth frame to the sixteenth and again from the thirtieth on, and another ball that
-/// is held all the time.
+/// The ball with a drag from the eighth frame to the sixteenth and another from the thirtieth on, and a second ball that is dragged all the time.
 fn with_hands() -> Session {
     let text = opruga::scenes::find("ball").expect("it");
     let end = text.find("[[command]]").expect("its pull");
@@ -66,7 +65,7 @@ fn a_hand_that_is_in_the_scene_lets_go_of_a_body_that_a_person_takes_hold_of_and
         let begun = session.text();
         pass(&mut session, first);
         let (before, hash) = (pulls(&mut session), session.hash());
-        // The other ball is held, and where its time has come this one too.
+        // The other ball is dragged and, during its drag, this one as well.
         assert_eq!(before, usize::from((8..16).contains(&first)) + usize::from(first > 6), "{first}");
         ask(&mut session, Request::Grab(grip, 0, [0.0, 2.4, 0.0]));
         for k in 0..30 {
@@ -77,7 +76,7 @@ fn a_hand_that_is_in_the_scene_lets_go_of_a_body_that_a_person_takes_hold_of_and
             assert_eq!(pulls(&mut session), of_hand + others, "{grip:?} from {first}: frame {}", session.frames());
         }
         ask(&mut session, Request::Release);
-        // Nor does it come back when the person has let go.
+        // Nor does it resume when the user releases the ball.
         pass(&mut session, 10);
         assert_eq!(pulls(&mut session), 1);
         assert_replays(&session);
@@ -92,7 +91,7 @@ fn a_hand_that_is_in_the_scene_lets_go_of_a_body_that_a_person_takes_hold_of_and
         assert_eq!((session.text(), session.frames(), session.shown().recorded), (begun.clone(), 0, 0));
         pass(&mut session, 40);
         assert_eq!(session.hash(), untouched.hash(), "the hands are as they were");
-        // And what was done is there again when the reset is undone.
+        // What was done is restored when the reset is undone.
         ask(&mut session, Request::Undo);
         pass(&mut session, 1);
         assert_ne!(session.text(), begun);

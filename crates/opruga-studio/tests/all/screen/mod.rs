@@ -1,5 +1,5 @@
-//! A screen without a graphics card: the triangles of the interface, drawn one by one, so that pictures of the window can
-//! be compared on every machine.
+//! A screen without a graphics card: it draws the triangles of the interface one by one, so that pictures of the window can be compared on every
+//! machine.
 
 pub(crate) mod window;
 
@@ -81,7 +81,7 @@ impl Screen {
     fn triangle(&mut self, corners: [Vertex; 3], texture: &ColorImage, clip: [usize; 4], fine: f32) {
         let spot = |v: &Vertex| [v.pos.x * fine, v.pos.y * fine];
         let twice = |[a, b, c]: [[f32; 2]; 3]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        // Both ways around are drawn; the rule for edges wants one of them.
+        // Triangles of both orientations are drawn; the rule for edges needs one of them.
         let turned = twice([spot(&corners[0]), spot(&corners[1]), spot(&corners[2])]) < 0.0;
         let corners = if turned { [corners[0], corners[2], corners[1]] } else { corners };
         let [a, b, c] = [spot(&corners[0]), spot(&corners[1]), spot(&corners[2])];
@@ -124,8 +124,8 @@ impl Screen {
         }
     }
 
-    /// Compares with the picture of this name in `tests/pictures`; `OPRUGA_UPDATE_PICTURES=1` writes it anew. Up to one
-    /// pixel in a hundred may differ visibly: fonts are drawn by the processor at hand.
+    /// Compares with the picture of this name in `tests/pictures`; `OPRUGA_UPDATE_PICTURES=1` writes it again. Up to one pixel in a hundred may
+    /// differ visibly, because the present processor draws the fonts.
     pub(crate) fn assert_like(&self, name: &str) {
         let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/pictures");
         let path = folder.join(format!("{name}.png"));
@@ -162,7 +162,7 @@ impl Screen {
     }
 }
 
-/// The colour of a texture, linear between its pixels.
+/// The colour of a texture, interpolated linearly between its pixels.
 fn sample(texture: &ColorImage, uv: [f32; 2]) -> [f32; 4] {
     let [width, height] = texture.size;
     let x = (uv[0] * width as f32 - 0.5).clamp(0.0, width as f32 - 1.0);

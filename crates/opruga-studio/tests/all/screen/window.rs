@@ -1,4 +1,4 @@
-//! The window of the studio without a screen: what a person does to it.
+//! The window of the studio without a screen, and actions of a user on it.
 
 use super::{Screen, Textures};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// The size of a small laptop [points].
 pub(crate) const SIZE: [f32; 2] = [1280.0, 720.0];
 
-/// How long anything may take on a machine that has much else to do.
+/// The longest time for anything, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(240);
 
 /// A window on a scene.
@@ -28,7 +28,7 @@ impl Window {
         Window::open_at(scene, size, 1.0)
     }
 
-    /// A window on a screen with so many pixels a point.
+    /// A window on a screen with this number of pixels per point.
     pub(crate) fn open_at(scene: &str, size: [f32; 2], fine: f32) -> Window {
         let text = opruga::scenes::find(scene).expect("a scene of the program");
         let session = Session::open(scene, text, opruga::scenes::files(), Options::default()).expect("it opens");
@@ -68,7 +68,7 @@ impl Window {
         self.studio().shown()
     }
 
-    /// Shows frames until something holds.
+    /// Shows frames until a condition holds.
     pub(crate) fn until(&mut self, what: &str, holds: impl Fn(&Shown) -> bool) {
         let begin = Instant::now();
         while !holds(&self.shown()) {
@@ -82,7 +82,7 @@ impl Window {
         self.frames(2);
     }
 
-    /// Shows frames until nothing is drawn on other threads any more.
+    /// Shows frames until other threads draw nothing any more.
     pub(crate) fn rest(&mut self) {
         let begin = Instant::now();
         self.frames(2);
@@ -99,7 +99,7 @@ impl Window {
         self.frames(3);
     }
 
-    /// The middle of the part where the scene is.
+    /// The area of the scene.
     pub(crate) fn canvas(&self) -> egui::Rect {
         self.harness.get_by_label("canvas").rect()
     }
@@ -135,7 +135,7 @@ impl Window {
     }
 }
 
-/// Where the highest node of the first body is in the window.
+/// The position of the highest node of the first body in the window.
 pub(crate) fn top_of(window: &Window) -> Pos2 {
     let shown = window.shown();
     let positions = &shown.picture.bodies[0].positions;

@@ -1,4 +1,4 @@
-//! Bodies that are changed, moved, copied and let go.
+//! Bodies that are changed, moved, copied and removed.
 
 use super::{arrive, assert_replays, integrator, no_refusal, open, pass};
 use opruga::core::spec::Value;
@@ -43,7 +43,7 @@ fn a_body_turns_and_grows_about_its_middle() {
     session.handle(Request::Edit(Edit::Transform("ball".into(), placed)));
     no_refusal(&mut session);
     let (x2, y2, radius2) = middle(&mut session);
-    // Pictures have the digits of single precision.
+    // Pictures have single precision.
     assert!((x2 - x - 0.5).abs() < 1e-6 && (y2 - y - 0.25).abs() < 1e-6, "{x2} {y2}");
     assert!((radius2 - 2.0 * radius).abs() < 1e-6, "{radius2}");
 }
@@ -172,7 +172,7 @@ fn a_body_goes_back_to_the_integrator_of_the_scene() {
     session.handle(Request::Undo);
     arrive(&mut session);
     assert!(session.shown().bodies[0].integrator.is_some());
-    // On the way it is a command, and the body has an integrator of its own that is the same.
+    // During the run it is a command, and the body has an integrator of its own that is the same.
     pass(&mut session, 3);
     session.handle(Request::AsTheScene(0));
     no_refusal(&mut session);
@@ -197,7 +197,7 @@ fn a_turn_and_a_scaling_are_undone_by_their_names() {
     }
 }
 
-/// A model whose fields a person gives and takes away is written anew: fields without effect, which nobody has set, are not.
+/// If the user adds and removes fields of a model, its table is written again, without fields that have no effect and that nobody has set.
 #[test]
 fn models_that_are_written_anew_bring_no_warnings() {
     for frames in [0, 10] {

@@ -1,4 +1,4 @@
-//! The end of a scene, what is edited, the hash, and frames that take long.
+//! The end of a scene, edits, the hash, and frames that take long.
 
 use super::{arrive, no_refusal, open, pass, replayed};
 use opruga::Options;
@@ -14,7 +14,7 @@ fn of(text: &str) -> Session {
     Session::open("it", text, Files::default(), Options::default()).expect("it opens")
 }
 
-/// A square of finite elements that nothing moves.
+/// A square of finite elements at rest.
 const CALM: &str = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 0.1\nframe = 0.02\nsubsteps = 40\n\
     [integrator]\nkind = \"symplectic_euler\"\n[world]\ngravity = [0.0, 0.0]\n[[body]]\nname = \"it\"\nmass = 1.0\n\
     shape = { kind = \"grid\", corner = [0.0, 0.0], size = [1.0, 1.0], cells = [4, 4] }\n\
@@ -22,7 +22,7 @@ const CALM: &str = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 0.1\
 
 #[test]
 fn what_attracts_attention_at_the_end_of_a_scene_is_told_there_once() {
-    // A second after its start cells of this one are inside out.
+    // One second after the start of this scene, cells are inverted.
     let mut session = open("jelly");
     session.handle(Request::Set("time.seconds".into(), Value::Number(1.0)));
     no_refusal(&mut session);
@@ -38,7 +38,7 @@ fn what_attracts_attention_at_the_end_of_a_scene_is_told_there_once() {
         matches!(&message.report, Report::AtTheEnd(time, list) if (time - 1.0).abs() < 1e-9 && told(&list[0].message))
     );
     assert!(inverted(&mut session), "and stands with the other warnings");
-    // Time goes on, and when the same end comes again nothing is told twice.
+    // Time continues, and when the same end is reached again nothing is reported twice.
     let message_count = session.message_count();
     pass(&mut session, 3);
     session.handle(Request::Seek(u64::from(end) - 3));
@@ -46,7 +46,7 @@ fn what_attracts_attention_at_the_end_of_a_scene_is_told_there_once() {
     assert!(!inverted(&mut session), "before it nobody has looked");
     pass(&mut session, 5);
     assert_eq!(session.message_count(), message_count);
-    // A scene in which nothing is odd ends in silence.
+    // A scene without anything unusual ends without a message.
     let mut calm = of(CALM);
     pass(&mut calm, 8);
     assert!(calm.shown().message.is_none(), "{:?}", calm.shown().message);
@@ -67,7 +67,7 @@ fn a_scene_is_edited_once_something_was_done_in_it_and_until_that_is_saved() {
     assert!(!edited(&session), "nothing was done since");
     session.handle(Request::Edit(Edit::Duplicate("ball".into())));
     assert!(edited(&session));
-    // What was done while it was saved is not saved.
+    // Changes made while it was being saved are not saved.
     session.handle(Request::Saved(saved.mark));
     assert!(edited(&session));
     session.handle(Request::Open { name: "it".into(), text: CALM.into(), files: Files::default() });
@@ -97,16 +97,16 @@ fn optional_fields_of_shapes_and_obstacles_are_given_no_longer() {
     assert!(!session.text().contains("rotation"), "the scene is silent about it");
     session.handle(Request::Undo);
     assert_eq!((rotation(&mut session), session.text().contains("rotation")), (Some(0.2), true));
-    // On the way it gets the value that does the same, as a command.
+    // During the run it gets the equivalent value, as a command.
     pass(&mut session, 2);
     session.handle(Request::Unset("collider.0.rotation".into()));
     no_refusal(&mut session);
     assert_eq!((rotation(&mut session), session.shown().recorded), (Some(0.0), 1));
-    // What has no such value stays, and it is said what helps.
+    // A field without such a value stays, and the message says what helps.
     session.handle(Request::Unset("collider.0.size".into()));
     let message = session.shown().message.expect("a refusal");
     assert_eq!(message.report, Report::AtTheStartAlone("collider.0.size".into()));
-    // Of a shape the field goes, at the start and later.
+    // A field of a shape is removed, at the start and later.
     let folder = std::env::temp_dir().join(format!("opruga-unset-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     let path = folder.join("square.svg");
@@ -146,7 +146,7 @@ fn a_frame_that_takes_long_is_broken_off_for_what_cannot_wait_and_made_again_lat
     link.ask(Request::Play(false));
     until("it stands", &|| !link.shown().playing && link.busy().is_none());
     assert_eq!((link.shown().frames, link.shown().message.is_none()), (0, true));
-    // A single step is broken off for another scene.
+    // A single step is interrupted to open another scene.
     link.ask(Request::Step);
     until("it computes", &busy);
     let files = opruga::scenes::files();
@@ -174,24 +174,24 @@ fn where_nobody_can_be_asked_meanwhile_a_frame_that_takes_long_ends_by_the_clock
     session.tick(Duration::from_millis(100), Duration::from_millis(8), &|| begin.elapsed());
     assert!(begin.elapsed() < Duration::from_secs(30), "{:?}", begin.elapsed());
     assert_eq!(asked(&mut session), (Report::TakesLong(0.25), Offer::Wait(1.0)));
-    // It is waited for longer, for what was wanted, and still in vain; a single step waits as long then.
+    // The user waits longer for the request, still in vain; a single step then has the same limit.
     session.handle(Request::Accept(Offer::Wait(1.0)));
     assert!(session.shown().playing && session.shown().message.is_none());
     session.tick(Duration::from_millis(100), Duration::from_millis(8), &|| begin.elapsed());
     assert_eq!(asked(&mut session), (Report::TakesLong(1.0), Offer::Wait(4.0)));
     session.handle(Request::Step);
     assert_eq!(asked(&mut session), (Report::TakesLong(1.0), Offer::Wait(4.0)));
-    // What is on the way to a moment is broken off as well.
+    // Travel to another moment is interrupted as well.
     session.handle(Request::Seek(3));
     session.tick(Duration::ZERO, Duration::from_millis(8), &|| begin.elapsed());
     assert!(!session.is_seeking());
     assert_eq!(asked(&mut session), (Report::TakesLong(1.0), Offer::Wait(4.0)));
-    // Fewer substeps take no time, and nothing is asked.
+    // With fewer substeps frames are fast, and the user is not asked.
     session.handle(Request::Set("time.substeps".into(), Value::Integer(40)));
     no_refusal(&mut session);
     pass(&mut session, 2);
     assert!(session.shown().message.is_none());
-    // Another scene is waited for as the first one was.
+    // Another scene has the initial limit again.
     session.handle(Request::Open { name: "it".into(), text, files: Files::default() });
     session.handle(Request::Step);
     assert_eq!(asked(&mut session).0, Report::TakesLong(0.25));

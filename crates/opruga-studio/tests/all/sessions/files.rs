@@ -1,4 +1,4 @@
-//! Files that are kept, and files that are dropped on the window.
+//! Files that are saved, and files that are dropped on the window.
 
 use super::{arrive, no_refusal, open, pass, pull, refusal, replayed};
 use opruga::Options;
@@ -35,7 +35,7 @@ fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
     assert!(refused(&put("letter.docx", b"PK")).contains(".toml"));
     assert!(refused(&put("bytes.toml", &[0xff, 0xfe, 0x00])).contains("UTF-8"));
     assert!(refused(&folder.join("absent.toml")).contains("read"));
-    // Two gigabytes that take no room: they are refused before they are read.
+    // Two gigabytes that take no disk space: they are refused before they are read.
     let large = std::fs::File::create(folder.join("large.toml")).expect("a file");
     large.set_len(2 << 30).expect("a length");
     assert!(refused(&folder.join("large.toml")).contains("2147483648 bytes"));
@@ -46,7 +46,7 @@ fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
     assert!(refusal(&mut session).contains("dimension"));
     assert_eq!((session.hash(), session.name()), (hash, name.as_str()));
     let svg = b"<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 10 10\"><path d=\"M0 0 H10 V10 H0 Z\"/></svg>";
-    // A shape of the plane comes into a scene of the plane, also on the way, and again under another name.
+    // A shape of the plane is added to a scene of the plane, also during the run, and again under another name.
     for count in 2..4 {
         session.handle(take(&put("square.svg", svg)).expect("a shape"));
         no_refusal(&mut session);
@@ -62,7 +62,7 @@ fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
     session.handle(Request::Undo);
     arrive(&mut session);
     assert_eq!(session.shown().bodies.len(), 3);
-    // One of space opens a scene of its own, from which there is a way back.
+    // A shape of space opens a scene of its own, from which the user can return.
     let obj = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     session.handle(take(&put("four.obj", obj)).expect("a shape"));
     no_refusal(&mut session);
@@ -73,7 +73,7 @@ fn row_99_files_that_are_dropped_become_scenes_or_are_refused_with_a_reason() {
     std::fs::remove_dir_all(&folder).expect("the folder goes");
 }
 
-/// There is no scene around such a file that anybody has seen, nor another file of its name.
+/// Nobody has seen the scene around such a file, and there is no other file of its name.
 #[test]
 fn what_is_wrong_with_a_file_that_is_dropped_is_said_of_that_file_and_it_keeps_its_name() {
     use opruga_studio::dropping::take;
@@ -103,7 +103,7 @@ fn what_is_wrong_with_a_file_that_is_dropped_is_said_of_that_file_and_it_keeps_i
     std::fs::remove_dir_all(&folder).expect("the folder goes");
 }
 
-/// What a reader leaves out of a file is told in the window too, in both languages.
+/// What a reader omits from a file is also reported in the window, in both languages.
 #[test]
 fn what_is_left_out_of_a_file_is_counted_and_named() {
     let text = opruga::scenes::find("ball").expect("it");
@@ -121,7 +121,7 @@ fn what_is_left_out_of_a_file_is_counted_and_named() {
     assert!(open("ball").shown().warnings.iter().all(|warning| warning.code != "svg.image"));
 }
 
-/// A fine surface needs more substeps than a coarse one; nobody who drops a file knows how many.
+/// A fine surface needs more substeps than a coarse one, and a user who drops a file does not know how many.
 #[test]
 fn a_surface_that_is_dropped_takes_as_many_substeps_as_it_needs() {
     let spot = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/shapes/spot.obj");
@@ -133,7 +133,7 @@ fn a_surface_that_is_dropped_takes_as_many_substeps_as_it_needs() {
     pass(&mut session, 2);
 }
 
-/// The pictures of an animation, with how long each is shown [hundredths of a second].
+/// The pictures of an animation with their durations [hundredths of a second].
 fn pictures_of(gif: &[u8]) -> Vec<(u16, [usize; 2], Vec<u8>)> {
     let mut options = gif::DecodeOptions::new();
     options.set_color_output(gif::ColorOutput::RGBA);
@@ -142,7 +142,7 @@ fn pictures_of(gif: &[u8]) -> Vec<(u16, [usize; 2], Vec<u8>)> {
     let mut canvas = vec![255; 4 * size[0] * size[1]];
     let mut pictures = Vec::new();
     while let Some(frame) = decoder.read_next_frame().expect("a picture") {
-        // A picture tells what differs from the one before: the rest is transparent or left out.
+        // A picture contains the differences from the previous one: the rest is transparent or omitted.
         let [left, top, width] = [frame.left, frame.top, frame.width].map(usize::from);
         for (k, pixel) in frame.buffer.chunks_exact(4).enumerate().filter(|(_, pixel)| pixel[3] > 0) {
             let place = (top + k / width) * size[0] + left + k % width;
@@ -153,17 +153,17 @@ fn pictures_of(gif: &[u8]) -> Vec<(u16, [usize; 2], Vec<u8>)> {
     pictures
 }
 
-/// Where the ball is in a picture: the mean row of what is coloured above the floor.
+/// The position of the ball in a picture: the mean row of the coloured pixels above the floor.
 fn height_of_ball([width, height]: [usize; 2], picture: &[u8]) -> f64 {
     let coloured = |pixel: &[u8]| pixel[..3].iter().max().unwrap_or(&0) - pixel[..3].iter().min().unwrap_or(&0) > 60;
-    // The legend stands at the right.
+    // The legend is on the right.
     let rows = picture.chunks_exact(4).enumerate().filter(|(k, pixel)| k % width < 7 * width / 10 && coloured(pixel));
     let (sum, count) = rows.fold((0.0, 0.0), |(sum, count), (k, _)| (sum + (k / width) as f64, count + 1.0));
     assert!(count > 100.0, "a ball is seen in a picture of {width} by {height}: {count}");
     sum / count
 }
 
-/// A ball that falls freely for half a second: in every picture of the films it lies lower than in the one before.
+/// A ball that falls freely for half a second: in every picture of the films it is lower than in the previous one.
 #[test]
 fn the_films_hold_every_picture_of_a_ball_that_falls() {
     let text = opruga::scenes::find("ball").expect("it");
@@ -173,7 +173,7 @@ fn the_films_hold_every_picture_of_a_ball_that_falls() {
     pass(&mut session, 24);
     let copied = opruga_studio::runner::Copied::of(&session);
     let bytes = |what| content(what, &copied, Show::default()).expect("a file");
-    // Thirty pictures a second of 0.4 s, and the one of the start.
+    // Thirty pictures per second for 0.4 s, and the one at the start.
     let animation = pictures_of(&bytes(What::Animation));
     assert_eq!(animation.len(), 13);
     assert!(animation.iter().all(|(delay, ..)| (3..=4).contains(delay)), "a thirtieth of a second each");
@@ -182,9 +182,9 @@ fn the_films_hold_every_picture_of_a_ball_that_falls() {
     let film = bytes(What::Film);
     let size = animation[0].1;
     assert_eq!(&film[4..8], b"ftyp");
-    // The table of sizes says how many pictures there are, and the picture how large it is.
+    // The table of sizes gives the number of pictures, and the header of a picture its size.
     let number = |place: usize| u32::from_be_bytes(film[place..place + 4].try_into().expect("four bytes")) as usize;
-    // The first box names kinds of films that look like names of boxes.
+    // The first box lists film types that look like names of boxes.
     let first = number(0);
     let of = |name: &[u8; 4]| 4 + first + film[first..].windows(4).position(|word| word == name).expect("a box");
     assert_eq!(number(of(b"stsz") + 8), 13);
@@ -202,14 +202,14 @@ fn the_films_hold_every_picture_of_a_ball_that_falls() {
     falls(&heights, "film");
 }
 
-/// It falls, and faster and faster.
+/// Asserts that it falls faster and faster.
 fn falls(heights: &[f64], what: &str) {
     let steps: Vec<f64> = heights.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert!(steps.iter().skip(1).all(|step| *step > 0.2), "{what}: {heights:?}");
     assert!(steps[steps.len() - 1] > 3.0 * steps[1], "{what}: {steps:?}");
 }
 
-/// The pictures of a film as a decoder of others shows them; none where there is none.
+/// The pictures of a film from an independent decoder; none if there is no decoder.
 fn decoded(film: &[u8]) -> Option<Vec<u8>> {
     use std::process::Command;
     Command::new("ffmpeg").arg("-version").output().ok().filter(|output| output.status.success())?;

@@ -1,6 +1,6 @@
-//! Sessions without a window: what a person does to a scene, and what becomes of it.
+//! Sessions without a window: actions of a user on a scene, and their results.
 #![allow(missing_docs)]
-// Paths of pointers may differ in a last bit.
+// Paths of pointers may differ in the last bit.
 #![allow(clippy::disallowed_methods)]
 
 mod edits;
@@ -24,7 +24,7 @@ fn open(name: &str) -> Session {
     Session::open(name, text, opruga::scenes::files(), Options::default()).expect("it opens")
 }
 
-/// As if so many frames of the screen had passed, on a machine that takes no time at all.
+/// Simulates the passing of this number of frames of the screen, on an infinitely fast machine.
 fn pass(session: &mut Session, frames: u32) {
     for _ in 0..frames {
         session.handle(Request::Step);
@@ -43,14 +43,14 @@ fn refusal(session: &mut Session) -> String {
     message.text
 }
 
-/// Lets a session come to where it goes.
+/// Lets a session reach its goal.
 fn arrive(session: &mut Session) {
     while session.is_seeking() {
         session.tick(Duration::from_millis(16), Duration::from_millis(12), &|| Duration::ZERO);
     }
 }
 
-/// What the command line makes of a text: the hash after so many frames.
+/// The hash of a text after a number of frames on the command line.
 fn replayed(text: &str, frames: u64) -> u64 {
     fn run<const D: usize>(blueprint: opruga::blueprint::Blueprint<D>, frames: u64) -> u64 {
         let mut world = World::new(blueprint, Options { threads: 2, ..Options::default() }).expect("a world");
@@ -84,7 +84,7 @@ fn integrator(kind: &str) -> Values {
     Values::defaults(Registry::<2>::default().integrator(kind).expect("an integrator").spec(), 2)
 }
 
-/// Pulls the ball along an arc for so many frames.
+/// Pulls the ball along an arc for a number of frames.
 fn pull(session: &mut Session, frames: u32) {
     session.handle(Request::Grab(Grip::Pull, 0, [0.4, 2.0, 0.0]));
     for k in 0..frames {

@@ -1,4 +1,4 @@
-//! What is refused leaves everything as it was, and what would help is offered.
+//! A refused request changes nothing, and a remedy is offered.
 
 use super::{arrive, assert_replays, ball, integrator, model, no_refusal, open, pass, refusal};
 use opruga::Options;
@@ -31,11 +31,11 @@ fn what_is_refused_leaves_everything_as_it_was_and_says_what_would_help() {
         arrive(&mut session);
         let said = refusal(&mut session);
         assert!(said.contains(word), "{asked}: {said}");
-        // Nobody has seen the text that the studio writes: its lines say nothing.
+        // Nobody has seen the text that the studio writes, so its lines mean nothing.
         assert!(!said.contains("ball.toml"), "{asked}: {said}");
         assert_eq!((session.hash(), session.text()), (hash, text.clone()), "{asked}");
     }
-    // The step that would do is offered, and taken.
+    // A sufficient step is offered, and accepted.
     session.handle(Request::Set("body.ball.models.mass_spring.stiffness".into(), Value::Number(640_000.0)));
     let offer = session.shown().message.and_then(|m| m.offer).expect("an offer");
     assert!(matches!(offer, Offer::Substeps(n) if n > 32), "{offer:?}");
@@ -63,7 +63,7 @@ fn a_scene_that_diverges_names_body_and_node_and_stops_at_its_last_good_frame() 
     assert_eq!(session.shown().substeps, 64);
 }
 
-/// What a message offers for a scene that was not opened changes that scene, and not the one that is open.
+/// The offer of a message about a scene that was not opened changes that scene, not the open one.
 #[test]
 fn a_scene_that_was_refused_for_its_step_is_opened_with_the_substeps_that_are_offered() {
     let mut session = open("ball");
@@ -81,7 +81,7 @@ fn a_scene_that_was_refused_for_its_step_is_opened_with_the_substeps_that_are_of
     assert_eq!(open("ball").shown().substeps, own);
 }
 
-/// In the studio time goes on behind the end that a scene states for a run, and what is done there comes about.
+/// In the studio, time continues after the end that a scene gives for a run, and commands there are executed.
 #[test]
 fn commands_behind_the_stated_end_of_a_scene_are_not_warned_of() {
     let text = opruga::scenes::find("ball").expect("it").replace("seconds = 8.0", "seconds = 0.1");
@@ -110,14 +110,14 @@ fn commands_behind_the_stated_end_of_a_scene_are_not_warned_of() {
     assert_replays(&session);
 }
 
-/// The window calls a body that was set down anew by its old name, and so does what is said of it.
+/// The window calls a replaced body by its old name, and so do messages about it.
 #[test]
 fn messages_and_warnings_call_a_body_that_was_set_down_anew_by_the_name_that_the_window_shows() {
     let mut session = open("ball");
     pass(&mut session, 5);
     let finer =
         |name: &str, vertices: i64| Request::Edit(Edit::Shape(name.into(), "vertices", Value::Integer(vertices)));
-    // Refused for the first time already, it is still the same body.
+    // Even if the first change is refused, it is still the same body.
     for name in ["ball", "ball-2"] {
         session.handle(finer(name, 4000));
         let said = refusal(&mut session);
@@ -159,7 +159,7 @@ fn messages_and_warnings_call_a_body_that_was_set_down_anew_by_the_name_that_the
     assert_replays(&session);
 }
 
-/// Where no step is stable, half of it is not either: an integrator that has one is offered, to whom it belongs.
+/// If no step is stable, half of it is not, either: an integrator with a stable step is offered for the body or scene that uses the other one.
 #[test]
 fn where_no_step_is_stable_another_integrator_is_offered_and_not_half_the_step() {
     let ball = opruga::scenes::find("ball").expect("it").replace("damping = 1.0", "damping = 0.0");

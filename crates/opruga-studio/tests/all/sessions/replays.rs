@@ -1,4 +1,4 @@
-//! What a person does is in the scene that is saved: whoever runs it gets the same bits.
+//! The saved scene contains the actions of the user: every run of it gives the same bits.
 
 use super::{assert_replays, ball, integrator, model, no_refusal, open, pass, pull, replayed};
 use opruga::core::spec::Value;

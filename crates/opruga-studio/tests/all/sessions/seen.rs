@@ -1,4 +1,4 @@
-//! What is seen of a scene: colours, arrows, drawings.
+//! The picture of a scene: colours, arrows, drawings.
 
 use super::{open, pass};
 use opruga::Options;
@@ -14,8 +14,8 @@ fn the_contact_forces_of_a_body_at_rest_carry_its_weight() {
     let mut session = Session::open("quiet", &text[..end], Files::default(), Options::default()).expect("it opens");
     session.handle(Request::Show(Show { contacts: true, normals: true, ..Show::default() }));
     assert!(session.shown().picture.arrows.iter().all(|a| a.kind != ArrowKind::Contact), "in the air there are none");
-    // Once it has come to lie, obstacles carry its weight of 9.81 N and what it still gains in momentum. One substep of
-    // every thirty-two is looked at, and vertices still tremble: a twentieth may be missed.
+    // At rest, obstacles carry its weight of 9.81 N plus the rate of its remaining momentum. Only one substep in thirty-two is sampled, and vertices
+    // still vibrate, so a twentieth may be missing.
     pass(&mut session, 600);
     let (mut sum, before) = ([0.0; 2], session.shown().momentum);
     const FRAMES: u32 = 240;
@@ -24,7 +24,7 @@ fn the_contact_forces_of_a_body_at_rest_carry_its_weight() {
         let arrows = session.shown().picture.arrows;
         let contacts = arrows.iter().filter(|arrow| arrow.kind == ArrowKind::Contact);
         contacts.for_each(|arrow| (0..2).for_each(|d| sum[d] += arrow.vector[d] / f64::from(FRAMES)));
-        // The normals of the ring point away from its middle.
+        // The normals of the ring point away from its centre.
         let normals: Vec<_> = arrows.iter().filter(|arrow| arrow.kind == ArrowKind::Normal).collect();
         let middle = [0, 1].map(|d| normals.iter().map(|n| n.from[d]).sum::<f64>() / normals.len() as f64);
         let out =

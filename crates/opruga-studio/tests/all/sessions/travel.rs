@@ -1,4 +1,4 @@
-//! Back and forth in time: rewinding, undo and redo.
+//! Travel in time: rewinding, undo and redo.
 
 use super::{arrive, assert_replays, ball, no_refusal, open, pass, pull};
 use opruga::core::spec::Value;
@@ -27,7 +27,7 @@ fn rewinding_comes_to_the_same_bits_and_what_is_done_then_replaces_the_future() 
     arrive(&mut session);
     assert_eq!(session.hash(), end, "the pull happens again");
     assert!(session.shown().recorded > 0);
-    // From the middle of the pull on, another future.
+    // A different future from the middle of the pull on.
     session.handle(Request::Seek(40));
     arrive(&mut session);
     session.handle(Request::Set("world.gravity".into(), Value::Numbers(vec![0.0, 3.0])));
@@ -51,7 +51,7 @@ fn a_point_stays_pinned_when_the_future_is_written_anew() {
     session.handle(Request::Seek(20));
     arrive(&mut session);
     assert_eq!(session.shown().pins, [(body, node, place)]);
-    // From here on another future, in which nobody lets go of it.
+    // A different future from here on, in which the pull is not released.
     session.handle(Request::Set("world.gravity".into(), Value::Numbers(vec![0.0, -2.0])));
     pass(&mut session, 40);
     assert_eq!(session.shown().pins, [(body, node, place)]);
@@ -123,7 +123,7 @@ fn bodies_added_while_time_stands_still_are_seen_at_once_after_undo_and_redo_and
     assert_replays(&session);
 }
 
-/// What one undo takes back is what was done at once, however often the same was done at one moment.
+/// One undo reverts one action, however often the same action was done at one moment.
 #[test]
 fn edits_of_one_kind_while_time_stands_still_are_undone_and_redone_one_by_one() {
     let mut session = open("ball");
@@ -193,7 +193,7 @@ fn a_slider_that_is_drawn_while_time_stands_still_is_one_edit_and_two_moves_are_
         let placed = Placed { moved: [0.3, 0.0, 0.0], turned: 0.0, scaled: 1.0 };
         session.handle(Request::Edit(Edit::Transform(name, placed)));
     }
-    // Pictures have the digits of single precision.
+    // Pictures have single precision.
     for moved in [0.6, 0.3, 0.0] {
         let x = middle(&mut session);
         assert!((x - start - moved).abs() < 1e-5, "{x} {start} {moved}");
@@ -218,7 +218,7 @@ fn from_a_scene_that_was_opened_there_is_a_way_back_to_what_was_done_in_the_one_
     session.handle(Request::Seek(3));
     arrive(&mut session);
     assert_eq!(session.frames(), 3);
-    // Where nothing was done there is nothing to come back to.
+    // If nothing was done, there is nothing to return to.
     let mut fresh = open("ball");
     fresh.handle(request);
     assert_eq!(fresh.shown().undo, None);

@@ -1,4 +1,4 @@
-//! The window, pressed and looked at as a person does, without a screen.
+//! The window as a user sees and operates it, without a screen.
 #![allow(missing_docs)]
 // No physics here.
 #![allow(clippy::disallowed_methods)]
@@ -114,7 +114,7 @@ fn two_configurations_stand_side_by_side_and_only_the_right_one_is_changed() {
     window.click("Plots");
     assert!(window.harness.query_by_label("Distance of the sides [m]").is_some());
     window.click("Plots");
-    // The right one is pulled as the left one is.
+    // The right side is pulled in the same way as the left one.
     let right = egui::pos2(window.canvas().right() - 0.25 * window.canvas().width(), window.canvas().center().y);
     let half = Vec2::new(0.5 * window.canvas().width(), 0.0);
     let there = window.shown().beside.as_ref().map(|beside| beside.right.picture.bodies[0].positions[9]);
@@ -135,7 +135,7 @@ fn two_configurations_stand_side_by_side_and_only_the_right_one_is_changed() {
         window.studio().ask(Request::Step);
     }
     window.until("thirty frames again", |shown| shown.frames == 30);
-    // A press that comes in the same moment as the way to it does not take the view along.
+    // A press that arrives at the same moment as the movement to it does not move the view.
     let ball = window.shown().picture.bodies[0].positions[0];
     let before = window.studio().on_screen(ball);
     window.harness.event(Event::PointerMoved(right - Vec2::new(150.0, 150.0)));
@@ -236,7 +236,7 @@ fn numbers_and_their_units_stay_on_one_line_however_narrow_the_window_is() {
     }
 }
 
-/// A second line would take the room of the curve.
+/// A second line would take the space of the curve.
 #[test]
 fn names_of_curves_stay_on_one_line_where_many_of_them_stand_side_by_side() {
     let mut window = Window::open("ball", SIZE);
@@ -297,7 +297,7 @@ fn every_word_has_letters_to_be_drawn_with_and_languages_change() {
     window.click("Hrvatski");
     assert_eq!(window.studio().language, Language::Croatian);
     assert!(window.harness.query_by_label("Pokreni").is_some());
-    // A letter that no font can draw ends the test: kittest sees to that.
+    // A character that no font has ends the test: kittest ensures that.
     for name in ["Grafovi", "?", "Vuci"] {
         window.click(name);
     }
@@ -305,7 +305,7 @@ fn every_word_has_letters_to_be_drawn_with_and_languages_change() {
     assert!(window.harness.query_by_label("Play").is_some());
 }
 
-/// What is left when names, symbols and numbers are taken away: words of which English ones would be found.
+/// The words that remain without names, symbols and numbers, among which English ones would be found.
 const ENGLISH: [&str; 14] = [
     "stiffness",
     "damping",
@@ -336,7 +336,7 @@ fn in_croatian_no_name_of_a_model_or_parameter_and_no_message_of_the_studio_is_e
     let told = |window: &Window| -> Vec<String> {
         let all = window.harness.query_all_by(|_| true);
         let said = all.filter_map(|node| node.accesskit_node().label().or_else(|| node.accesskit_node().value()));
-        // What belongs together is held on one line.
+        // Parts that belong together are kept on one line.
         said.map(|text| text.replace('\u{a0}', " ")).collect()
     };
     let english = |window: &Window| -> Vec<String> {
@@ -344,7 +344,7 @@ fn in_croatian_no_name_of_a_model_or_parameter_and_no_message_of_the_studio_is_e
     };
     assert!(told(&window).len() > 60, "the labels are read");
     assert_eq!(english(&window), Vec::<String>::new());
-    // What the world refuses, what the studio says of a change, of an undo, and of a file.
+    // Errors of the world, and reports of the studio about a change, an undo, and a file.
     window.studio().ask(Request::Set("time.substeps".into(), opruga::core::spec::Value::Integer(1)));
     window.until("a refusal", |shown| shown.message.as_ref().is_some_and(|m| m.severity == Severity::Refused));
     assert!(told(&window).iter().any(|text| text.to_lowercase().starts_with("korak h = ")), "{:?}", told(&window));
@@ -371,7 +371,7 @@ fn the_window_looks_as_it_did_in_the_plane() {
         window.studio().ask(Request::Step);
     }
     window.until("forty frames", |shown| shown.frames == 40);
-    // What the machine says of its speed differs from run to run.
+    // Reports about the speed of the machine differ from run to run.
     window.studio().ask(Request::Reset);
     window.until("the start", |shown| shown.frames == 0 && shown.latest == 0);
     window.rest();
@@ -389,14 +389,14 @@ fn the_window_looks_as_it_did_in_space_and_bodies_are_pulled_there_too() {
     window.rest();
     window.picture().assert_like("space");
     let canvas = window.canvas();
-    // Somewhere on the middle row there is a balloon.
+    // There is a balloon somewhere in the middle row.
     let mut pulled = false;
     for k in 1..20 {
         let at = egui::pos2(canvas.left() + canvas.width() * k as f32 / 20.0, canvas.center().y);
         window.pointer(at);
         window.button(at, PointerButton::Primary, true, Modifiers::NONE);
         window.pointer(at + Vec2::new(5.0, -30.0));
-        // The step comes after the press: once it is done, the press was heard.
+        // The step follows the press: once it is done, the press was handled.
         let next = window.shown().frames + 1;
         window.studio().ask(Request::Step);
         window.until("a step", |shown| shown.frames == next);

@@ -1,4 +1,4 @@
-//! What the panels show and keep while bodies become others.
+//! The panels while bodies are replaced by others.
 
 use super::screen::window::{SIZE, Window, top_of};
 use egui::{Key, Modifiers, PointerButton, Role, Vec2};
@@ -8,7 +8,7 @@ use opruga_studio::report::Report;
 use opruga_studio::session::{Edit, Request};
 use opruga_studio::shown::Severity;
 
-/// So tall that nothing has to be scrolled to.
+/// So tall that scrolling is not necessary.
 const TALL: [f32; 2] = [1280.0, 1600.0];
 
 fn finer(name: &str) -> Request {
@@ -55,7 +55,7 @@ fn substeps_that_are_too_few_leave_those_from_before_and_not_what_the_hand_has_p
     assert_eq!((shown.substeps, shown.undo.is_none()), (32, true));
     let node = window.harness.get_by_role_and_label(Role::Slider, "Substeps");
     assert_eq!(node.accesskit_node().numeric_value(), Some(32.0));
-    // What is enough is taken where the hand lets go.
+    // Only the value at the release of the pointer is applied.
     window.drag(&[at(110.0), at(120.0), at(130.0), at(140.0)], PointerButton::Primary, Modifiers::NONE);
     window.until("more substeps", |shown| shown.substeps > 32);
 }
@@ -63,7 +63,7 @@ fn substeps_that_are_too_few_leave_those_from_before_and_not_what_the_hand_has_p
 #[test]
 fn a_push_of_the_right_button_begins_without_force_and_grows_with_the_way() {
     let mut window = Window::open("ball", SIZE);
-    // A little beside the node, as hands are.
+    // Slightly beside the node, as users press.
     let at = top_of(&window) + Vec2::new(4.0, 5.0);
     window.pointer(at);
     window.button(at, PointerButton::Secondary, true, Modifiers::NONE);
@@ -84,7 +84,7 @@ fn a_push_of_the_right_button_begins_without_force_and_grows_with_the_way() {
     window.until("it is over", |shown| shown.pushes.is_empty());
 }
 
-/// The rate is one of pictures that follow one another.
+/// The rate counts only consecutive pictures.
 #[test]
 fn the_time_in_which_nothing_was_drawn_is_not_counted_in_the_rate_of_pictures() {
     let mut window = Window::open("ball", SIZE);
@@ -150,7 +150,7 @@ fn what_the_window_says_is_seen_after_what_the_session_has_said() {
     window.harness.state_mut().as_mut().expect("a window").report(Severity::Done, Report::LinkCopied);
     window.frames(3);
     assert!(says(&window));
-    // What is said by the session then is newer.
+    // A later message of the session is newer.
     let first = window.shown().message.as_ref().map(|message| message.number);
     window.studio().ask(Request::Set("world.gravity".into(), Value::Number(2.0)));
     window.until("another refusal", |shown| shown.message.as_ref().map(|message| message.number) != first);
@@ -171,7 +171,7 @@ fn the_keys_fit_into_a_low_window() {
     assert!(last.top() > 0.0 && last.bottom() < 400.0, "{last:?}");
 }
 
-/// On a phone held upright two scenes stand one above the other, and each has half of the little that is left.
+/// On a phone held upright, two scenes are one above the other, each with half of the small area.
 #[test]
 fn two_scenes_one_above_the_other_hide_nothing_of_one_another() {
     let mut window = Window::open("implicit-integrators", [400.0, 720.0]);
@@ -186,7 +186,7 @@ fn two_scenes_one_above_the_other_hide_nothing_of_one_another() {
     window.until("one scene", |shown| shown.beside.is_none() && shown.message.is_some());
     window.key(Modifiers::COMMAND, Key::Y);
     window.until("two scenes", |shown| shown.beside.is_some() && shown.frames == 30);
-    // What was done is told between the bodies, and not over them.
+    // The report is shown between the bodies, and not over them.
     let close = window.harness.get_by_label("Zatvori").rect();
     let canvas = window.canvas();
     let down = Vec2::new(0.0, 0.5 * canvas.height());
@@ -213,13 +213,13 @@ fn the_keys_are_seen_without_scrolling_on_a_small_laptop() {
         let first =
             window.harness.get_by_label_contains(if language == "Hrvatski" { "pokreni ili" } else { "play or" });
         let high = first.rect().top();
-        // The window lies in the middle of the screen with all of them: what would be scrolled to is below it.
+        // The window is at the centre of the screen and shows all of them; if scrolling were necessary, the last ones would be below it.
         let off = 0.5 * (low + high) - 0.5 * SIZE[1];
         assert!(low < SIZE[1] && low - high > 300.0 && off.abs() < 30.0, "from {high} to {low}");
     }
 }
 
-/// A screen that draws seldom takes in both ends of a tap with one picture.
+/// If a screen draws rarely, both ends of a tap arrive with one picture.
 #[test]
 fn a_tap_shorter_than_a_picture_sets_a_slider() {
     let mut window = Window::open("ball", TALL);
@@ -230,7 +230,7 @@ fn a_tap_shorter_than_a_picture_sets_a_slider() {
         let pos = egui::pos2(rect.left() + along, rect.center().y);
         let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
         let press = |pressed| egui::Event::PointerButton { pos, button, pressed, modifiers };
-        // The pointer was elsewhere until then.
+        // Before that, the pointer was elsewhere.
         window.pointer(egui::pos2(500.0, 500.0));
         window.harness.input_mut().events.extend([egui::Event::PointerMoved(pos), press(true), press(false)]);
         window.frames(3);

@@ -1,4 +1,4 @@
-//! What the pointer does on the scene.
+//! The actions of the pointer on the scene.
 
 use super::screen::window::{SIZE, Window, top_of};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
@@ -16,7 +16,7 @@ fn the_ball_is_pulled_by_the_pointer_and_a_rubber_line_shows_the_force() {
         window.click("Step");
         window.harness.event(Event::PointerMoved(top + Vec2::new(60.0, -40.0)));
     }
-    // Pressing a button of the window has let the ball go: it is recorded from its beginning to its end.
+    // Pressing a button of the window has released the ball: the pull is recorded from its beginning to its end.
     window.until("a pull was recorded", |shown| shown.recorded == 1 && shown.frames >= 6);
     let mut window = Window::open("ball", SIZE);
     window.pointer(top);
@@ -34,7 +34,7 @@ fn the_ball_is_pulled_by_the_pointer_and_a_rubber_line_shows_the_force() {
     window.until("it was let go", |shown| shown.pulls.is_empty() && shown.frames == 13);
 }
 
-/// A screen that draws seldom takes in a press together with the way that the pointer went since.
+/// If a screen draws rarely, a press arrives together with the movement of the pointer after it.
 #[test]
 fn a_body_is_held_where_it_was_pressed_however_far_the_pointer_has_gone_until_the_next_picture() {
     let mut window = Window::open("ball", SIZE);
@@ -62,14 +62,14 @@ fn outlines_become_bodies_and_those_that_cross_themselves_are_refused_with_a_rea
     };
     window.drag(&line(&|t| 70.0 * Vec2::new(t.cos(), 0.7 * t.sin())), PointerButton::Primary, Modifiers::NONE);
     window.until("a drawn body", |shown| shown.bodies.len() == 2 && shown.bodies[1].name == "drawn");
-    // What follows is done to the new body.
+    // Later actions apply to the new body.
     assert!(window.harness.query_by_label("drawn").is_some());
     window.drag(&line(&|t| 70.0 * Vec2::new(t.sin(), (2.0 * t).sin())), PointerButton::Primary, Modifiers::NONE);
     assert!(window.harness.query_by_label_contains("crosses itself").is_some());
     assert_eq!(window.shown().bodies.len(), 2);
 }
 
-/// A slow screen takes in the whole way of the pointer with one picture; it may go round either way.
+/// A slow screen receives the whole path of the pointer with one picture; it may run in either direction.
 #[test]
 fn an_outline_that_comes_with_one_picture_keeps_its_corners() {
     for clockwise in [false, true] {
@@ -77,7 +77,7 @@ fn an_outline_that_comes_with_one_picture_keeps_its_corners() {
         window.key(Modifiers::NONE, Key::Num5);
         let middle = window.canvas().center() + Vec2::new(180.0, 60.0);
         let mut corners = [(-70.0, -70.0), (70.0, -70.0), (70.0, 70.0), (-70.0, 70.0)].map(|(x, y)| Vec2::new(x, y));
-        // On the screen y points downwards: these go clockwise as they are seen.
+        // On the screen y points downwards: this order is clockwise as seen.
         if !clockwise {
             corners.reverse();
         }
@@ -131,7 +131,7 @@ fn a_selected_body_is_turned_and_scaled_by_its_handles_copied_and_looked_at() {
     let spots: Vec<Pos2> =
         shown.picture.bodies[0].positions.iter().filter_map(|p| window.studio().on_screen(*p)).collect();
     let around = egui::Rect::from_points(&spots).expand(8.0);
-    // The corner of the box goes half as far again from its middle.
+    // The corner of the box moves to one and a half times its distance from the centre.
     let corner = around.right_bottom();
     let out = around.center() + 1.5 * (corner - around.center());
     window.drag(&[corner, corner + Vec2::splat(3.0), out], PointerButton::Primary, Modifiers::NONE);
@@ -142,14 +142,14 @@ fn a_selected_body_is_turned_and_scaled_by_its_handles_copied_and_looked_at() {
     window.until("it has grown", |shown| (width(shown) - 1.5).abs() < 0.02);
     window.key(Modifiers::COMMAND, Key::Z);
     window.until("undone", |shown| (width(shown) - 1.0).abs() < 0.02);
-    // The handle above the box, to the right of it: a quarter of a turn.
+    // The handle above the box, moved to the right of it: a quarter of a turn.
     let node = |shown: &opruga_studio::shown::Shown| shown.picture.bodies[0].positions[0];
     let (before, handle) = (node(&window.shown()), around.center_top() - Vec2::new(0.0, 24.0));
     let right = around.center() + Vec2::new(around.center().y - handle.y, 0.0);
     window.drag(&[handle, handle + Vec2::splat(4.0), right], PointerButton::Primary, Modifiers::NONE);
     window.until("it was turned", |shown| {
         let now = node(shown);
-        // Clockwise as it is seen: what was on the right is below.
+        // Clockwise as seen: what was on the right is at the bottom.
         (now[0] - (before[1] - 2.0)).abs() < 0.03 && (now[1] - 2.0 + before[0]).abs() < 0.03
     });
     window.harness.get_by_label("Duplicate").scroll_to_me();
@@ -181,7 +181,7 @@ fn a_pin_of_the_scene_is_freed_by_a_double_click() {
     assert!(!window.shown().picture.bodies[0].pinned.contains(&node));
 }
 
-/// The space bar is held and the view taken along with it; which of the two is let go first does not matter.
+/// The view is moved with the space bar held; the order in which the space bar and the pointer are released does not matter.
 #[test]
 fn the_space_bar_takes_the_view_along_and_lets_time_pass_when_it_is_pressed_by_itself() {
     let mut window = Window::open("ball", SIZE);
@@ -219,7 +219,7 @@ fn the_space_bar_takes_the_view_along_and_lets_time_pass_when_it_is_pressed_by_i
     }
 }
 
-/// A body of the plane and one of space: the view is taken along by the middle button until nothing is seen any more.
+/// A body of the plane and one of space: the view is moved with the middle button until nothing is visible any more.
 #[test]
 fn where_no_body_is_in_sight_an_arrow_points_to_them_and_a_press_shows_them() {
     for scene in ["ball", "balloons"] {
@@ -242,7 +242,7 @@ fn where_no_body_is_in_sight_an_arrow_points_to_them_and_a_press_shows_them() {
     }
 }
 
-/// Whoever looks at the past, and presses a body to see its properties, has done nothing to it.
+/// Pressing a body in the past to see its properties does nothing to it.
 #[test]
 fn while_time_stands_still_a_press_selects_a_body_and_leaves_what_was_recorded() {
     let mut window = Window::open("two-chambers", SIZE);
@@ -261,12 +261,12 @@ fn while_time_stands_still_a_press_selects_a_body_and_leaves_what_was_recorded()
     assert!(window.harness.query_by_role_and_label(egui::Role::Slider, "stiffness [N/m]").is_some(), "its properties");
     let shown = window.shown();
     assert_eq!((shown.recorded, shown.frames, shown.latest), (0, 5, 20));
-    // Drawn away, it is pulled, and what came later is replaced.
+    // Dragged away, it is pulled, and what was recorded later is replaced.
     window.drag(&[top, top + Vec2::new(10.0, -20.0)], PointerButton::Primary, Modifiers::NONE);
     window.until("a pull", |shown| shown.recorded == 1 && shown.latest == 5);
 }
 
-/// A body that is held while time stands still is pulled from where time begins to pass, also where something was undone before.
+/// A body that is grabbed while time is stopped is pulled from the moment at which time starts, also if something was undone before.
 #[test]
 fn a_body_that_is_held_is_pulled_when_time_begins_to_pass() {
     for undoes in [false, true] {
@@ -295,7 +295,7 @@ fn a_body_of_space_that_is_held_keeps_its_depth_while_the_wheel_brings_the_eye_n
         let positions = &window.shown().picture.bodies[body].positions;
         [0, 1, 2].map(|d| positions.iter().map(|p| p[d]).sum::<f64>() / positions.len() as f64)
     };
-    // The body nearest to the middle of the window, which the wheel goes toward.
+    // The body nearest to the centre of the window, to which the wheel zooms.
     let canvas = window.canvas();
     let spot = |body: usize| window.studio().on_screen(middle(body)).expect("in sight");
     let far = |body: &usize| spot(*body).distance(canvas.center());
@@ -321,7 +321,7 @@ fn a_body_of_space_that_is_held_keeps_its_depth_while_the_wheel_brings_the_eye_n
     window.rest();
     let after = pulled(&mut window, 5);
     let way: f64 = before.iter().zip(after).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
-    // The eye has come nearer by metres.
+    // The camera has moved metres closer.
     assert!(way < 0.6, "{way} m: {before:?} {after:?}");
     let drawn = window.studio().on_screen(after).expect("in sight");
     assert!(drawn.distance(held) < 3.0, "the handle is under the pointer: {drawn:?} {held:?}");
@@ -332,7 +332,7 @@ fn a_body_from_the_menu_comes_to_the_pointer_and_into_no_other_one() {
     let mut window = Window::open("ball", SIZE);
     for count in 2..6 {
         window.click("Add");
-        // The name of the body that was added last stands beside the scene.
+        // The name of the body that was added last is shown in the panel.
         let canvas = window.canvas();
         let entries: Vec<Pos2> = window.harness.get_all_by_label("jelly").map(|entry| entry.rect().center()).collect();
         let at = entries.into_iter().find(|at| canvas.contains(*at)).expect("an entry of the menu");

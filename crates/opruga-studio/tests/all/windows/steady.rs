@@ -1,4 +1,4 @@
-//! What stays where it is while a scene runs, and what goes away when it was read.
+//! Controls that stay where they are while a scene runs, and messages that disappear after they were read.
 
 use super::screen::window::{SIZE, Window};
 use egui::{Key, Modifiers, Rect, Role};
@@ -7,7 +7,7 @@ use opruga::core::spec::Values;
 use opruga_studio::session::{Edit, Request};
 use opruga_studio::shown::Severity;
 
-/// Where controls are that a hand may be on.
+/// The rectangles of controls that a user may be about to press.
 fn controls(window: &Window) -> Vec<Rect> {
     let sliders = window.harness.get_all_by_role(Role::Slider).map(|slider| slider.rect());
     let tools = ["Pull", "Plots", "canvas"].map(|name| window.harness.get_by_label(name).rect());
@@ -27,7 +27,7 @@ fn no_control_moves_while_numbers_grow_and_warnings_come() {
         window.until("time passes", |shown| shown.frames > 20);
         assert_eq!(controls(&window), before, "{size:?}: numbers");
         window.studio().ask(Request::Play(false));
-        // A rule that warns, slower than the clock.
+        // An integrator that causes a warning, slower than the clock.
         let kinds = opruga::Registry::<2>::default().integrators();
         let heun = kinds.into_iter().find(|spec| spec.kind == "heun").expect("it is registered");
         window.studio().ask(Request::Integrator(None, Values::defaults(heun, 2)));
@@ -101,7 +101,7 @@ fn an_optional_field_of_an_obstacle_is_given_no_longer_by_its_cross() {
     let mut window = Window::on(session.expect("it opens"), [1280.0, 2400.0], 1.0);
     window.click("Obstacle: box");
     window.frames(30);
-    // The name stands above its slider.
+    // The name is above its slider.
     let slider = window.harness.get_by_role_and_label(Role::Slider, "rotation [rad]").rect();
     let crosses: Vec<Rect> = window.harness.get_all_by_label("×").map(|cross| cross.rect()).collect();
     let above = |rect: &&Rect| (slider.top() - 30.0..slider.top()).contains(&rect.center().y);
