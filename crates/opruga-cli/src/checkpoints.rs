@@ -1,4 +1,4 @@
-//! Checkpoints of a run: what is in them, when they are written, and which older one stands in for a damaged one.
+//! Checkpoints of a run: their contents, when they are written, and which older one replaces a damaged one.
 
 use crate::errors::{CallError, CallWarning, ResumeHint};
 use crate::failure::Failure;
@@ -19,21 +19,21 @@ use std::time::{Duration, Instant};
 
 /// The file of the newest checkpoint of a run.
 pub(crate) const NAME: &str = "checkpoint";
-/// The file of the one before it.
+/// The file of the previous one.
 pub(crate) const PREVIOUS: &str = "checkpoint.previous";
 
 /// The table of a run.
 const TABLE: &str = "diagnostics.csv";
-/// What a run writes at its end.
+/// The files that a run writes at its end.
 const LAST: [&str; 6] = ["summary.json", "final.csv", "strip.png", "plots.svg", "video.mp4", "video.gif"];
 
-/// The form of the payload; another one belongs to another version of the program.
+/// The format of the payload; another format belongs to another version of the program.
 const FORM: &str = "run 3";
 
-/// How a run was called, as far as going on with it depends on that.
+/// The arguments of a run on which its continuation depends.
 #[derive(Clone, Default)]
 pub(crate) struct Calling {
-    /// What `--set` and `--seconds` have changed in the scene.
+    /// The changes of the scene by `--set` and `--seconds`.
     pub(crate) overrides: Vec<(String, String)>,
     /// Whether unknown fields are warnings.
     pub(crate) lenient: bool,
@@ -43,11 +43,11 @@ pub(crate) struct Calling {
     pub(crate) files: BTreeMap<String, Arc<[u8]>>,
 }
 
-/// A checkpoint's payload: the snapshot and how the run was called.
+/// The payload of a checkpoint: the snapshot and the arguments of the run.
 pub(crate) struct SavedRun {
     pub(crate) name: String,
     pub(crate) calling: Calling,
-    /// Frames since the start.
+    /// The number of frames since the start.
     pub(crate) frames: u64,
     /// Simulated time [s].
     pub(crate) time: f64,
@@ -81,7 +81,7 @@ impl SavedRun {
         out
     }
 
-    /// Reads a payload; none if it has another form.
+    /// Reads a payload; none if it has another format.
     fn read(mut bytes: &[u8]) -> Option<SavedRun> {
         let mut part = || {
             let (length, rest) = bytes.split_first_chunk::<8>()?;
@@ -113,9 +113,9 @@ impl SavedRun {
     }
 }
 
-/// Reads a checkpoint: how far the run was, and its scene.
+/// Reads a checkpoint: the progress of the run, and its scene.
 ///
-/// A damaged or missing one is an error that names the one before it, if that is whole.
+/// A damaged or missing checkpoint is an error, which names the previous one if that is intact.
 pub(crate) fn open(path: &Path, registries: &Registries) -> Result<(SavedRun, Source), Failure> {
     let error = match read(path, registries) {
         Ok(whole) => return Ok(whole),
@@ -152,14 +152,14 @@ fn read(path: &Path, registries: &Registries) -> Result<(SavedRun, Source), Box<
     Ok((run, source))
 }
 
-/// What becomes of the checkpoint that is there when the first one of a run is written.
+/// What happens to an existing checkpoint when the first one of a run is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Older {
-    /// It is of this run: it is kept as the one before.
+    /// It belongs to this run: it is kept as the previous one.
     Keep,
-    /// It is of this run, but the one before it is what the run goes on from: that one stays.
+    /// It belongs to this run, but the run was resumed from the previous one, which stays.
     Leave,
-    /// It is of another run: neither it nor the one before it stays.
+    /// It belongs to another run: both it and the previous one are removed.
     Remove,
 }
 
@@ -168,18 +168,18 @@ pub(crate) struct Keeper<'a> {
     folder: &'a OutputFolder,
     source: &'a Source,
     calling: Calling,
-    /// None: at the end only.
+    /// None: only at the end.
     every: Option<Duration>,
     next: Option<Instant>,
     older: Older,
     /// Whether this run has written a checkpoint.
     begun: bool,
-    /// Checkpoints on the way that could not be written, and why the last one could not.
+    /// The number of intermediate checkpoints that could not be written, and why the last one could not.
     failed: Option<(u64, AnyMessage)>,
 }
 
 impl<'a> Keeper<'a> {
-    /// A keeper that writes every so many seconds of a clock on the wall; 0: at the end only.
+    /// Makes a keeper that writes checkpoints at this interval of wall-clock time [s]; 0: only at the end.
     pub(crate) fn new(
         folder: &'a OutputFolder,
         source: &'a Source,
@@ -203,9 +203,8 @@ impl<'a> Keeper<'a> {
         Keeper { folder, source, calling, every, next, older, begun: false, failed: None }
     }
 
-    /// Writes the head of the table and its first row: whoever looks into the folder of a run that has begun, or was killed
-    /// before its first checkpoint, finds what its columns will be. The table of an earlier run stays as long as its
-    /// checkpoint does.
+    /// Writes the header of the table and its first row, so that anybody who looks into the folder of a run that has begun, or was killed before its
+    /// first checkpoint, finds its columns. The table of an earlier run stays as long as its checkpoint does.
     pub(crate) fn begin(&self, table: &NumberTable) -> Result<(), WriteError> {
         match self.folder.path(TABLE).exists() {
             true => Ok(()),
@@ -213,13 +212,13 @@ impl<'a> Keeper<'a> {
         }
     }
 
-    /// Writes the table so far and a checkpoint if it is time to. A failure on the way is told, counted, and no end of the
-    /// run: the next one may succeed.
+    /// Writes the table so far and a checkpoint if one is due. A failure is reported and counted but does not end the run, because the next
+    /// checkpoint may succeed.
     pub(crate) fn write_if_due(&mut self, world: &dyn AnyWorld, table: &NumberTable) -> Option<Warning> {
         let start = self.next.filter(|next| Instant::now() >= *next).map(|_| Instant::now())?;
         let written = self.write(world, table);
         let took = start.elapsed();
-        // Large worlds on slow disks: at least half of the time is the run's.
+        // For large worlds on slow disks: at least half of the time is spent on the run.
         self.next = self.every.map(|every| Instant::now() + every.max(took));
         let error = written.err()?;
         let count = self.failed.as_ref().map_or(0, |f| f.0) + 1;
@@ -228,9 +227,9 @@ impl<'a> Keeper<'a> {
         Some(Warning::new(CallWarning::NoCheckpoint { time: world.time(), path, cause: error.about }, 1))
     }
 
-    /// Writes the table so far and a checkpoint; the checkpoint before it is kept under its second name. Returns the names of
-    /// what is there then: the first time, what an earlier run left goes, since it would pass for this one's. All of it or,
-    /// where it fails, nothing.
+    /// Writes the table so far and a checkpoint; the previous checkpoint is kept under its second name. Returns the names of the files that then
+    /// exist. At the first call, the files of an earlier run are removed, because they would look like files of this one. If it fails, nothing is
+    /// changed.
     pub(crate) fn write(&mut self, world: &dyn AnyWorld, table: &NumberTable) -> Result<Vec<String>, WriteError> {
         let saved = SavedRun {
             name: self.source.name.clone(),
@@ -265,7 +264,7 @@ impl<'a> Keeper<'a> {
         Ok(names.map(String::from).collect())
     }
 
-    /// What went wrong on the way, for the summary.
+    /// The failures so far, for the summary.
     pub(crate) fn warning(&self) -> Option<Warning> {
         let (count, cause) = self.failed.clone()?;
         Some(Warning::new(CallWarning::CheckpointFailed { cause }, count))

@@ -1,4 +1,4 @@
-//! What the command line refuses beside what the library refuses.
+//! Errors of the command line in addition to those of the library.
 
 use opruga::math::message::AnyMessage;
 use opruga::math::words::{counted, number, rounded};
@@ -38,7 +38,7 @@ opruga::math::messages! {
 }
 
 opruga::math::messages! {
-    /// What a value of the call may be.
+    /// The allowed values of an argument.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CallRange {
         "part.call_range" #[error("{} to {}", number(*least), number(*most))]
@@ -52,7 +52,7 @@ opruga::math::messages! {
         "part.call_range" #[error("{names}")]
         OneOf { names: String },
     }
-    /// Why a call makes no sense.
+    /// Errors in a call.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CallFault {
         "call" #[error("{text}")] #[hint("--help tells what can be said")]
@@ -120,7 +120,7 @@ opruga::math::messages! {
 }
 
 opruga::math::messages! {
-    /// What the output of a command meets.
+    /// Errors of the output of a command.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum OutputError {
         "write.failed" #[error("stdout cannot be written: {reason}")]
@@ -138,7 +138,7 @@ opruga::math::messages! {
         "part.crossing" #[error("of bodies `{body}` and `{other}`, one lies in the other")]
         Inside { body: String, other: String },
     }
-    /// What a check of a run finds.
+    /// The result of a check of a run.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CheckFault {
         "contact.crossed" #[error("at t = {} s {crossing}", number(*time))]
@@ -149,7 +149,7 @@ opruga::math::messages! {
 }
 
 opruga::math::messages! {
-    /// What is odd about a call, its machine or what it reads, and no error.
+    /// Warnings about a call, its machine or its inputs.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CallWarning {
         "threads.above_cores" #[error("{threads} threads on {}: more are no faster", counted(*cores as u64, "core", "cores"))]
@@ -177,7 +177,7 @@ opruga::math::messages! {
         "pictures.thinned" #[error("pictures of {nodes} nodes would take {mebibytes} MiB; one frame of {every} is kept")]
         PicturesThinned { nodes: usize, mebibytes: u64, every: u64 },
     }
-    /// What is worth knowing about a call, and nothing odd.
+    /// Notes about a call.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CallNote {
         "run.whole_frames"
@@ -200,7 +200,7 @@ opruga::math::messages! {
         "threads.shared" #[error("{threads} runs shared the machine; for speeds take --threads 1 (and --force)")]
         SharedMachine { threads: usize },
     }
-    /// What would make a run shorter.
+    /// Ways to make a run shorter.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum Shorter {
         "part.shorter" #[error("--set integrator.accuracy=real_time")]
@@ -218,7 +218,7 @@ opruga::math::messages! {
         "part.shorter" #[error("{first}; {rest}")]
         List { first: Box<Shorter>, rest: Box<Shorter> },
     }
-    /// What helps where a recording or a checkpoint cannot be used.
+    /// What helps if a recording or a checkpoint cannot be used.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ResumeHint {
         "part.resume_hint" #[error("the frames before are whole: --to {} shows them", number(*time))]

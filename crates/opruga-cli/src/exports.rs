@@ -1,4 +1,4 @@
-//! Frames of a world for other programs: one file a frame, or whole runs in one file.
+//! Frames of a world for other programs: one file per frame, or whole runs in one file.
 
 use crate::arguments::Replay;
 use crate::errors::CallFault;
@@ -10,7 +10,7 @@ use opruga::world::Vectors;
 use opruga::{AnyBody, AnyWorld};
 use std::collections::BTreeMap;
 
-/// Whole runs are held in memory until their end: up to so many bytes of positions.
+/// Whole runs are held in memory until their end, up to this many bytes of positions.
 const MOST_BYTES: usize = 2 << 30;
 
 /// Writes the present frame of a world.
@@ -21,7 +21,7 @@ pub(crate) fn frame(world: &dyn AnyWorld, format: Format, folder: &OutputFolder,
     };
     let (x, v) = (all(|world, body| world.positions(body)), all(|world, body| world.velocities(body)));
     let bodies = numbers.iter().filter_map(|&number| Some((number, scene.body(number)?)));
-    // What finite elements say of their cells.
+    // The stresses in the cells of finite elements.
     let stresses: Vec<(&dyn AnyBody, Stresses)> =
         bodies.map(|(number, body)| (body, Stresses::of(world, number))).collect();
     let fields: Vec<Vec<CellField<'_>>> = stresses.iter().map(|(_, stresses)| stresses.fields()).collect();
@@ -38,7 +38,7 @@ pub(crate) fn frame(world: &dyn AnyWorld, format: Format, folder: &OutputFolder,
     Ok(())
 }
 
-/// Stress and volume ratio of the cells of a body; empty where it has no finite elements.
+/// Stress and volume ratio of the cells of a body; empty if it has no finite elements.
 #[derive(Default)]
 struct Stresses {
     cauchy: Vec<f64>,
@@ -47,7 +47,7 @@ struct Stresses {
 }
 
 impl Stresses {
-    /// Those of a body now; cells without finite elements have no number.
+    /// The present stresses of a body; NaN for cells without finite elements.
     fn of(world: &dyn AnyWorld, body: usize) -> Stresses {
         let states = world.cell_states(body);
         if states.is_empty() {
@@ -76,7 +76,7 @@ impl Stresses {
     }
 }
 
-/// Where the nodes of all bodies were, frame by frame.
+/// The positions of the nodes of all bodies, frame by frame.
 #[derive(Default)]
 pub(crate) struct Tracks(BTreeMap<usize, Track>);
 
@@ -96,7 +96,7 @@ impl Tracks {
         Ok(())
     }
 
-    /// Writes what the call asks for.
+    /// Writes the files that the call asks for.
     pub(crate) fn write(
         self,
         call: &Replay,
@@ -110,7 +110,7 @@ impl Tracks {
             files.push("run.glb".into());
         }
         for track in &tracks {
-            // Names of bodies may hold what names of files may not.
+            // Names of bodies may contain characters that are not allowed in file names.
             let stem: String =
                 track.name.chars().map(|c| if c.is_alphanumeric() || "-_ ".contains(c) { c } else { '_' }).collect();
             for (wanted, ending) in [(call.pc2, "pc2"), (call.mdd, "mdd")] {

@@ -1,4 +1,4 @@
-//! Why a command failed, for people and for programs, and the exit code.
+//! The reason why a command failed, for people and for programs, and its exit code.
 
 use crate::errors::{CallFault, CallNote, CallRange, CheckFault, OutputError};
 use crate::language::translation;
@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 pub(crate) enum Failure {
     /// The scene has errors.
     Scene(Vec<SceneError>),
-    /// A run diverged, or cannot go on from a checkpoint.
+    /// A run diverged, or cannot be resumed from a checkpoint.
     Run(Box<SceneError>),
     /// A file cannot be written.
     Write(WriteError),
@@ -22,13 +22,13 @@ pub(crate) enum Failure {
     Draw(DrawError),
     /// stdout cannot be written.
     Output(OutputError),
-    /// A check of the run found a fault.
+    /// The call is invalid.
     Check(CheckFault),
-    /// The call makes no sense.
+    /// Ctrl-C or a termination signal; the files are closed.
     Call(AnyMessage),
-    /// Ctrl-C or a signal to end; the files are closed.
+    /// The reader of the output has closed the pipe.
     Interrupted,
-    /// Whoever reads our output has gone.
+    /// An argument that is out of its range.
     ClosedPipe,
 }
 
@@ -62,7 +62,7 @@ impl From<Vec<SceneError>> for Failure {
 }
 
 impl Failure {
-    /// A number of the call that is out of its range.
+    /// An invalid call.
     pub(crate) fn range(option: &'static str, value: impl core::fmt::Display, allowed: CallRange) -> Failure {
         Failure::call(CallFault::OutOfRange { option, value: value.to_string(), allowed })
     }
@@ -161,7 +161,7 @@ pub(crate) fn print_warning(warning: &Warning) {
     eprintln!("{}", warning_text(warning, translation()));
 }
 
-/// Prints data on stdout; a reader that has gone is no error.
+/// Prints data on stdout; a closed pipe is not an error.
 pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
     use std::io::Write as _;
     let mut out = std::io::stdout().lock();

@@ -1,26 +1,25 @@
-//! How long a run will take, told once where that is long, and what would make it shorter.
+//! Estimates the duration of a run, which is reported once if it is long, with ways to make the run shorter.
 
 use crate::errors::{CallNote, Shorter};
 use opruga::core::spec::{Role, Value, Values};
 use opruga::math::words::rounded;
 use opruga::{AnyBody, AnyWorld};
 
-/// So long the first frames are measured [s].
+/// The time over which the first frames are measured [s].
 const MEASURED: f64 = 2.0;
-/// Runs that take longer are told of [s].
+/// Longer runs are reported [s].
 const LONG: f64 = 30.0;
-/// More substeps than this are no advice.
+/// A larger number of substeps is not suggested.
 const MANY_SUBSTEPS: f64 = 1000.0;
 
-/// Tells once.
+/// Reports the duration once.
 #[derive(Default)]
 pub(crate) struct Forecast {
     looked: bool,
 }
 
 impl Forecast {
-    /// How long the rest of a run takes, if that is long: `wall` seconds were spent on `done` frames, and
-    /// `left` frames are left.
+    /// The remaining time of a run, if it is long: `wall` seconds were spent on `done` frames, and `left` frames remain.
     pub(crate) fn of(&mut self, world: &dyn AnyWorld, done: u64, left: u64, wall: f64) -> Option<CallNote> {
         if self.looked || wall < MEASURED || done == 0 {
             return None;
@@ -46,7 +45,7 @@ pub(crate) fn duration(seconds: f64) -> String {
     }
 }
 
-/// Whether an integrator of some or of all bodies solves for the end of its steps.
+/// For each integrator in use, whether it is implicit.
 fn implicit(world: &dyn AnyWorld) -> impl Iterator<Item = bool> {
     let scene = world.scene();
     let own = world.bodies().into_iter().filter_map(|body| scene.body(body)).map(AnyBody::integrator);
@@ -58,12 +57,12 @@ fn implicit(world: &dyn AnyWorld) -> impl Iterator<Item = bool> {
     all.into_iter().map(|integrator| world.is_implicit(integrator))
 }
 
-/// Whether every body has an integrator that solves for the end of its steps.
+/// Whether every body has an implicit integrator.
 pub(crate) fn is_implicit(world: &dyn AnyWorld) -> bool {
     implicit(world).all(|implicit| implicit)
 }
 
-/// What would make a run shorter, the most effective first.
+/// Ways to make a run shorter, the most effective first.
 fn shorter(world: &dyn AnyWorld) -> Shorter {
     let mut out = Vec::new();
     let (time, integrator) = (world.scene().time(), world.scene().integrator());
@@ -94,14 +93,14 @@ fn shorter(world: &dyn AnyWorld) -> Shorter {
     out.into_iter().rev().fold(Shorter::Less {}, list)
 }
 
-/// Whether the integrator of a scene has a faster setting that it does not use yet.
+/// Whether the integrator of a scene has a faster setting that is not in use.
 fn has_real_time(world: &dyn AnyWorld, integrator: &Values) -> bool {
     let mut faster = integrator.clone();
     let set = faster.set(integrator.spec(), "accuracy", Value::Text("real_time".into()), world.scene().dimension());
     integrator.text("accuracy") == Some("exact") && set.is_ok() && world.is_implicit(&faster)
 }
 
-/// The explicit integrator that is offered, and the substeps at which it would be stable, if these are not many.
+/// The explicit integrator to suggest, and the number of substeps with which it would be stable, if that is not large.
 fn explicit_substeps(world: &dyn AnyWorld) -> Option<(&'static str, u32)> {
     let spec = world.integrator_with(Role::OfferedExplicit)?;
     let limit = world.stable_step_under(&Values::defaults(spec, world.scene().dimension()))?;

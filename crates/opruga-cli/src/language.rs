@@ -1,4 +1,4 @@
-//! The language of errors and warnings for people. JSON is English.
+//! The language of errors and warnings for people. JSON is in English.
 
 use clap::ValueEnum;
 use opruga::words::Translation;
@@ -16,7 +16,7 @@ pub(crate) enum Language {
     Hr,
 }
 
-/// Sets the language once, when the call has been read.
+/// Sets the language once, after the arguments have been read.
 pub(crate) fn choose(language: Language) {
     let _ = CHOSEN.set(language);
 }

@@ -1,4 +1,4 @@
-//! The program `opruga`: runs scenes, checks them, lists what there is, measures speed.
+//! The program `opruga`: runs scenes, checks them, lists what is available, measures speed.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 mod arguments;
@@ -41,7 +41,7 @@ fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) if error.use_stderr() && std::env::args_os().any(|word| word == "--json") => {
-            // Whoever asks for JSON reads errors as JSON, those of the call too.
+            // A user who asks for JSON gets all errors as JSON, including those of the call.
             let text = error.to_string();
             let text = text.trim_start_matches("error: ").split("\n\n").next().unwrap_or_default().to_string();
             let failure = Failure::call(CallFault::Arguments { text });
@@ -58,7 +58,7 @@ fn main() -> ExitCode {
     };
     language::choose(arguments.language);
     let json = arguments.command.as_ref().is_some_and(Command::json);
-    // Whatever a scene can name is handed on from here.
+    // Everything that a scene can name is passed on from here.
     let registries = Registries::default();
     let outcome = match &arguments.command {
         None => studio::first(&registries),
@@ -74,7 +74,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Does what a call asks for, with the models and integrators that its scenes can name.
+/// Executes a command, with the models and integrators that its scenes can name.
 fn run_command(command: &Command, registries: &Registries) -> Result<u8, Failure> {
     match command {
         Command::Run(run) => watch::run(run, registries),
@@ -94,7 +94,7 @@ fn run_command(command: &Command, registries: &Registries) -> Result<u8, Failure
     }
 }
 
-/// The scene that somebody wants to run who left out `run`.
+/// The scene that the user wants to run, if `run` was omitted.
 fn scene_without_run(error: &clap::Error) -> Option<String> {
     use clap::error::{ContextKind, ContextValue};
     match error.get(ContextKind::InvalidSubcommand) {

@@ -1,4 +1,4 @@
-//! `opruga material`: what a law of the finite elements says at one deformation gradient.
+//! `opruga material`: the results of a law of the finite elements at one deformation gradient.
 
 use crate::arguments::Material;
 use crate::errors::CallError;
@@ -32,7 +32,7 @@ fn refuse(error: SceneError) -> Failure {
     Failure::Scene(vec![error])
 }
 
-/// The numbers of F, row by row: of the plane or of space.
+/// The numbers of F, row by row, in the plane or in space.
 fn gradient(text: &str) -> Result<Vec<f64>, Failure> {
     let split = |c: char| c == ',' || c == ';' || c.is_whitespace();
     let bare = text.replace(['[', ']'], " ");
@@ -55,7 +55,7 @@ fn rows<const D: usize>(numbers: &[f64]) -> [[f64; D]; D] {
     core::array::from_fn(|i| core::array::from_fn(|j| numbers[i * D + j]))
 }
 
-/// The fields of the law: checked as those of a scene.
+/// The fields of the law, checked like those of a scene.
 fn values(call: &Material, dimension: usize) -> Result<Values, Failure> {
     let mut values = Values::defaults(SPEC, dimension);
     if !law::NAMES.contains(&call.name.as_str()) {
@@ -95,7 +95,7 @@ fn values(call: &Material, dimension: usize) -> Result<Values, Failure> {
     Ok(values)
 }
 
-/// All of it for people or as JSON.
+/// The results as text or as JSON.
 fn shown<const D: usize>(
     name: &str,
     setting: &str,
@@ -149,7 +149,7 @@ fn shown<const D: usize>(
     Ok(text)
 }
 
-/// Numbers under their heads, aligned at the right.
+/// A right-aligned table of numbers with headers.
 fn table(rows: &[&str], columns: &[&str], numbers: &[Vec<f64>]) -> String {
     let cells: Vec<Vec<String>> = numbers.iter().map(|row| row.iter().map(|x| rounded(*x, 8)).collect()).collect();
     let width = cells.iter().flatten().map(|cell| cell.chars().count()).max().unwrap_or(0) + 2;

@@ -1,4 +1,4 @@
-//! `opruga mesh`: a file to a mesh of cells, with its quality and a picture; also from one format to another.
+//! `opruga mesh`: makes a mesh of cells from a file, with its quality and a picture; also converts between formats.
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 use crate::arguments::Mesh as Call;
@@ -23,7 +23,7 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Reads, fills, tells, draws and writes.
+/// Reads, fills, reports, draws and writes.
 pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
     for (option, value) in [("--size", call.size), ("--scale-to", call.scale_to)] {
         if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
@@ -53,7 +53,7 @@ pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
     };
     let (dimension, shape) = shape(call, folder, name, &ending(&call.input))?;
     let files = Files::in_folder(folder);
-    // One way from files to meshes: that of scenes. The files that lie beside the input are known once they are read.
+    // Files are read in the same way as by scenes. The files next to the input are known after reading.
     let mut named = Vec::new();
     let mut apart = |named: &[String]| {
         let beside = named.iter().filter_map(|name| Some((name, files.path_of(name)?)));
@@ -73,26 +73,26 @@ pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
     }
 }
 
-/// Where the picture goes; none where nobody asks for one. It has the whole name of the mesh: each format of a mesh may lie beside
-/// the others with its own.
+/// The path of the picture; none if it is not requested. It contains the full name of the mesh, so that each format of a mesh can have its own
+/// picture in the same folder.
 fn picture_of(call: &Call, out: Option<&(&Path, String)>) -> Option<PathBuf> {
     let beside = || out.map(|(path, ending)| path.with_extension(format!("{ending}.png")));
     call.picture.clone().or_else(beside)
 }
 
-/// What the call asks for in the words of scenes, and the dimension.
+/// The shape, in the terms of scenes, that the call asks for, and the dimension.
 fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize, Values), Failure> {
     let set = overrides(&call.set)?;
     let is_set = |field: &str| set.iter().any(|(path, _)| path == field);
     let word = |field: &str, value: &str| (field.to_string(), serde_json::Value::from(value).to_string());
-    // Lengths that `--set` gives are not asked for once more.
+    // Lengths that `--set` gives are not required again.
     let length = |field: &str, given: Option<f64>, missing: Option<CallFault>| match (given, missing) {
         (Some(length), _) => Ok(Some((field.to_string(), format!("{length:?}")))),
         (None, Some(missing)) if !is_set(field) => Err(Failure::call(missing)),
         _ => Ok(None),
     };
     let spacing = || length("spacing", call.size, Some(CallFault::NoSize {}));
-    // What the call says by options of its own, then what it sets.
+    // First the options of the call, then `--set`.
     let made = |kind: &str, dimension: usize, fields: Vec<(String, String)>| {
         let all = [&[word("file", name)], &fields[..], &set[..]].concat();
         let (values, _) = scene::shape_of_fields(kind, dimension, &all).map_err(Failure::Scene)?;
@@ -149,7 +149,7 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
     }
 }
 
-/// What a file or an option of the call is refused for.
+/// The error about a file or an option of the call.
 fn refused(call: &Call, name: &str, problem: Problem) -> Failure {
     let value = |option: &str, value: Option<f64>| value.map(|value| format!("{option} {value}"));
     let option = match problem.field {
@@ -164,12 +164,12 @@ fn refused(call: &Call, name: &str, problem: Problem) -> Failure {
     }])
 }
 
-/// What is odd about the file.
+/// The notices about the file.
 fn file_notices(call: &Call, name: &str, notices: Vec<SceneError>) -> Vec<Notice> {
     notices.into_iter().map(|about| Notice { about: of_call(call, name, about), count: 1 }).collect()
 }
 
-/// The file that an error names, as the call names it: TetGen's second file lies beside the first.
+/// The file of an error, as named by the call: TetGen's second file is next to the first.
 fn placed(call: &Call, name: &str, file: &str) -> String {
     let stem = |name: &str| name.rsplit_once('.').map(|(stem, _)| stem.to_string());
     match file {
@@ -179,7 +179,7 @@ fn placed(call: &Call, name: &str, file: &str) -> String {
     }
 }
 
-/// The option that stands for a setting of a shape.
+/// The option that corresponds to a setting of a shape.
 fn option(setting: &Setting) -> Setting {
     let Setting::InScene { name, value } = setting else { return setting.clone() };
     let value = value.as_ref().map(|value| value.trim_matches('"'));
@@ -191,7 +191,7 @@ fn option(setting: &Setting) -> Setting {
     })
 }
 
-/// An error as the call has it: with its options, and without a path in a scene.
+/// An error in the terms of the call: with its options, and without a path in a scene.
 fn of_call(call: &Call, name: &str, error: SceneError) -> SceneError {
     let file = placed(call, name, &error.file);
     SceneError { file, path: String::new(), ..error.replaced(&option) }
@@ -216,7 +216,7 @@ fn finish<const D: usize>(
         left_out = mesh.left_out;
     }
     if call.strict {
-        // What the call asks for is told, and no error.
+        // Things that the call asks for are reported, but are not errors.
         let odd = notices.iter().filter(|notice| !Notice::is_asked_for(notice.about.code));
         let of_format = left_out.iter().map(|what| {
             let error = SceneError::of(NotInFormat::LeftOutOfFormat { what: what.clone() });
@@ -241,7 +241,7 @@ fn finish<const D: usize>(
     Ok(if quality.inverted == 0 { 0 } else { 1 })
 }
 
-/// Kinds of cells and how many there are of each.
+/// The kinds of cells with their counts.
 fn kinds<const D: usize>(mesh: &Mesh<D>) -> Vec<(Element, usize)> {
     let mut out: Vec<(Element, usize)> = Vec::new();
     for (element, ..) in mesh.cells.iter() {
@@ -329,7 +329,7 @@ fn plural(kind: Element, count: usize) -> String {
     }
 }
 
-/// The mesh as a picture: whole, and in space also cut open; colours tell the smallest angle of the cells at a node.
+/// A picture of the mesh: complete and, in space, also cut open. The colours show the smallest angle of the cells at a node.
 fn drawn<const D: usize>(mesh: &Mesh<D>, input: &Path) -> Result<Vec<u8>, draw::DrawError> {
     let positions: Vec<[f64; 3]> =
         mesh.positions.iter().map(|x| [x[0], x[1], x.get(2).copied().unwrap_or(0.0)]).collect();
@@ -371,7 +371,7 @@ fn drawn<const D: usize>(mesh: &Mesh<D>, input: &Path) -> Result<Vec<u8>, draw::
         let outer: Vec<bool> = on_surface(mesh);
         let lines = sides(mesh, |edge| edge.iter().all(|node| outer[*node as usize]));
         pictures.push(picture(body(Facets::Triangles(surface(mesh)), Vec::new(), lines), name));
-        // Cells in front of the middle are taken away.
+        // Cells in front of the centre are removed.
         let depth = |nodes: &[u32]| nodes.iter().map(|n| positions[*n as usize][2]).sum::<f64>() / nodes.len() as f64;
         let (low, high) =
             positions.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[2]), h.max(p[2])));
@@ -400,14 +400,14 @@ fn drawn<const D: usize>(mesh: &Mesh<D>, input: &Path) -> Result<Vec<u8>, draw::
         .to_png()
 }
 
-/// Whether a facet names each node.
+/// For each node, whether a facet uses it.
 fn on_surface<const D: usize>(mesh: &Mesh<D>) -> Vec<bool> {
     let mut outer = vec![false; mesh.nodes()];
     mesh.facets.iter().flatten().for_each(|node| outer[*node as usize] = true);
     outer
 }
 
-/// The sides of cells between corners and nodes in their middle, each once.
+/// The sides of cells between corners and midpoint nodes, each once.
 fn sides<const D: usize>(mesh: &Mesh<D>, wanted: impl Fn(&[u32; 2]) -> bool) -> Vec<[u32; 2]> {
     let mut straight = mesh.clone();
     straight.facets.clear();

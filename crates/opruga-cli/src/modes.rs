@@ -1,4 +1,4 @@
-//! `opruga modes`: natural frequencies and their shapes.
+//! `opruga modes`: natural frequencies and mode shapes.
 
 use crate::arguments::Modes;
 use crate::errors::{CallFault, CallRange};
@@ -20,7 +20,7 @@ use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// The part of the square of the largest frequency that rounding may leave of none.
+/// The fraction of the square of the largest frequency that a zero frequency may have because of rounding.
 const ROUNDING: f64 = 1e-15;
 
 /// The largest displacement in a picture, in extents of the body.
@@ -46,23 +46,23 @@ fn integrator_with(registries: &Registries, role: Role) -> Option<&'static Spec>
     catalogue_of(registries).integrators.into_iter().find(|spec| spec.has_role(role))
 }
 
-/// Gives every body the integrator `equilibrium` where that is asked for, with what it understands of the parameters of the
-/// one that it had: the tolerance, the number of iterations, the linear solver.
+/// Gives every body the integrator `equilibrium` if that is requested, with the parameters of its former integrator that it supports: the tolerance,
+/// the number of iterations, the linear solver.
 fn look_for_equilibrium(call: &Modes, registries: &Registries, blueprint: &mut AnyBlueprint) {
     let dimension = blueprint.scene().dimension();
     let Some(spec) = integrator_with(registries, Role::Statics).filter(|_| call.equilibrium) else { return };
     for values in blueprint.integrators_mut() {
         let mut statics = Values::defaults(spec, dimension);
         for (name, value) in values.iter() {
-            // What means nothing to it is left out.
+            // Parameters that it does not support are dropped.
             let _ = statics.set(spec, name, value.clone(), dimension);
         }
         *values = statics;
     }
 }
 
-/// Lets statics be where no frame is run: modes are those of a state, no integrator takes part in them, and bodies that nothing holds,
-/// which statics refuses, have modes as all others do. What takes its place goes with every body and every step.
+/// Replaces statics if no frame is run. Modes belong to a state, independently of the integrator, and a body without pins, which statics refuses, has
+/// modes like any other. The replacement supports all bodies and all steps.
 fn leave_statics(call: &Modes, registries: &Registries, blueprint: &mut AnyBlueprint) {
     let dimension = blueprint.scene().dimension();
     let runs = call.equilibrium || call.after > 0.0;
@@ -72,7 +72,7 @@ fn leave_statics(call: &Modes, registries: &Registries, blueprint: &mut AnyBluep
     }
 }
 
-/// Where the output goes.
+/// The folder for the output.
 fn folder_of(call: &Modes, source: &Source) -> PathBuf {
     call.out.clone().unwrap_or_else(|| default_folder(&format!("{}-modes", source.name)))
 }
@@ -86,7 +86,7 @@ fn of_world(call: &Modes, source: &Source, reading: &scene::Options, world: &mut
             Failure::range("--body", format!("`{name}`"), CallRange::OneOf { names: names.join(", ") })
         })?,
     };
-    // To the state about which the body swings.
+    // Up to the state about which the body vibrates.
     let frames = (call.after / world.scene().time().frame - 1e-9).ceil() as u64;
     for _ in 0..frames.max(u64::from(call.equilibrium)) {
         world.frame().map_err(|error| source.frame_error(&error, world, reading))?;
@@ -127,7 +127,7 @@ fn of_world(call: &Modes, source: &Source, reading: &scene::Options, world: &mut
     Ok(0)
 }
 
-/// For people: frequencies to five digits. All digits are in `modes.json` and `modes.csv`.
+/// A table for people, with frequencies of five digits. All digits are in `modes.json` and `modes.csv`.
 fn table(name: &str, time: f64, modes: &[Mode<3>], rounding: f64) -> String {
     let mut text = format!("`{name}` at t = {} s\nmode  frequency [Hz]     ω [rad/s]\n", number(time));
     for (k, mode) in modes.iter().enumerate() {
@@ -144,13 +144,13 @@ fn table(name: &str, time: f64, modes: &[Mode<3>], rounding: f64) -> String {
     text
 }
 
-/// What ω² of a mode may be by rounding alone [1/s²].
+/// The largest ω² of a mode that may be due to rounding alone [1/s²].
 fn rounding(world: &dyn AnyWorld) -> f64 {
     let squares = world.stability().iter().map(|(_, stability)| stability.spectrum.omega * stability.spectrum.omega);
     ROUNDING * squares.filter(|square| square.is_finite()).max_by(f64::total_cmp).unwrap_or(0.0)
 }
 
-/// √(−ω²) of an unstable mode [1/s]: its displacement grows as exp(√(−ω²) t), since its frequency is imaginary.
+/// √(−ω²) of an unstable mode [1/s], whose frequency is imaginary: its displacement grows as exp(√(−ω²) t).
 fn growth(mode: &Mode<3>, rounding: f64) -> Option<f64> {
     (mode.rigid.is_none() && mode.square < -rounding).then(|| (-mode.square).sqrt())
 }
@@ -168,7 +168,7 @@ fn table_of_shapes(modes: &[Mode<3>], dimension: usize) -> String {
     text
 }
 
-/// A panel for every mode: the body displaced along its shape.
+/// One panel for every mode: the body displaced along its shape.
 fn draw_shapes(
     world: &mut dyn AnyWorld,
     body: usize,
@@ -232,7 +232,7 @@ fn draw_shapes(
     Ok(Some(strip.to_png().map_err(failed)?))
 }
 
-/// How far every point of a body has gone, over the farthest.
+/// The displacement of every point of a body, divided by the largest one.
 fn moved(rest: &draw::BodyPicture, body: &draw::BodyPicture) -> Vec<f64> {
     let apart = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>().sqrt();
     let displacements: Vec<f64> = rest.positions.iter().zip(&body.positions).map(apart).collect();

@@ -1,4 +1,4 @@
-//! Scenes of calls that have no options of their own for reading them.
+//! Scenes of commands that have no options for reading them.
 
 use crate::failure::Failure;
 use crate::language::translation;
@@ -8,7 +8,7 @@ use opruga::blueprint::AnyBlueprint;
 use opruga::io::scene;
 use opruga::{Options, Registries};
 
-/// A scene of a call that has no options of its own for reading it.
+/// A scene of a command that has no options for reading it.
 pub(crate) struct Opened {
     pub(crate) source: Source,
     pub(crate) reading: scene::Options,
@@ -18,7 +18,7 @@ pub(crate) struct Opened {
     pub(crate) files: Vec<String>,
 }
 
-/// Finds and reads a scene with overrides, and tells what is odd about it unless the call wants to hear nothing.
+/// Finds and reads a scene with overrides, and reports its notices unless the call is silent.
 pub(crate) fn open(
     scene: &str,
     registries: &Registries,

@@ -1,4 +1,4 @@
-//! What a run leaves behind: tables, checkpoint, strip, video, plots.
+//! The output of a run: tables, checkpoint, strip, video, plots.
 
 use crate::checkpoints::Keeper;
 use crate::errors::CallNote;
@@ -18,21 +18,21 @@ use opruga::world::{NodeState, Vectors};
 use opruga::{AnyBody, AnyWorld, Warning};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The most pictures that the view is fitted to.
+/// The largest number of pictures to which the view is fitted.
 const MOST_FITTED: usize = 120;
 
-/// Where the files go and what they say of the run.
+/// The destination of the files, and information about the run for them.
 pub(crate) struct Outputs<'a> {
     pub(crate) folder: &'a OutputFolder,
     pub(crate) source: &'a Source,
     pub(crate) wall: f64,
     pub(crate) steps: u64,
-    /// The time of the checkpoint that the run went on from [s].
+    /// The time of the checkpoint from which the run was resumed [s].
     pub(crate) resumed_at: Option<f64>,
-    /// What was odd in the call and in the scene, and went wrong on the way; all of it was reported when it was found.
+    /// Warnings about the call and the scene, and failures during the run; all of them have been reported already.
     pub(crate) reported: Vec<Warning>,
     pub(crate) stop: &'a AtomicBool,
-    /// Whether `final.csv` tells the stress at every node too.
+    /// Whether `final.csv` also contains the stress at every node.
     pub(crate) stress: bool,
 }
 
@@ -44,7 +44,7 @@ impl Outputs<'_> {
         recorder: Recorder,
         keeper: &mut Keeper<'_>,
     ) -> Result<String, Failure> {
-        // The checkpoint first: pictures that cannot be written must not cost the run.
+        // The checkpoint comes first: if pictures cannot be written, the run must not be lost.
         let mut files = keeper.write(world, &recorder.table)?;
         files.push("final.csv".into());
         let (scene, numbers) = (world.scene(), world.bodies());
@@ -131,7 +131,7 @@ impl Outputs<'_> {
         }
     }
 
-    /// Strip, video and plots.
+    /// Writes strip, video and plots.
     pub(crate) fn pictures(
         &self,
         scenery: &Scenery,
@@ -174,7 +174,7 @@ impl Outputs<'_> {
         Ok(())
     }
 
-    /// The animation of the run, drawn frame by frame.
+    /// Writes the animation of the run, drawn frame by frame.
     fn video(
         &self,
         scenery: &Scenery,
@@ -187,7 +187,7 @@ impl Outputs<'_> {
         let rate = film_rate(recorder.every, recorder.frame);
         let every = |take: &mut dyn FnMut(&draw::Image) -> Result<(), draw::DrawError>| -> Result<(), Failure> {
             for (number, moment) in recorder.moments.iter().enumerate() {
-                // An interrupted film is cut short, but a film has at least one frame.
+                // An interrupted film is shortened, but has at least one frame.
                 if number > 0 && self.stop.load(Ordering::Relaxed) {
                     break;
                 }
@@ -213,18 +213,18 @@ impl Outputs<'_> {
         Ok(name.into())
     }
 
-    /// Wall-clock time per node and substep [ns]; none where there was no such work.
+    /// Wall-clock time per node and substep [ns]; none if there was no step.
     fn nanoseconds(&self, nodes: usize) -> Option<f64> {
         let work = self.steps as f64 * nodes as f64;
         (work > 0.0).then(|| self.wall * 1e9 / work)
     }
 
-    /// What was odd: in the call, in the scene, on the way, in the world.
+    /// All warnings: about the call, the scene, the run and the world.
     fn all_warnings(&self, world: &dyn AnyWorld) -> Vec<WarningSummary> {
         self.reported.iter().chain(&world.warnings_at_the_end()).map(WarningSummary::from).collect()
     }
 
-    /// A few lines for people; warnings that were reported early are not reported again.
+    /// Prints a few lines for people; warnings that were reported early are not reported again.
     pub(crate) fn talk(&self, world: &dyn AnyWorld, early: &[Warning]) {
         let e = world.energy();
         let nodes: usize = world.bodies().into_iter().map(|body| world.node_count(body)).sum();
@@ -261,7 +261,7 @@ impl Outputs<'_> {
         self.print_paths();
     }
 
-    /// Where the output lies, and what of it is for the eye.
+    /// Prints the folder of the output, and which files in it are pictures.
     pub(crate) fn print_paths(&self) {
         eprintln!("written to {}", self.folder.path("").display());
         let pictures = ["video.mp4", "video.gif", "strip.png", "plots.svg"];
@@ -272,7 +272,7 @@ impl Outputs<'_> {
     }
 }
 
-/// Stress, von Mises stress and J of every node of a body; rows without numbers where no cell of it has a stress.
+/// Stress, von Mises stress and J of every node of a body; rows without numbers if none of its cells has a stress.
 fn stresses(world: &dyn AnyWorld, body: usize) -> Vec<Vec<f64>> {
     let dimension = world.scene().dimension();
     let row = |state: Option<NodeState>| {
@@ -281,7 +281,7 @@ fn stresses(world: &dyn AnyWorld, body: usize) -> Vec<Vec<f64>> {
     world.node_states(body).into_iter().map(row).collect()
 }
 
-/// What implicit integrators did, if there are any.
+/// Statistics of implicit integrators, if there are any.
 fn solver_summary(world: &dyn AnyWorld) -> Option<SolverSummary> {
     let work = world.solver_work();
     (work.steps > 0).then_some(SolverSummary {
@@ -298,7 +298,7 @@ fn solver_summary(world: &dyn AnyWorld) -> Option<SolverSummary> {
     })
 }
 
-/// How good the cells of bodies are at rest. Copies share a mesh, which is looked at once.
+/// The quality of the cells of bodies at rest. A mesh that copies share is evaluated once.
 pub(crate) fn cells(world: &dyn AnyWorld) -> Vec<CellSummary> {
     let mut seen = std::collections::BTreeSet::new();
     let mut found = Vec::new();

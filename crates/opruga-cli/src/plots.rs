@@ -6,10 +6,10 @@ use opruga::blueprint::Recorded;
 use opruga::draw::{Axis, Chart, DrawError, Level, Line, Marker, OKABE_ITO, Panel, format_value};
 use opruga::io::tables::NumberTable;
 
-/// The most lines of a panel; the bodies of a larger number are drawn as their mean and their range.
+/// The largest number of lines in a panel; more bodies are drawn as their mean and their range.
 const MOST_LINES: usize = 8;
 
-/// A table and what its columns mean.
+/// A table and the meanings of its columns.
 struct Run<'a> {
     table: &'a NumberTable,
     columns: &'a Columns,
@@ -42,7 +42,7 @@ pub(crate) fn of_run(table: &NumberTable, columns: &Columns, name: &str) -> Resu
         ),
         panel("momentum", &format!("kg {length}/s"), run.momentum()),
     ];
-    // The thesis calls something volume and pressure that is neither.
+    // The thesis uses the words volume and pressure for other quantities.
     for published in [false, true] {
         let panel_title = |what: &str| if published { format!("{what} as published") } else { what.to_string() };
         let (what, power) = if columns.dimension == 2 && !published { ("area", "²") } else { ("volume", "³") };
@@ -85,7 +85,7 @@ impl Run<'_> {
         self.table.columns().iter().position(|column| column == name)
     }
 
-    /// The lines of columns in which something happened: the others say nothing.
+    /// The lines of columns that are not zero throughout; the others carry no information.
     fn named(&self, names: &[&str]) -> Vec<Line> {
         let indices = names.iter().filter_map(|name| Some((self.index_of(name)?, name)));
         indices
@@ -99,8 +99,8 @@ impl Run<'_> {
         self.table.rows().map(|row| row[index]).fold(0.0, f64::max)
     }
 
-    /// The energies. One that hardly changes beside its own size is drawn from its start on: its zero says nothing,
-    /// and would press the others flat.
+    /// The energies. An energy that hardly changes compared with its own size is drawn relative to its start, because its zero has no meaning and
+    /// would flatten the others.
     fn energies(&self) -> Vec<Line> {
         let mut lines = self.named(&["kinetic", "elastic", "gas", "gravity"]);
         for line in &mut lines {
@@ -123,17 +123,17 @@ impl Run<'_> {
         for (axis, name) in ["x", "y", "z"].iter().zip(axes) {
             lines.extend(self.index_of(&format!("momentum.{axis}")).map(|index| self.line(index, name)));
         }
-        // What rounding leaves where forces cancel is no momentum: beside √(2 E) it is nothing.
+        // The rounding error of cancelling forces is not a momentum: it is negligible compared with √(2 E).
         let kinetic = self.index_of("kinetic").map_or(0.0, |index| self.largest(index));
         lines.retain(|line| line.points.iter().any(|point| point[1].abs() > 1e-9 * (2.0 * kinetic).sqrt()));
         lines
     }
 
-    /// What the models say of the bodies; in the plane a volume is drawn as the area that it stands on.
+    /// The readings of the models of bodies; in the plane, a volume is drawn as the area of its base.
     fn readings(&self, what: &str, published: bool) -> Vec<Line> {
         let mut lines = Vec::new();
         for (name, thickness, _) in self.columns.bodies.iter().filter(|body| body.2 == published) {
-            // A body of several chambers says more by each of them than by their mean.
+            // For a body with several chambers, each chamber is more informative than their mean.
             let chambers = (1..).map_while(|n| {
                 self.index_of(&format!("{name}.chamber{n}.{what}")).map(|index| (index, format!("{name}, chamber {n}")))
             });
@@ -168,7 +168,7 @@ impl Run<'_> {
     }
 }
 
-/// The mean of many lines over the same places, with the band between the lowest and the highest.
+/// The mean of many lines over the same abscissae, with the band between the lowest and the highest.
 fn mean_and_range(lines: &[Line]) -> Line {
     let mut mean = Line { name: format!("mean of {} bodies, and their range", lines.len()), ..Line::default() };
     for index in 0..lines[0].points.len() {
@@ -184,7 +184,7 @@ fn mean_and_range(lines: &[Line]) -> Line {
     mean
 }
 
-/// Frames a second against vertices, with the thesis's 40 FPS: its figure 4.
+/// Frames per second against vertices, with the thesis's 40 FPS: its figure 4.
 pub(crate) fn of_bench(rows: &[Row]) -> Result<String, DrawError> {
     let points = |many: bool| -> Vec<[f64; 2]> {
         rows.iter().filter(|r| (r.bodies() > 1) == many).map(|r| [r.point().0, r.point().1]).collect()

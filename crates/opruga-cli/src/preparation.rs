@@ -1,4 +1,4 @@
-//! Bodies whose models take seconds to prepare: progress on the terminal, and an end by Ctrl-C.
+//! Bodies whose models take seconds to prepare: progress on the terminal, and interruption by Ctrl-C.
 
 use crate::interrupt::asked_to_stop;
 use opruga::BreakOff;
@@ -7,12 +7,12 @@ use std::sync::atomic::Ordering;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// How often the wish to stop is passed on, and the bar is drawn.
+/// The interval at which a request to stop is passed on and the bar is drawn.
 const TURN: Duration = Duration::from_millis(50);
-/// What takes less than this shows no bar.
+/// Shorter work shows no bar.
 const SHORT: Duration = Duration::from_secs(1);
 
-/// Does work that can be broken off. Another thread passes the wish to stop on, and shows how far a preparation is.
+/// Does work that can be interrupted. Another thread passes on a request to stop, and shows the progress of a preparation.
 pub(crate) fn watched<T>(break_off: &BreakOff, work: impl FnOnce() -> T) -> T {
     let stop = asked_to_stop();
     let done = std::thread::scope(|scope| {
@@ -33,7 +33,7 @@ pub(crate) fn watched<T>(break_off: &BreakOff, work: impl FnOnce() -> T) -> T {
         drop(ended);
         done
     });
-    // What is asked for later is looked at by whoever does it.
+    // A later request is handled by the next work.
     break_off.ask(false);
     done
 }

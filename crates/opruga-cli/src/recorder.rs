@@ -1,4 +1,4 @@
-//! What is kept of a run while it runs: rows of tables, and moments for pictures.
+//! The data collected during a run: rows of tables, and moments for pictures.
 
 use crate::errors::{CallFault, CallNote, CallWarning};
 use crate::failure::Failure;
@@ -12,58 +12,58 @@ use opruga::{AnyBody, AnyWorld, Warning, draw};
 use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
-/// The most memory that pictures may wait in [bytes]; longer or larger runs keep fewer of them.
+/// The memory limit for pictures that wait to be drawn [bytes]; longer or larger runs keep fewer of them.
 const PICTURE_BYTES: u64 = 1 << 30;
 
-/// Bodies whose volume and pressure get columns of their own.
+/// The largest number of bodies whose volume and pressure get their own columns.
 const MOST_BODY_COLUMNS: usize = 64;
 
-/// Nodes looked at within frames, over the whole run: as long as it takes to step a few times as many.
+/// The largest number of nodes sampled within frames, over the whole run; it takes as long as stepping a few times that number.
 const LOOKED_AT: u64 = 4_000_000;
 
-/// The most rows that plots are drawn from.
+/// The largest number of rows from which plots are drawn.
 const MOST_ROWS: u64 = 60_000;
 
-/// The most bytes of `diagnostics.csv` that nobody has asked for: two to three million numbers, which programs read in seconds. Frames
-/// of 1e-8 s wrote 330 MB (test: `diagnostics.rs`).
+/// The largest size of `diagnostics.csv` if the call does not ask for more [bytes]: two to three million numbers, which programs read in seconds.
+/// Frames of 1e-8 s wrote 330 MB (test: `diagnostics.rs`).
 const MOST_TABLE_BYTES: u64 = 64 << 20;
 
-/// The bytes of a number in the table: a sign, 17 digits, point, exponent and comma.
+/// The size of a number in the table [bytes]: a sign, 17 digits, point, exponent and comma.
 const NUMBER_BYTES: u64 = 24;
 
-/// What shall be seen of a run.
+/// The desired output of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wanted {
-    /// Pictures for each second of simulated time, where the call says how many.
+    /// Pictures per second of simulated time, if the call gives the number.
     pub(crate) fps: Option<f64>,
     /// Whether there are strip, video and plots.
     pub(crate) pictures: bool,
     pub(crate) arrows: bool,
     pub(crate) springs: bool,
     pub(crate) gif: bool,
-    /// Whether notes are told to people.
+    /// Whether notes are printed for people.
     pub(crate) notes: bool,
-    /// Frames from one row of the table to the next, where the call says how many.
+    /// The number of frames from one row of the table to the next, if the call gives it.
     pub(crate) row_every: Option<u32>,
 }
 
-/// Pictures for each second of simulated time where the call does not say how many.
+/// Pictures per second of simulated time if the call does not give the number.
 const USUAL_RATE: f64 = 20.0;
 
-/// What is kept of every frame.
+/// The data collected in every frame.
 pub(crate) struct Recorder {
     /// One row for every frame.
     pub(crate) table: NumberTable,
-    /// What plots are drawn from: also rows within frames, where the run is small enough.
+    /// The table for the plots; for small runs it also has rows within frames.
     pub(crate) seen: NumberTable,
-    /// Whether it is small enough for that.
+    /// Whether the run is small enough for rows within frames.
     pub(crate) looks_within: bool,
     pub(crate) columns: Columns,
-    /// Bodies with columns of their own, and how many.
+    /// Bodies with columns of their own, and the number of these columns.
     bodies: Vec<(String, usize)>,
     pub(crate) scenery: Option<Scenery>,
     pub(crate) moments: Vec<Moment>,
-    /// Frames of the scene between two pictures.
+    /// The number of frames of the scene between two pictures.
     pub(crate) every: u64,
     /// The length of a frame of the scene [s].
     pub(crate) frame: f64,
@@ -74,9 +74,9 @@ pub(crate) struct Recorder {
 
 /// Which frames have a row of the table.
 struct Rows {
-    /// Frames from one row to the next.
+    /// The number of frames from one row to the next.
     apart: u64,
-    /// What the table would have taken with a row for every frame, where that is more than is written unasked [bytes].
+    /// The size of a table with a row for every frame, if it exceeds the limit for tables that were not requested [bytes].
     too_many: Option<u64>,
     /// The last frame that has one.
     last: Option<u64>,
@@ -91,8 +91,8 @@ impl Rows {
         Rows { apart, too_many, last: None, left_out: 0 }
     }
 
-    /// Whether a frame has a row: the first one, and then by its number, so that a run that goes on has the rows of one that was not
-    /// interrupted.
+    /// Whether a frame has a row: the first one does, then it depends on the number of the frame, so that a resumed run has the same rows as an
+    /// uninterrupted one.
     fn take(&mut self, frame: u64) -> bool {
         let wanted = self.last.is_none() || frame.is_multiple_of(self.apart);
         if wanted {
@@ -104,23 +104,23 @@ impl Rows {
     }
 }
 
-/// What the columns of the table mean.
+/// The meanings of the columns of the table.
 pub(crate) struct Columns {
-    /// What each of the last columns has of a probe.
+    /// The quantity of a probe in each of the last columns.
     pub(crate) probes: Vec<Recorded>,
     pub(crate) dimension: usize,
     pub(crate) length_unit: String,
-    /// Whose drawings, maps or surfaces the scene shows.
+    /// The authors of the drawings, maps or surfaces in the scene.
     pub(crate) credit: String,
-    /// Whether y counts downwards in pictures.
+    /// Whether y points downwards in pictures.
     pub(crate) y_down: bool,
-    /// Bodies with columns of their own: their thickness [m], and whether they are those of the thesis, whose volume
-    /// and pressure have other meanings.
+    /// Bodies with columns of their own: their thickness [m], and whether they are those of the thesis, whose volume and pressure have other
+    /// meanings.
     pub(crate) bodies: Vec<(String, f64, bool)>,
 }
 
 impl Recorder {
-    /// Prepares the columns, and pictures at the wanted rate as far as memory allows; refuses a rate that no film can have.
+    /// Prepares the columns, and pictures at the desired rate as far as memory allows; refuses a rate that no film can have.
     pub(crate) fn new(world: &mut dyn AnyWorld, wanted: Wanted, frames: u64) -> Result<Recorder, Failure> {
         let Wanted { fps: asked, pictures: drawn, arrows, springs, gif, notes, row_every } = wanted;
         let fps = asked.unwrap_or(USUAL_RATE);
@@ -141,7 +141,7 @@ impl Recorder {
                 .collect();
         columns.extend(axes.iter().map(|a| format!("momentum.{a}")));
         columns.extend(angular_axes(dimension).iter().map(|a| format!("angular_momentum{a}")));
-        // Bodies that commands will add have theirs from the start: the head of the table is written for the whole run.
+        // Bodies that commands add later have columns from the start, because the header of the table is written for the whole run.
         let (mut bodies, mut meanings) = (Vec::new(), Vec::new());
         let mut add = |body: &dyn AnyBody, readings: Vec<Cow<'static, str>>| {
             columns.extend(readings.iter().map(|what| format!("{}.{what}", body.name())));
@@ -157,7 +157,7 @@ impl Recorder {
         }
         let coming = world.coming_bodies().into_iter().take(MOST_BODY_COLUMNS.saturating_sub(present));
         for (number, body) in coming.enumerate() {
-            // A body for which a model cannot be built is told when it comes.
+            // A body whose model cannot be built is reported when it is added.
             add(body, world.reading_names_of(present + number));
         }
         columns.extend(world.scene().probe_columns().into_iter().flatten());
@@ -214,7 +214,7 @@ impl Recorder {
         })
     }
 
-    /// Keeps what there is to see of the present frame, and of what was within it; says how long that took.
+    /// Collects the data of the present frame, and of the time within it; returns how long that took.
     pub(crate) fn record(&mut self, world: &mut dyn AnyWorld) -> Duration {
         let begin = Instant::now();
         let (bodies, seen) = (&self.bodies, &mut self.seen);
@@ -247,25 +247,25 @@ impl Recorder {
         }
     }
 
-    /// That frames will have no row, and nobody has asked for that.
+    /// The warning that frames have no row although nobody asked for that.
     pub(crate) fn thinned(&self) -> Option<Warning> {
         let [megabytes, most] = [self.rows.too_many?, MOST_TABLE_BYTES].map(|bytes| bytes / 1_000_000);
         Some(Warning::new(CallWarning::Thinned { megabytes, most, apart: self.rows.apart }, self.rows.left_out))
     }
 }
 
-/// Pictures per second of simulated time, where one in so many frames is kept.
+/// Pictures per second of simulated time if one in `every` frames is kept.
 pub(crate) fn film_rate(every: u64, frame: f64) -> f64 {
     1.0 / (every as f64 * frame)
 }
 
-/// What is said where pictures come at another rate than asked for.
+/// The note if pictures have another rate than requested.
 fn other_rate(asked: f64, every: u64, frame: f64) -> Option<CallNote> {
     let rate = film_rate(every, frame);
     (rounded(rate, 4) != rounded(asked, 4)).then_some(CallNote::OtherRate { rate, asked, every, frame })
 }
 
-/// Substeps between two looks within a frame, so that small runs show every swing; 0: none.
+/// The number of substeps between two samples within a frame, so that small runs show every oscillation; 0: none.
 fn look_every(frames: u64, substeps: u32, nodes: u64) -> u32 {
     let steps = frames * u64::from(substeps);
     let rows = (LOOKED_AT / nodes.max(1)).min(MOST_ROWS);
@@ -300,7 +300,7 @@ fn row(world: &mut dyn AnyWorld, bodies: &[(String, usize)]) -> Vec<f64> {
         let body = world.body(name);
         let mut readings: Vec<f64> =
             body.map_or_else(Vec::new, |b| world.readings(b).iter().map(|(_, x)| *x).collect());
-        // A body that is not there yet, or no longer, leaves its columns empty.
+        // A body that does not exist yet, or no longer, has empty columns.
         readings.resize(*columns, f64::NAN);
         row.extend(readings);
     }
@@ -318,7 +318,7 @@ fn angular_axes(dimension: usize) -> &'static [&'static str] {
 mod tests {
     use super::{MOST_TABLE_BYTES, NUMBER_BYTES, Rows, look_every, other_rate};
 
-    /// However short frames are, the table keeps to its size, and every frame has a row or is counted.
+    /// However short frames are, the table respects its limit, and every frame has a row or is counted.
     #[test]
     fn a_table_keeps_to_its_size_and_counts_what_it_leaves_out() {
         for (frames, columns) in [(1_000_000, 18), (480, 18), (1_000_000_000, 40)] {
@@ -334,7 +334,7 @@ mod tests {
         assert_eq!((asked.apart, asked.too_many), (1, None));
     }
 
-    /// Frames of 1/60 s show 12 pictures a second where 11.3 are asked for, and never more than 60.
+    /// Frames of 1/60 s give 12 pictures per second if 11.3 are requested, and never more than 60.
     #[test]
     fn a_rate_that_frames_do_not_have_is_told() {
         let frame = 1.0 / 60.0;

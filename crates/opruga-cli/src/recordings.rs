@@ -1,4 +1,4 @@
-//! `opruga run --record`: what goes into a recording, frame by frame; and how one is opened.
+//! `opruga run --record`: writes a recording frame by frame; also opens recordings.
 
 use crate::checkpoints::Calling;
 use crate::errors::CallError;
@@ -12,10 +12,10 @@ use opruga::{AnyWorld, Registries};
 use std::fs::File;
 use std::path::Path;
 
-/// This program, as a recording names it.
+/// The name of this program in recordings.
 pub(crate) const PROGRAM: &str = concat!("opruga ", env!("CARGO_PKG_VERSION"));
 
-/// Begins the recording of a run: the file is there with its header before the run begins, and with its first frame.
+/// Begins the recording of a run: the file exists, with its header and its first frame, before the run begins.
 pub(crate) fn begin(
     path: &Path,
     force: bool,

@@ -1,4 +1,4 @@
-//! `opruga replay`: a recorded run seen again, exported, or computed again and compared.
+//! `opruga replay`: shows a recorded run again, exports it, or computes it again and compares.
 
 use crate::arguments::Replay;
 use crate::errors::{CallFault, CallRange, CallWarning, ResumeHint};
@@ -70,17 +70,17 @@ pub(crate) fn replay(call: &Replay, registries: &Registries) -> Result<u8, Failu
     job.run(recording, blueprint)
 }
 
-/// Where the output goes.
+/// The folder for the output.
 fn folder_of(call: &Replay, source: &Source) -> PathBuf {
     call.out.clone().unwrap_or_else(|| default_folder(&format!("{}-replay", source.name)))
 }
 
-/// A recording that cannot be replayed as it was asked for.
+/// The error for a recording that cannot be replayed as requested.
 fn refused(call: &Replay, error: SceneError) -> Failure {
     Failure::Run(Box::new(SceneError { file: call.file.display().to_string(), ..error }))
 }
 
-/// The frames from `--from` to `--to`. A recording that goes on with damage is replayed only up to a time before it.
+/// The frames from `--from` to `--to`. A damaged recording can only be replayed up to a time before the damage.
 fn wanted_frames(call: &Replay, recording: &Recording<File>) -> Result<RangeInclusive<u64>, Failure> {
     let (frames, length) = (recording.frames(), recording.header().frame);
     let last = frames.end.checked_sub(1).filter(|last| *last >= frames.start);
@@ -109,7 +109,7 @@ fn wanted_frames(call: &Replay, recording: &Recording<File>) -> Result<RangeIncl
     Ok(from..=to)
 }
 
-/// What is odd about a recording, and no error.
+/// The warnings about a recording.
 fn oddities(recording: &Recording<File>) -> Vec<Warning> {
     let header = recording.header();
     let open = match recording.ending() {
@@ -153,14 +153,14 @@ impl Job<'_> {
         if !self.call.verify {
             return self.show(&mut *build(blueprint)?, &mut play(recording)?, stop, None);
         }
-        // A folder that is not free is told before the work.
+        // A folder that is not free is reported before the work.
         let writes = self.call.writes();
         let folder = if writes { Some(self.folder()?) } else { None };
         let verified = self.verify(&mut *build(blueprint.clone())?, &mut play(recording)?, stop)?;
         let same = verified["pass"] == true;
         match folder.filter(|_| same) {
             Some(folder) => {
-                // From its first frame again, in a world that knows nothing of the last one.
+                // From its first frame again, in a world that does not depend on the last one.
                 let (again, _) = recordings::open(&self.call.file, &self.source.registries)?;
                 self.show(&mut *build(blueprint)?, &mut play(again)?, stop, Some((folder, verified)))
             }
@@ -175,7 +175,7 @@ impl Job<'_> {
         }
     }
 
-    /// What went wrong at a frame.
+    /// The failure at a frame.
     fn failure(&self, error: &TapeError, frame: u64) -> Failure {
         match error {
             TapeError::World(error) => self.source.run_error(error, self.time(frame)),
@@ -188,8 +188,8 @@ impl Job<'_> {
         frame as f64 * self.length
     }
 
-    /// Computes every frame again, from the beginning of the scene or from the first frame that is wanted. Of each the hash
-    /// is compared, and every number where its state is kept. Says what was found, as `--json` prints it.
+    /// Computes every frame again, from the beginning of the scene or from the first requested frame. The hash of each is compared, and every number
+    /// if its state is kept. Returns the result in the form that `--json` prints.
     fn verify(
         &self,
         world: &mut dyn AnyWorld,
@@ -261,8 +261,8 @@ impl Job<'_> {
         )
     }
 
-    /// Tables, pictures and exported frames, from recorded states, and from steps between them; with what was found where the run was computed again
-    /// before.
+    /// Writes tables, pictures and exported frames, from recorded states and from steps between them, with the result of the comparison if there was
+    /// one.
     fn show(
         &self,
         world: &mut dyn AnyWorld,
@@ -291,7 +291,7 @@ impl Job<'_> {
             if stop.load(Ordering::Relaxed) {
                 return Err(Failure::Interrupted);
             }
-            // What happens within a frame is seen while it is computed, also where its state is kept.
+            // The time within a frame can be seen only while it is computed, so this is done even if its state is kept.
             let shown = if frame > first && recorder.looks_within && playback.keeps(frame) {
                 playback.step(world, frame).map_err(TapeError::from)
             } else {

@@ -1,4 +1,4 @@
-//! The commands that tell: check, list, new, reference, bench; and the plots of a run.
+//! Commands that print information: check, list, new, reference, bench; also the plots of a run.
 
 use crate::arguments::{Bench, BenchVertices, Check};
 use crate::bench::vertices as bench;
@@ -23,7 +23,7 @@ use std::fmt::Write as _;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
-/// Reads a scene, builds its world, and says what is in it.
+/// Reads a scene, builds its world, and reports its contents.
 pub(crate) fn check(call: &Check, registries: &Registries) -> Result<u8, Failure> {
     let source = Source::find(&call.scene, registries)?;
     let reading = scene::Options {
@@ -46,13 +46,13 @@ pub(crate) fn check(call: &Check, registries: &Registries) -> Result<u8, Failure
     Ok(0)
 }
 
-/// What a scene without errors holds.
+/// The contents of a scene without errors.
 struct Found {
     dimension: usize,
     bodies: usize,
     nodes: usize,
     integrator: String,
-    /// Whether every body is in statics, which knows no time.
+    /// Whether every body is in statics, which has no time.
     is_static: bool,
     h: f64,
     substeps: u32,
@@ -132,14 +132,14 @@ impl core::fmt::Display for Found {
     }
 }
 
-/// Specifications of one kind, which may have one for each dimension.
+/// The specifications of one kind; there may be one for each dimension.
 struct Kind {
     kind: &'static str,
     summary: &'static str,
     dimensions: Vec<usize>,
 }
 
-/// One row for each kind, with all dimensions in which it exists.
+/// One row per kind, with all dimensions in which it exists.
 fn kinds(specs: &[&'static Spec]) -> Vec<Kind> {
     let mut kinds: Vec<Kind> = Vec::new();
     for spec in specs {
@@ -155,7 +155,7 @@ fn kinds(specs: &[&'static Spec]) -> Vec<Kind> {
     kinds
 }
 
-/// Lists what there is.
+/// Lists what is available.
 pub(crate) fn list(as_json: bool, registries: &Registries) -> Result<u8, Failure> {
     print_data(&listed(as_json, registries))?;
     Ok(0)
@@ -269,7 +269,7 @@ fn bench_vertices(call: &BenchVertices, registries: &Registries) -> Result<u8, F
     }
     let chosen = call.only.as_deref().map(bench::row).transpose()?;
     if let Some(path) = &call.plot {
-        // Better now than after minutes of measuring.
+        // Checked now rather than after minutes of measuring.
         try_write(path, true)?;
     }
     let options = Options { threads: call.threads.into(), simd: simd_from_environment()?, ..Options::default() };

@@ -45,7 +45,7 @@ pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     let simd = simd_from_environment()?;
     let mut set = overrides(&call.set)?;
     if let Some(seconds) = call.seconds {
-        // A checkpoint remembers when the run was meant to end as it remembers everything that was set.
+        // A checkpoint stores the requested end of the run together with everything else that was set.
         set.push(("time.seconds".into(), seconds.to_string()));
     }
     let (source, resumed) = match &call.resume {
@@ -84,11 +84,10 @@ pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     job.run(blueprint)
 }
 
-/// Where there is no screen for a bar, a line says so often how far the run is [s].
+/// The interval of progress lines if there is no terminal for a bar [s].
 const TALK_EVERY: f64 = 10.0;
 
-/// As [`default_folder`], or the first of `name-2`, `name-3`, … that holds nothing yet: for a call that has said nothing
-/// about its output.
+/// The result of [`default_folder`], or the first of `name-2`, `name-3`, … that is still empty: for a call that does not name its output.
 pub(crate) fn fresh_folder(name: &str) -> PathBuf {
     let first = default_folder(name);
     let used = |path: &PathBuf| path.exists() && !std::fs::read_dir(path).is_ok_and(|mut files| files.next().is_none());
@@ -96,17 +95,17 @@ pub(crate) fn fresh_folder(name: &str) -> PathBuf {
     std::iter::once(first.clone()).chain(next).find(|path| !used(path)).unwrap_or(first)
 }
 
-/// The folder for what nobody has chosen a folder for.
+/// The default folder for output.
 pub(crate) fn default_folder(name: &str) -> PathBuf {
     PathBuf::from("out").join(name)
 }
 
-/// Where the output goes.
+/// The folder for the output.
 fn folder_of(call: &Run, source: &Source) -> PathBuf {
     call.out.clone().unwrap_or_else(|| default_folder(&source.name))
 }
 
-/// Refuses a call whose output would replace what it reads, or one file another.
+/// Refuses a call whose output would replace an input, or one output another.
 fn outputs_apart(call: &Run, source: &Source, reading: &scene::Options, files: &[&String]) -> Result<(), Failure> {
     let folder = folder_of(call, source);
     let mut uses = uses::of_scene(source, &reading.files, files.iter().copied());
@@ -114,7 +113,7 @@ fn outputs_apart(call: &Run, source: &Source, reading: &scene::Options, files: &
     call.record.iter().for_each(|path| uses.output("--record", path));
     uses::apart(&uses)?;
     let Some(checkpoint) = &call.resume else { return Ok(()) };
-    // A run may go on in its own folder: its checkpoints follow each other there.
+    // A run may be resumed in its own folder, where its checkpoints follow one another.
     let own = [checkpoints::NAME, checkpoints::PREVIOUS].map(|name| folder.join(name).canonicalize().ok());
     let own = checkpoint.canonicalize().is_ok_and(|path| own.contains(&Some(path)));
     let mut uses = uses::of_file(Use::Checkpoint {}, checkpoint);
@@ -125,15 +124,15 @@ fn outputs_apart(call: &Run, source: &Source, reading: &scene::Options, files: &
     uses::apart(&uses)
 }
 
-/// The folder for the output; it is locked, and known to be writable.
+/// Opens the folder for the output, locked and known to be writable.
 fn output_folder(call: &Run, source: &Source) -> Result<OutputFolder, Failure> {
     let folder = folder_of(call, source);
-    // A resumed run writes its own part only: it must not replace the part before it unasked.
+    // A resumed run writes only its own part, and must not replace the previous part unless asked to.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
     Ok(OutputFolder::open(&folder, existing)?)
 }
 
-/// The vector instructions that `OPRUGA_SIMD` asks for.
+/// The vector instructions requested by `OPRUGA_SIMD`.
 pub(crate) fn simd_from_environment() -> Result<Option<Simd>, Failure> {
     match std::env::var("OPRUGA_SIMD") {
         Err(_) => Ok(None),
@@ -144,7 +143,7 @@ pub(crate) fn simd_from_environment() -> Result<Option<Simd>, Failure> {
     }
 }
 
-/// That the kernels run with other vector instructions than `OPRUGA_SIMD` names.
+/// The warning that the kernels use other vector instructions than `OPRUGA_SIMD` names.
 fn other_simd() -> Option<CallWarning> {
     let asked = std::env::var("OPRUGA_SIMD").ok()?;
     let used = Simd::named(&asked)?.name();
@@ -155,10 +154,10 @@ fn other_simd() -> Option<CallWarning> {
     }
 }
 
-/// That a run ends at another time than it was asked for, since frames are whole.
+/// The note that a run ends at another time than requested, because frames are complete.
 pub(crate) fn whole_frames(frames: u64, frame: f64, seconds: f64) -> Option<CallNote> {
     let reached = frames as f64 * frame;
-    // Rounding apart.
+    // Except for rounding.
     let apart = (reached - seconds).abs() > 1e-6 * frame;
     apart.then_some(CallNote::WholeFrames { reached, asked: seconds, frames, frame })
 }
@@ -189,7 +188,7 @@ impl Job<'_> {
             world.restore(&saved.snapshot).map_err(|error| source.run_error(&error, saved.time))?;
         }
         let mut recorder = Recorder::new(&mut *world, call.wanted(), frames)?;
-        // From before the first file on, a signal ends the run with whole files.
+        // Even before the first file is written, a signal ends the run with complete files.
         let stop = interrupt::asked_to_stop();
         let folder = output_folder(call, source)?;
         let calling = Calling {
@@ -203,7 +202,7 @@ impl Job<'_> {
         let tape = recorded.map(|path| recordings::begin(path, call.force, every, source, &calling, &mut *world));
         let mut tape = tape.transpose()?;
         let mut keeper = Keeper::new(&folder, source, calling, call.checkpoint_every, call.resume.as_deref());
-        // What is odd from the start is told before the run, the rest behind it.
+        // Warnings known from the start are reported before the run, the others after it.
         let early = world.warnings();
         if !call.json {
             early.iter().for_each(print_warning);
@@ -213,7 +212,7 @@ impl Job<'_> {
         let first = world.frames();
         let mut progress = Progress::new(frames, first, call.json);
         let (mut failure, mut looked_at) = (None, false);
-        // Looking at the world is not counted as the time of its steps.
+        // The time for collecting data is not counted as time of the steps.
         let mut looking = recorder.record(&mut *world);
         keeper.begin(&recorder.table)?;
         while failure.is_none() && world.frames() < frames {
@@ -253,7 +252,7 @@ impl Job<'_> {
             stop,
             stress: call.stress,
         };
-        // What was computed until a failure is written all the same: it shows how the failure came about.
+        // The results up to a failure are written, too: they show how the failure came about.
         let summary = outputs.write(&*world, recorder, &mut keeper)?;
         if let Some(failure) = failure {
             if !call.json {
@@ -270,16 +269,16 @@ impl Job<'_> {
     }
 }
 
-/// What the terminal shows of a run that goes on.
+/// The progress of a run on the terminal.
 struct Progress {
     bar: indicatif::ProgressBar,
     forecast: Forecast,
     start: Instant,
-    /// The frames at the start of this part of the run, and at its end.
+    /// The frames at the beginning and at the end of this part of the run.
     first: u64,
     frames: u64,
     quiet: bool,
-    /// When the last line was written, after the start [s].
+    /// When the last line was written, relative to the start [s].
     last_line: f64,
 }
 
@@ -289,7 +288,7 @@ impl Progress {
         Progress { bar, forecast, start, first, frames, quiet, last_line: 0.0 }
     }
 
-    /// Shows how far the run is: on the bar, and where there is none in a line now and then.
+    /// Shows the progress of the run: on the bar, or in occasional lines if there is none.
     fn after_frame(&mut self, world: &dyn AnyWorld, frame: f64) {
         self.bar.set_position(world.frames());
         let wall = self.start.elapsed().as_secs_f64();
@@ -319,12 +318,12 @@ impl Progress {
     }
 }
 
-/// The recording can go no further, and the run ends: its state is kept, so that it can go on elsewhere.
+/// The recording cannot continue, so the run ends; its state is kept, so that it can be resumed elsewhere.
 fn unrecorded(error: WriteError) -> Failure {
     Failure::Write(error.advice(TapeHint::RunEnded))
 }
 
-/// There is nothing to go on with: the checkpoint lies at the end of the run or behind it.
+/// Nothing remains to be computed: the checkpoint is at the end of the run or after it.
 fn at_the_end(saved: &SavedRun, seconds: f64) -> Failure {
     Failure::call(CallFault::NothingLeft { time: saved.time, end: seconds })
 }
@@ -339,7 +338,7 @@ fn progress_bar(frames: u64) -> indicatif::ProgressBar {
         .with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()))
 }
 
-/// The failure of a world in which surfaces cross.
+/// The failure if surfaces of the world cross.
 fn crossed(world: &dyn AnyWorld) -> Option<Failure> {
     let found = world.crossed_surfaces();
     let first = found.first()?;

@@ -1,4 +1,4 @@
-//! Scenes by name: a file, or one that comes with the program; and everything that is wrong with one at once.
+//! Finds scenes by name (a file, or one that comes with the program) and reports all of their errors at once.
 
 use crate::errors::CallError;
 use crate::failure::Failure;
@@ -14,17 +14,17 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A scene's text and where it came from.
+/// The text of a scene and its origin.
 pub(crate) struct Source {
     /// The name of the scene: that of its file, without the ending.
     pub(crate) name: String,
-    /// The place of errors.
+    /// The file named in errors.
     pub(crate) file: String,
-    /// The file of the scene; none where it comes with the program, or lies in another file.
+    /// The file of the scene; none if it comes with the program, or is stored in another file.
     pub(crate) path: Option<PathBuf>,
-    /// As it was read; what is no UTF-8 is refused by the reader, with its place.
+    /// The bytes as they were read; the reader refuses invalid UTF-8 with its location.
     pub(crate) bytes: Vec<u8>,
-    /// Where the files are that it names.
+    /// Where the files that it names are.
     pub(crate) files: Files,
     /// The models and integrators that it can name.
     pub(crate) registries: Registries,
@@ -73,13 +73,12 @@ impl Source {
         Ok(Source { name, file, path: Some(path.to_path_buf()), bytes, files: Files::beside(path), registries })
     }
 
-    /// Reads as much of the scene as can be read.
+    /// Reads as much of the scene as possible.
     pub(crate) fn survey(&self, options: &scene::Options) -> scene::Reading {
         scene::survey(&self.bytes, &self.file, &catalogue_of(&self.registries), options)
     }
 
-    /// Reads the scene. All that is wrong with it comes at once: what the reader finds, and what a world of the rest would
-    /// refuse.
+    /// Reads the scene. All errors are reported at once: those of the reader, and those of a world made from the rest.
     pub(crate) fn read(&self, options: &scene::Options, world: &Options) -> Result<Whole, Failure> {
         match self.survey(options) {
             scene::Reading { blueprint: Some(blueprint), errors, notices, files, .. } if errors.is_empty() => {
@@ -91,13 +90,13 @@ impl Source {
 
     fn refused(&self, reading: scene::Reading, options: &scene::Options, world: &Options) -> Failure {
         let refusals = reading.blueprint.as_ref().map_or_else(Vec::new, |rest| rest.problems(world, &self.registries));
-        // Statics refuses bodies that nothing holds: where that may be missing by another error, it would be a false one.
+        // Statics refuses bodies that can move freely. If another error may have removed what holds a body, this refusal would be false.
         let known = reading.knows_what_holds();
         let refusals = refusals.iter().filter(|refusal| known || !refusal.code().starts_with("static."));
         let located: Vec<SceneError> = refusals.map(|refusal| self.locate(refusal, options)).collect();
         let mut errors = reading.errors;
         errors.extend(located);
-        // What is counted only comes last.
+        // Errors that are only counted come last.
         errors.sort_by_key(|e| (e.code == "scene.more", e.line.unwrap_or(0), e.column.unwrap_or(0)));
         Failure::Scene(shown(errors))
     }
@@ -106,7 +105,7 @@ impl Source {
         in_scene(SceneError::from(error), self.text(), &self.file, &options.overrides)
     }
 
-    /// Builds the world of a scene that was read with these options; everything that it refuses comes at once.
+    /// Builds the world of a scene that was read with these options; all of its errors are reported at once.
     pub(crate) fn build(
         &self,
         blueprint: AnyBlueprint,
@@ -118,7 +117,7 @@ impl Source {
             if first == (WorldError::BrokenOff {}) {
                 return Failure::Interrupted;
             }
-            // The scene is read again rather than kept for the case that its world is refused.
+            // The scene is read again, instead of being kept in case its world is refused.
             let reading = self.survey(options);
             match self.refused(reading, options, world) {
                 Failure::Scene(all) if !all.is_empty() => Failure::Scene(all),
@@ -133,13 +132,13 @@ impl Source {
         Ok(built)
     }
 
-    /// An error that ends a run at a time; it is not the fault of a line.
+    /// An error that ends a run at some time; it does not belong to a line.
     pub(crate) fn run_error(&self, error: &WorldError, time: f64) -> Failure {
         let scene_error = SceneError { file: self.file.clone(), ..SceneError::from(error) };
         Failure::Run(Box::new(timed(scene_error, error, time)))
     }
 
-    /// An error that ends a run with a frame: that of a command has its line.
+    /// An error that ends a run at a frame; the error of a command has its line.
     pub(crate) fn frame_error(&self, error: &WorldError, world: &dyn AnyWorld, options: &scene::Options) -> Failure {
         let Some(command) = world.refused_command() else { return self.run_error(error, world.time()) };
         let scene_error = of_command(error, &command, (self.text(), self.file.as_str()), &options.overrides);
@@ -147,7 +146,7 @@ impl Source {
     }
 }
 
-/// An error with the time at which it came about; some say themselves when it was.
+/// An error with its time; some messages already contain it.
 fn timed(scene_error: SceneError, error: &WorldError, time: f64) -> SceneError {
     if matches!(error, WorldError::Snapshot { .. }) || has_time(error) {
         return scene_error;
@@ -157,7 +156,7 @@ fn timed(scene_error: SceneError, error: &WorldError, time: f64) -> SceneError {
     SceneError { message, about, ..scene_error }
 }
 
-/// Whether a message, or a part of it, has the time or the time of the last good frame.
+/// Whether a message, or a part of it, contains the time or the time of the last good frame.
 fn has_time(message: &dyn Message) -> bool {
     message.fields().iter().any(|(name, value)| match value {
         Field::Message(part) => has_time(&**part),
@@ -165,9 +164,9 @@ fn has_time(message: &dyn Message) -> bool {
     })
 }
 
-/// The name of a file as it is typed on the command line.
+/// The name of a file as it must be typed on the command line.
 pub(crate) fn argument(path: &str) -> String {
-    // Else it would be taken for an option.
+    // Otherwise it would look like an option.
     let path = if path.starts_with('-') { format!("./{path}") } else { path.to_string() };
     if path.chars().all(|c| c.is_alphanumeric() || "._-/\\:".contains(c)) {
         path

@@ -1,4 +1,4 @@
-//! The window: a program of its own beside this one, so that whoever needs no window builds none.
+//! The window: a separate program, so that it need not be built if it is not used.
 
 use crate::arguments::Run;
 use crate::errors::CallFault;
@@ -11,13 +11,13 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How long a program that was asked to end may take to save what was done, on a machine that has much else to do.
+/// How long a program may take to save its work after it was asked to end, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The exit code of a studio that found no screen.
 const NO_WINDOW: i32 = 5;
 
-/// What `opruga` without a command does: it opens the window where there is a screen, and runs without one otherwise.
+/// `opruga` without a command: opens the window if there is a screen, otherwise runs a scene without one.
 pub(crate) fn first(registries: &Registries) -> Result<u8, Failure> {
     let headless = |why: &str| {
         eprintln!("{why}: running the scene `ball` without a window (`opruga --help` tells what else there is)");
@@ -43,7 +43,7 @@ pub(crate) fn studio(scene: Option<&str>) -> Result<u8, Failure> {
     start(scene)
 }
 
-/// `opruga view FILE`. What is no recording is told before a window opens.
+/// `opruga view FILE`. A file that is not a recording is reported before a window opens.
 pub(crate) fn view(path: &Path, registries: &Registries) -> Result<u8, Failure> {
     let _ = crate::recordings::open(path, registries)?;
     let shown = path.display().to_string();
@@ -75,7 +75,7 @@ fn start(scene: Option<&str>) -> Result<u8, Failure> {
     };
     command.args(scene);
     let failed = |e: std::io::Error| Failure::call(CallFault::StudioNotStarted { reason: e.to_string() });
-    // Before it is started: a signal that comes at once is not lost.
+    // Before it is started, so that an early signal is not lost.
     let stop = interrupt::asked_to_stop();
     interrupt::leave_the_word(true);
     let status = command.spawn().and_then(|child| wait(child, stop)).map_err(failed);
@@ -87,8 +87,8 @@ fn start(scene: Option<&str>) -> Result<u8, Failure> {
     }
 }
 
-/// What builds the studio and starts it. Cargo is not told to be quiet, and writes where this program writes: for minutes nothing else
-/// would be seen.
+/// The command that builds the studio and starts it. Cargo is not silenced and writes to the output of this program, because nothing else would be
+/// seen for minutes.
 fn built(cargo: &OsStr, root: &Path) -> Command {
     let mut command = Command::new(cargo);
     command.arg("run").arg("--manifest-path").arg(root.join("Cargo.toml"));
@@ -100,9 +100,9 @@ fn built(cargo: &OsStr, root: &Path) -> Command {
     command
 }
 
-/// Waits for the end of a program, which is asked to end as soon as this one is: it saves what was done, also where this one does not
-/// wait for it, and where Ctrl-C has asked it too. Where it does not end then, it is ended. The window of the studio ends by itself
-/// with the program that watches over it.
+/// Waits for the end of a program. As soon as this program is asked to end, the other one is, too: it saves its work even if this program does not
+/// wait for it, or if Ctrl-C has already asked it. If it then does not end, it is killed. The window of the studio ends by itself with the program
+/// that supervises it.
 fn wait(mut child: Child, stop: &AtomicBool) -> std::io::Result<ExitStatus> {
     let mut asked: Option<Instant> = None;
     loop {
@@ -129,20 +129,20 @@ fn ask_to_end(child: &mut Child) -> std::io::Result<()> {
     Ok(rustix::process::kill_process(number, rustix::process::Signal::TERM)?)
 }
 
-/// Where there is no way to ask a program, Ctrl-C has asked it already.
+/// On systems without a way to ask a program to end, Ctrl-C has done so already.
 #[cfg(not(unix))]
 fn ask_to_end(_: &mut Child) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The cargo that runs this program and the root of the source tree, where it is one of the studio too.
+/// The cargo that runs this program, and the root of the source tree if it contains the studio.
 fn source_tree(variable: impl Fn(&str) -> Option<OsString>) -> Option<(OsString, PathBuf)> {
     let own = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
     let root = own.parent()?.parent()?.to_path_buf();
     root.join("crates/opruga-studio/Cargo.toml").is_file().then_some((variable("CARGO")?, root))
 }
 
-/// Where the studio lies that was installed with this program.
+/// The path of the studio that was installed with this program.
 fn beside(own: &Path) -> PathBuf {
     own.with_file_name(format!("opruga-studio{}", std::env::consts::EXE_SUFFIX))
 }
@@ -177,7 +177,7 @@ mod tests {
             assert_eq!(status.code(), None, "a signal has ended it");
         });
         assert!(asked.elapsed() < Duration::from_secs(300));
-        // It is asked, and not killed: there is something to save. It says when it listens.
+        // It is asked and not killed, because it has something to save. It prints a line when it is ready.
         let words = ["-c", "trap 'exit 7' TERM; echo; while :; do sleep 0.1; done"];
         let mut child = Command::new("sh").args(words).stdout(std::process::Stdio::piped()).spawn().expect("a shell");
         let mut listens = [0];

@@ -1,4 +1,4 @@
-//! `opruga sweep`: many runs of one scene at a time, a table that grows row by row, and what it shows.
+//! `opruga sweep`: several runs of one scene at a time, a table that grows row by row, and its evaluation.
 
 mod findings;
 
@@ -29,7 +29,7 @@ use std::time::Instant;
 const QUESTION: &str = "question.json";
 const TABLE: &str = "results.csv";
 
-/// Runs a sweep, or the rest of one.
+/// Runs a sweep, or the rest of an interrupted one.
 pub(crate) fn sweep(call: &Call, registries: &Registries) -> Result<u8, Failure> {
     let simd = simd_from_environment()?;
     let (question, path) = match &call.resume {
@@ -83,7 +83,7 @@ pub(crate) fn sweep(call: &Call, registries: &Registries) -> Result<u8, Failure>
     Ok(exit_code(&rows))
 }
 
-/// That of the point that went worst, as a run of its own would have ended; all others are done by then.
+/// The exit code that the worst point would have had as a separate run; all others are complete by then.
 fn exit_code(rows: &[Row]) -> u8 {
     let code = |row: &Row| match &row.status {
         Status::Done => 0,
@@ -93,13 +93,13 @@ fn exit_code(rows: &[Row]) -> u8 {
     rows.iter().map(code).max().unwrap_or(0)
 }
 
-/// What the scene of a sweep says about all of its runs.
+/// Properties of the scene that are common to all runs of a sweep.
 struct SceneInfo {
-    /// What it calls its unit of length.
+    /// The name of its unit of length.
     length_unit: String,
-    /// Whose drawings it shows.
+    /// The authors of its drawings.
     credit: String,
-    /// That runs end at another time than was asked for, unless that differs between them.
+    /// The note that runs end at another time than requested, unless this differs between them.
     ends: Option<CallNote>,
 }
 
@@ -132,18 +132,18 @@ fn no_sweep(path: &Path) -> Failure {
     Failure::Scene(vec![SceneError { file: shown, ..SceneError::of(CallError::NoSweep { file: QUESTION }) }])
 }
 
-/// The question of a call, with all that the scene names, and the folder for its answer.
+/// The question of a call, with everything that the scene names, and the folder for its answer.
 fn question_of(call: &Call, registries: &Registries) -> Result<(Question, PathBuf), Failure> {
     if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
         return Err(Failure::range("--seconds", seconds, CallRange::Between { least: 0.0, most: 1e9 }));
     }
     let source = Source::find(call.scene.as_deref().unwrap_or_default(), registries)?;
     let scene = String::from_utf8(source.bytes.clone()).map_err(|_| {
-        // The reader says where.
+        // The reader reports the location.
         let nothing = opruga::io::scene::Options::default();
         Failure::Scene(source.survey(&nothing).errors)
     })?;
-    // They belong to the question: a sweep goes on with the files that it began with.
+    // The files belong to the question: a sweep is resumed with the files with which it began.
     let options = opruga::io::scene::Options {
         lenient: true,
         files: source.files.clone().allow_outside(call.allow_outside),
@@ -178,7 +178,7 @@ fn question_of(call: &Call, registries: &Registries) -> Result<(Question, PathBu
     Ok((question, path))
 }
 
-/// The question of the sweep in a folder; none where there is no sweep.
+/// The question of the sweep in a folder; none if there is no sweep.
 fn asked(folder: &Path) -> Result<Option<Question>, Failure> {
     let path = folder.join(QUESTION);
     if !path.exists() {
@@ -189,7 +189,7 @@ fn asked(folder: &Path) -> Result<Option<Question>, Failure> {
     Question::read(&bytes).map(Some).map_err(refuse)
 }
 
-/// The folder of this question, locked: a new one, or one that holds a part of the answer.
+/// The locked folder of this question: a new one, or one that contains a part of the answer.
 fn folder_of(question: &Question, path: &Path, force: bool) -> Result<OutputFolder, Failure> {
     let before = if force { None } else { asked(path)? };
     let existing = if force || before.is_some() { Existing::Replace } else { Existing::Refuse };
@@ -199,7 +199,7 @@ fn folder_of(question: &Question, path: &Path, force: bool) -> Result<OutputFold
     }
     let folder = OutputFolder::open(path, existing)?;
     if before.is_none() {
-        // The old answer goes before the new question comes.
+        // The old answer is removed before the new question is written.
         for name in [TABLE, "summary.json"] {
             folder.remove(name)?;
         }
@@ -208,7 +208,7 @@ fn folder_of(question: &Question, path: &Path, force: bool) -> Result<OutputFold
     Ok(folder)
 }
 
-/// The rows that the folder already has.
+/// The rows that already exist in the folder.
 fn known_rows(folder: &OutputFolder, sweep: &Sweep, points: &[Point]) -> Result<Vec<Row>, Failure> {
     let path = folder.path(TABLE);
     let shown = path.display().to_string();
@@ -229,7 +229,7 @@ struct Work<'a> {
     simd: Option<Simd>,
 }
 
-/// What the threads share.
+/// The data that the threads share.
 struct Shared {
     table: File,
     rows: Vec<Row>,
@@ -237,8 +237,7 @@ struct Shared {
 }
 
 impl Work<'_> {
-    /// Measures every point that has no row yet. Each row is on the disk before the next point of its thread begins; at the
-    /// end the table is sorted.
+    /// Measures every point that has no row yet. Each row is on the disk before the next point of its thread begins; at the end the table is sorted.
     fn all(&self, known: Vec<Row>) -> Result<Vec<Row>, Failure> {
         self.write_table(&known)?;
         let path = self.folder.path(TABLE);

@@ -1,4 +1,4 @@
-//! What every command that writes reads and writes: no output replaces an input or another output.
+//! The inputs and outputs of every command that writes files: no output may replace an input or another output.
 
 use crate::failure::Failure;
 use crate::source::Source;
@@ -9,7 +9,7 @@ use std::path::Path;
 /// The scene and the files that it names, as inputs.
 pub(crate) fn of_scene<'n>(source: &Source, files: &Files, names: impl Iterator<Item = &'n String>) -> Uses {
     let mut uses = Uses::default();
-    // The scene of a checkpoint or of a recording is inside.
+    // The scene of a checkpoint or of a recording is inside it.
     if let Some(path) = &source.path {
         uses.input(Use::Scene { path: path.display().to_string() }, path);
     }
@@ -28,12 +28,12 @@ pub(crate) fn of_file(what: Use, path: &Path) -> Uses {
     uses
 }
 
-/// Refuses the call whose outputs are not files of their own.
+/// Refuses a call if its outputs are not separate files.
 pub(crate) fn apart(uses: &Uses) -> Result<(), Failure> {
     Ok(uses.check()?)
 }
 
-/// What `opruga run` writes into its folder.
+/// Whether `opruga run` writes a file of this name to its folder.
 pub(crate) fn run_writes(name: &str) -> bool {
     const NAMES: [&str; 10] = [
         "diagnostics.csv",
@@ -50,7 +50,7 @@ pub(crate) fn run_writes(name: &str) -> bool {
     NAMES.contains(&name)
 }
 
-/// What `opruga replay` writes into its folder: `frame-000012.vtk`, a point cache for every body, …
+/// Whether `opruga replay` writes a file of this name to its folder: `frame-000012.vtk`, a point cache for every body, …
 pub(crate) fn replay_writes(name: &str) -> bool {
     let ends = |endings: &[&str]| endings.iter().any(|ending| name.ends_with(ending));
     run_writes(name)
@@ -59,13 +59,13 @@ pub(crate) fn replay_writes(name: &str) -> bool {
         || ends(&[".pc2", ".mdd"])
 }
 
-/// What `opruga sweep` writes into its folder.
+/// Whether `opruga sweep` writes a file of this name to its folder.
 pub(crate) fn sweep_writes(name: &str) -> bool {
     ["results.csv", "question.json", "summary.json"].contains(&name)
         || name.starts_with("plots") && name.ends_with(".svg")
 }
 
-/// What `opruga modes` writes into its folder.
+/// Whether `opruga modes` writes a file of this name to its folder.
 pub(crate) fn modes_writes(name: &str) -> bool {
     ["modes.csv", "modes.json", "modes.png"].contains(&name)
 }

@@ -1,4 +1,4 @@
-//! `opruga verify`: the engine against closed forms and published numbers.
+//! `opruga verify`: compares the engine with closed forms and published numbers.
 
 use crate::arguments::Verify;
 use crate::errors::{CallFault, CallRange};
@@ -16,7 +16,7 @@ use serde_json::json;
 use std::fmt::Write as _;
 use std::io::IsTerminal;
 
-/// Runs the cases; 1 where one fails.
+/// Runs the cases; the exit code is 1 if one fails.
 pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failure> {
     let cases = chosen(&call.filter)?;
     if !(0.5..=2.0).contains(&call.stiffer) {
@@ -28,10 +28,10 @@ pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failu
     }
     let lab = Lab { simd: simd_from_environment()?, stiffer: call.stiffer, registries: registries.clone() };
     let stop = interrupt::asked_to_stop();
-    // Whether the report can be written is known before the work.
+    // Checks before the work whether the report can be written.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
     let folder = call.report.as_ref().map(|path| OutputFolder::open(path, existing)).transpose();
-    // Folders have another option here.
+    // The option for folders has another name here.
     let folder = folder.map_err(|e| {
         let about = e.about.renamed(&str::to_string, &|text| text.replace("--out", "--report"));
         WriteError { about, ..e }
@@ -39,7 +39,7 @@ pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failu
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = call.threads.map_or(cores, usize::from);
     let bar = progress_bar(cases.len());
-    // Errors of a call with --json are JSON: nothing else is said beside it.
+    // With --json, errors of a call are JSON, and nothing else is printed.
     let verbose = !call.json && !std::io::stderr().is_terminal();
     let rows = opruga_verify::run_all(&cases, &lab, threads, stop, &|row: &Row| {
         bar.inc(1);
@@ -50,7 +50,7 @@ pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failu
     });
     bar.finish_and_clear();
     if rows.len() < cases.len() {
-        // Cases that still run end with the program.
+        // Cases that are still running end with the program.
         return Err(Failure::Interrupted);
     }
     if let Some(folder) = &folder {
@@ -68,7 +68,7 @@ pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failu
     Ok(u8::from(failed))
 }
 
-/// The cases that any of the words names; all where there are no words.
+/// The cases that any of the words names; all cases if there are no words.
 fn chosen(words: &[String]) -> Result<Vec<&'static Case>, Failure> {
     for word in words {
         let of_word = |case: &Case| case.name.contains(word.as_str()) || case.family.name() == word;
@@ -106,7 +106,7 @@ fn write_report(folder: &OutputFolder, rows: &[Row]) -> Result<(), Failure> {
     write("report.md", &text)?;
     let json = serde_json::to_string_pretty(&opruga_verify::to_json(rows)).unwrap_or_default();
     write("report.json", &(json + "\n"))?;
-    // Who sees the page sees a whole report.
+    // The page is written last, so that a visible page belongs to a complete report.
     write("report.html", &opruga_verify::html(rows))?;
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! `--watch`: doing again what was asked for whenever the scene or a file that it names changes, until Ctrl-C.
+//! `--watch`: repeats a command whenever the scene or a file that it names changes, until Ctrl-C.
 
 use crate::arguments::{Check, Run};
 use crate::errors::CallFault;
@@ -12,14 +12,14 @@ use opruga::math::words::counted;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-/// How often the files are looked at.
+/// The interval at which the files are checked.
 const EVERY: Duration = Duration::from_millis(100);
-/// How many looks in a row must show the same files: editors write in several steps.
+/// The number of consecutive checks that must show the same files, because editors write in several steps.
 const SETTLED: u32 = 2;
-/// After so many looks a file that is missing is not just being replaced.
+/// After this many checks, a missing file is not just being replaced.
 const GONE: u32 = 5;
 
-/// Runs a scene, and again whenever it changes if that is asked for.
+/// Runs a scene, and with `--watch` again whenever it changes.
 pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     if !call.watch {
         return crate::run::run(call, registries);
@@ -28,7 +28,7 @@ pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     let scene = call.scene.clone().unwrap_or_else(|| "ball".into());
     again_and_again(&scene, registries, call.allow_outside, call.json, || {
         let outcome = crate::run::run(&call, registries);
-        // What stands in the folder from now on is ours, and may be replaced. A refusal leaves it somebody else's.
+        // From now on the files in the folder are ours, and may be replaced. After a refusal they may belong to somebody else.
         if matches!(outcome, Ok(_) | Err(Failure::Run(_) | Failure::Interrupted)) {
             call.force = true;
         }
@@ -36,7 +36,7 @@ pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     })
 }
 
-/// Checks a scene, and again whenever it changes if that is asked for.
+/// Checks a scene, and with `--watch` again whenever it changes.
 pub(crate) fn check(call: &Check, registries: &Registries) -> Result<u8, Failure> {
     if !call.watch {
         return reports::check(call, registries);
@@ -44,8 +44,8 @@ pub(crate) fn check(call: &Check, registries: &Registries) -> Result<u8, Failure
     again_and_again(&call.scene, registries, call.allow_outside, call.json, || reports::check(call, registries))
 }
 
-/// Works now and after every change of the scene or of a file that it names; work that the change overtakes is stopped.
-/// Errors are told, and the next change is waited for.
+/// Does the work now and after every change of the scene or of a file that it names; work that is still running at a change is stopped. After an
+/// error, it reports the error and waits for the next change.
 fn again_and_again(
     scene: &str,
     registries: &Registries,
@@ -55,13 +55,13 @@ fn again_and_again(
 ) -> Result<u8, Failure> {
     let path = Path::new(scene);
     if !path.is_file() {
-        // A file that is missing is told as ever.
+        // A missing file is reported as usual.
         Source::find(scene, registries)?;
         return Err(Failure::call(CallFault::NeverChanges { scene: visible(scene) }));
     }
     interrupt::asked_to_stop();
     loop {
-        // What changes while the files are looked up is a change.
+        // A change while the files are looked up counts.
         let stamp = Stamp::of(path);
         let (files, mut stamps) = named_files(scene, registries, outside);
         stamps[0] = stamp;
@@ -70,7 +70,7 @@ fn again_and_again(
             let outcome = work();
             match &outcome {
                 Err(Failure::ClosedPipe) => interrupt::stop_work(),
-                // Stopped by the change.
+                // It was stopped by the change.
                 Err(Failure::Interrupted) => {}
                 Err(failure) => failure.print(json),
                 Ok(_) => {}
@@ -97,7 +97,7 @@ fn again_and_again(
     }
 }
 
-/// The scene file and the files that it names, whether they are there or not, with their states.
+/// The scene file and the files that it names, whether they exist or not, with their states.
 fn named_files(scene: &str, registries: &Registries, outside: bool) -> (Vec<PathBuf>, Vec<Option<Stamp>>) {
     let mut files = vec![PathBuf::from(scene)];
     if let Ok(source) = Source::find(scene, registries) {
@@ -110,12 +110,12 @@ fn named_files(scene: &str, registries: &Registries, outside: bool) -> (Vec<Path
     (files, stamps)
 }
 
-/// Returns the number of a file once it is another one than it was and all of them stay so for a while; the work at hand is
-/// stopped then. Returns none when that work was stopped by somebody else. Of a file that goes and does not come back it is said once.
+/// Waits until a file differs from its former state and all files have stayed the same for a while, then stops the present work and returns the index
+/// of the file. Returns none if the work was stopped for another reason. A file that disappears and does not come back is reported once.
 fn wait_for_change(files: &[PathBuf], before: &[Option<Stamp>], json: bool) -> Option<usize> {
     let stop = interrupt::asked_to_stop();
     let (mut last, mut same) = (Vec::new(), 0);
-    // Of every file for how many looks it has been missing that was there.
+    // For every file that existed, the number of checks for which it has been missing.
     let mut missing = vec![0u32; files.len()];
     while !stop.load(std::sync::atomic::Ordering::Relaxed) {
         std::thread::sleep(EVERY);
@@ -129,7 +129,7 @@ fn wait_for_change(files: &[PathBuf], before: &[Option<Stamp>], json: bool) -> O
                 eprintln!("{} is gone; waiting for it to come back", visible(&file.display().to_string()));
             }
         }
-        // A file that is not there is being replaced.
+        // A missing file is being replaced.
         let changed = (0..files.len()).find(|k| now[*k].is_some() && now[*k] != before[*k]);
         if let Some(changed) = changed.filter(|_| now[0].is_some() && same >= SETTLED) {
             interrupt::stop_work();
@@ -140,7 +140,7 @@ fn wait_for_change(files: &[PathBuf], before: &[Option<Stamp>], json: bool) -> O
     None
 }
 
-/// What tells one state of a file from another.
+/// The properties that distinguish states of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stamp {
     bytes: u64,

@@ -1,6 +1,5 @@
-//! Two hundred kills at random moments of recordings, and two hundred of checkpoints and sweeps: what is left can be read, and is
-//! right. What a kill may cost a recording is measured in `opruga/tests/killed_recordings.rs`.
-//! Rows 79 and 80 of a list of torments.
+//! Two hundred kills at random moments of recordings, and two hundred of checkpoints and sweeps: the remaining files can be read, and are right. The
+//! cost of a kill for a recording is measured in `opruga/tests/killed_recordings.rs`. Rows 79 and 80 of the torture list.
 #![cfg(unix)]
 #![allow(clippy::disallowed_methods)] // no physics here
 
@@ -30,7 +29,7 @@ fn blueprint() -> Blueprint<2> {
     blueprint
 }
 
-/// The hashes and states of a scene as a run that nobody kills has them, frame by frame, as far as they were asked for.
+/// The hashes and states of a scene in an uninterrupted run, frame by frame, as far as they were needed.
 struct Undisturbed(Mutex<(World<2>, Vec<Frame>)>);
 
 /// The hash and the state of a frame.
@@ -43,7 +42,7 @@ impl Undisturbed {
         Undisturbed(Mutex::new((world, vec![first])))
     }
 
-    /// Goes as far as a frame; says whether it has this hash and, where there is one, this state.
+    /// Computes up to a frame; returns whether it has this hash and, if given, this state.
     fn is(&self, frame: u64, hash: u64, state: Option<&[u8]>) -> bool {
         let mut guard = self.0.lock().expect("nobody has failed");
         let (world, states) = &mut *guard;
@@ -55,21 +54,21 @@ impl Undisturbed {
         *recorded == hash && state.is_none_or(|state| state == all)
     }
 
-    /// The frame whose state stands at the end of some bytes.
+    /// The frame whose state is at the end of some bytes.
     fn at_the_end(&self, bytes: &[u8]) -> Option<usize> {
         let guard = self.0.lock().expect("nobody has failed");
         guard.1.iter().position(|(_, state)| bytes.ends_with(state))
     }
 }
 
-/// A number below another that follows from a round alone (SplitMix64).
+/// A number below `below` that depends only on the round (SplitMix64).
 fn random(round: u64, below: u64) -> u64 {
     let mut z = (round + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     (z ^ (z >> 27)) % below.max(1)
 }
 
-/// Waits until a file is there (every fourth time it does not), then a random time up to the longest [µs], and kills.
+/// Waits until a file exists (except every fourth time), then a random time up to `longest` [µs], and kills the process.
 fn killed(folder: &Path, arguments: &[&str], file: &str, round: u64, longest: u64) {
     let mut child = program(folder, arguments).spawn().expect("the program runs");
     if !round.is_multiple_of(4) {
@@ -80,7 +79,7 @@ fn killed(folder: &Path, arguments: &[&str], file: &str, round: u64, longest: u6
     child.wait().expect("it ends");
 }
 
-/// Does something for every round, on four threads: most of the time of a round the run waits for the disk, or is waited for.
+/// Calls a function for every round, on four threads: most of the time of a round is spent waiting, for the disk or for the run.
 fn rounds(count: u64, each: impl Fn(u64) + Sync) {
     let next = AtomicU64::new(0);
     std::thread::scope(|scope| {
@@ -101,9 +100,9 @@ fn rounds(count: u64, each: impl Fn(u64) + Sync) {
 /// A run of a tenth of a second that records, from its first file to its last.
 struct Recorded {
     every: &'static str,
-    /// The recording that it leaves where nobody kills it.
+    /// The recording of an uninterrupted run.
     whole: Vec<u8>,
-    /// How long it takes then.
+    /// The duration of that run.
     takes: Duration,
 }
 
@@ -112,7 +111,7 @@ impl Recorded {
         ["run", "pressures", "--seconds=3", "--no-pictures", every, "--out", out, file]
     }
 
-    /// Nobody kills it.
+    /// Makes it with an uninterrupted run.
     fn new(folder: &Path, every: &'static str) -> Recorded {
         let name = format!("whole{every}");
         let begun = Instant::now();
@@ -122,8 +121,8 @@ impl Recorded {
         Recorded { every, whole: std::fs::read(folder.join(name)).expect("a recording"), takes }
     }
 
-    /// The bytes of the chunk that begins at a place: 48 of its head, which says how many follow; of the last one also those of
-    /// the end, which are written with it.
+    /// The size of the chunk that begins at an offset: 48 bytes of its head, which gives the number of bytes that follow. The last chunk includes the
+    /// end of the file, which is written with it.
     fn chunk_at(&self, place: u64) -> u64 {
         let head = &self.whole[place as usize..];
         let payload = head[24..32].iter().rev().fold(0, |all, byte| all << 8 | u64::from(*byte));
@@ -131,8 +130,8 @@ impl Recorded {
         if head.starts_with(b"INDX") { head.len() as u64 } else { behind }
     }
 
-    /// Kills it: half of the times at any moment, a quarter of them when so many bytes are there, a quarter of them while the
-    /// end is written or shortly behind it. Says whether it was still at work.
+    /// Kills the run: in half of the rounds at any moment, in a quarter of them when a number of bytes has been written, and in a quarter of them
+    /// while the end is written or shortly after. Returns whether it was still running.
     fn killed(&self, folder: &Path, round: u64) -> bool {
         let (out, file) = (format!("o{round}"), format!("r{round}"));
         let call = Recorded::call(self.every, &out, &format!("--record={file}")).map(String::from);
@@ -148,7 +147,7 @@ impl Recorded {
         let begun = Instant::now();
         while there() < bytes && child.try_wait().is_ok_and(|ended| ended.is_none()) {
             assert!(begun.elapsed() < Duration::from_secs(60), "round {round}: {bytes} bytes are never there");
-            // Without a pause the look itself would take the processor from the run.
+            // Without a pause, this loop would take the processor from the run.
             std::thread::sleep(Duration::from_micros(100));
         }
         std::thread::sleep(Duration::from_micros(pause));
@@ -157,8 +156,8 @@ impl Recorded {
     }
 }
 
-/// What a kill leaves is the beginning of what the whole run leaves, byte by byte. All of its chunks but one that was not
-/// written to its end are read, and are right; and its last frame can be played.
+/// A killed recording is a prefix of the complete one, byte by byte. All of its chunks except an incomplete one can be read, and are right; and its
+/// last frame can be replayed.
 #[test]
 fn a_recording_that_is_killed_at_any_moment_has_right_frames() {
     recordings_survive(40);
@@ -180,7 +179,7 @@ fn recordings_survive(kills: u64) {
         let way = &ways[round as usize % ways.len()];
         let at_work = way.killed(folder, round);
         let count = |which: usize| counts[which].fetch_add(1, Ordering::Relaxed);
-        // It gets its name with its head: before that there is nothing, and nothing else under its name.
+        // It gets its name with its header: before that, no file of this name exists.
         let Ok(bytes) = std::fs::read(folder.join(format!("r{round}"))) else {
             assert!(at_work, "round {round}: a run that has ended has left no recording");
             count(0);
@@ -258,7 +257,7 @@ fn checkpoints_survive(kills: u64) {
     });
     let found = found.into_inner();
     assert!(found > kills / 2, "{found} checkpoints were written");
-    // The last that has one goes on.
+    // The last one with a checkpoint is resumed.
     let last = (0..kills).rev().find(|round| folder.join(format!("o{round}/checkpoint")).exists()).expect("one");
     let checkpoint = format!("o{last}/checkpoint");
     let hour = ["run", "--resume", &checkpoint, "--seconds=200", "--no-pictures", "--out=on", "--json"];

@@ -1,4 +1,4 @@
-//! Memory: estimates beside what runs take, and limits of the machine.
+//! Memory: estimates compared with the memory of runs, and limits of the machine.
 #![cfg(target_os = "linux")]
 
 #[path = "all/common/mod.rs"]
@@ -28,7 +28,7 @@ fn estimated(text: &str) -> f64 {
     estimated.expect("an estimate")
 }
 
-/// The most memory that a run of a scene has taken, the program included [bytes].
+/// The largest memory of a run of a scene, including the program [bytes].
 fn taken(text: &str) -> f64 {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("s.toml"), text).expect("a file");
@@ -49,7 +49,7 @@ fn taken(text: &str) -> f64 {
     most
 }
 
-/// Every kind of mesh with explicit and implicit rules, with a matrix, without one, and with a factor.
+/// Every kind of mesh with explicit and implicit integrators, with a matrix, without one, and with a factor.
 #[test]
 fn estimates_are_within_thirty_percent_of_what_runs_take() {
     estimates_hold(4);
@@ -96,7 +96,7 @@ fn estimates_hold(stride: usize) {
         (3, &real_time, block(12, quadratic)),
         (3, &direct, block(12, linear)),
     ];
-    // The program itself grows with its libraries and its profile: a ring of three points shows what it takes.
+    // The memory of the program itself depends on its libraries and its profile: a ring of three points shows it.
     let program = taken(&text(2, explicit, &ring(3)));
     for (dimension, integrator, body) in rows.into_iter().step_by(stride) {
         let text = text(dimension, integrator, &body);
@@ -110,7 +110,7 @@ fn estimates_hold(stride: usize) {
     }
 }
 
-/// A limit of the address space is a limit of the scene: it is refused with its place, before it ends the program.
+/// A limit of the address space is a limit of the scene: the scene is refused with its location before the program runs out of memory.
 #[test]
 fn what_the_machine_does_not_give_is_refused_at_the_body() {
     let folder = tempfile::tempdir().expect("a folder");

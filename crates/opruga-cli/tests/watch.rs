@@ -1,4 +1,4 @@
-//! `--watch`: again when the scene changes, whatever was wrong with it before.
+//! `--watch`: repeats a command when the scene changes, whatever was wrong with it before.
 
 #[path = "all/common/mod.rs"]
 mod common;
@@ -10,7 +10,7 @@ use std::process::{Child, Stdio};
 use std::sync::mpsc;
 use std::time::Duration;
 
-/// A program that is watched, line by line of what it says on stderr.
+/// A running program and the lines that it prints on stderr.
 struct Watched {
     child: Child,
     lines: mpsc::Receiver<String>,
@@ -59,7 +59,7 @@ fn check_goes_on_after_errors_and_tells_when_they_are_gone() {
     let watched = Watched::start(folder.path(), &["check", "mine.toml", "--watch"]);
     watched.until("scene.range");
     watched.until("waiting for changes");
-    // An editor that replaces the file takes it away for a moment.
+    // An editor that replaces the file removes it for a moment.
     std::fs::remove_file(&path).expect("it goes");
     std::thread::sleep(Duration::from_millis(250));
     std::fs::write(&path, scene()).expect("a file");
@@ -69,7 +69,7 @@ fn check_goes_on_after_errors_and_tells_when_they_are_gone() {
     watched.until("did you mean");
 }
 
-/// A scene that vanishes is told of once, and it is waited for; what is only replaced is not told of.
+/// A scene that disappears is reported once, and the program waits for it; one that is only replaced is not reported.
 #[test]
 fn a_scene_that_vanishes_is_told_of_once_and_waited_for() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -80,7 +80,7 @@ fn a_scene_that_vanishes_is_told_of_once_and_waited_for() {
     for seconds in ["0.2", "0.3"] {
         std::fs::remove_file(&path).expect("it goes");
         watched.until("mine.toml is gone; waiting for it to come back");
-        // Once: nothing more is said for longer than it took to say it.
+        // Once: nothing more is printed for longer than it took to print it.
         let more = watched.lines.recv_timeout(Duration::from_millis(1500));
         assert_eq!(more, Err(mpsc::RecvTimeoutError::Timeout));
         std::fs::write(&path, scene().replace("seconds = 8.0", &format!("seconds = {seconds}"))).expect("a file");
@@ -124,7 +124,7 @@ fn run_replaces_its_own_output_stops_what_a_change_overtakes_and_ends_with_ctrl_
         serde_json::from_str::<serde_json::Value>(&text).expect("JSON")["time"].as_f64().expect("a time")
     };
     assert!((time() - 8.0).abs() < 1e-9);
-    // A run that would take an hour is overtaken by the next change.
+    // A run that would take an hour is stopped by the next change.
     std::fs::write(&path, scene().replace("seconds = 8.0", "seconds = 1e6")).expect("a file");
     watched.until("has changed");
     std::thread::sleep(Duration::from_millis(400));

@@ -1,8 +1,8 @@
 //! `opruga bench elements`: forces and Hessians of every method of the survey.
 //!
-//! A cube of tetrahedra, hexahedra or quadratic tetrahedra, or a ring, bent; one thread. Hessians go into the matrix of a
-//! solver, where the places of their blocks are known from the first time. Finite volumes, finite differences and shape
-//! matching stand beside the landed model that they are compared with, measured in the same run.
+//! The subject is a bent cube of tetrahedra, hexahedra or quadratic tetrahedra, or a bent ring; one thread. Hessians are added to the matrix of a
+//! solver, in which the positions of their blocks are known after the first time. Finite volumes, finite differences and shape matching are shown
+//! next to the existing model with which they are compared, measured in the same run.
 
 use super::{Machine, best};
 use crate::arguments::BenchElements;
@@ -25,20 +25,20 @@ struct Row {
     element: &'static str,
     elements: usize,
     material: &'static str,
-    /// By set of vector instructions.
+    /// For each set of vector instructions.
     forces: Vec<(&'static str, f64)>,
     hessian: f64,
     clamped_hessian: f64,
-    /// How many times the forces of the row that this one is compared with, with the best instructions.
+    /// The ratio to the forces of the row with which this one is compared, with the best instructions.
     #[serde(skip_serializing_if = "Option::is_none")]
     ratio: Option<f64>,
 }
 
-/// One body under one model.
+/// One body with one model.
 struct Subject<'a, const D: usize> {
     model: &'static str,
     element: &'static str,
-    /// How many of them the body has.
+    /// The number of elements of the body.
     elements: usize,
     material: &'static str,
     mesh: &'a Mesh<D>,
@@ -70,7 +70,7 @@ pub(crate) fn bench(call: &BenchElements, registries: &Registries) -> Result<u8,
     for (element, mesh) in [("tetrahedron", &tetrahedra), ("hexahedron", &boxes), ("quadratic tetrahedron", &quadratic)]
     {
         for &material in names {
-            // The other elements once: it is the same material at more points.
+            // The other elements only once: they evaluate the same material at more points.
             let wanted = call.material.as_deref().unwrap_or("neo_hookean");
             if material != wanted && (element != "tetrahedron" || call.material.is_some()) {
                 continue;
@@ -112,7 +112,7 @@ fn modulus() -> (&'static str, Value) {
 /// Vertices of the rings.
 const RING: u32 = 4096;
 
-/// The other methods, each with the landed model beside which it stands.
+/// The other methods, each with the existing model with which it is compared.
 fn survey(registries: &Registries, boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<(), Failure> {
     let Registries { plane, space } = registries;
     let refused = |error: opruga::mesh::MeshError| Failure::call(error);
@@ -154,7 +154,7 @@ fn survey(registries: &Registries, boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: 
     rows.push(clusters("one cluster", None)?);
     rows.push(clusters("overlapping clusters", Some(side))?);
 
-    // Every vertex pulls at every other one.
+    // Every vertex attracts every other one.
     let ball = Mesh::<3>::icosphere(0.5, 3).map_err(refused)?;
     let (model, element, material) = ("boundary_element", "vertex of a sphere", "isotropic");
     let elements = ball.positions.len();
@@ -173,7 +173,7 @@ impl Row {
 }
 
 impl<const D: usize> Subject<'_, D> {
-    /// Builds the model and takes its times.
+    /// Builds the model and measures it.
     fn measure(self, registry: &Registry<D>) -> Result<Row, Failure> {
         let model = registry.model(self.model).ok_or_else(|| Failure::call(CallFault::NoModel { name: self.model }))?;
         let mut values = Values::defaults(model.spec(), D);
@@ -198,14 +198,14 @@ impl<const D: usize> Subject<'_, D> {
     }
 }
 
-/// Forces by set of vector instructions, and the exact and the clamped Hessian [ns per element].
+/// Times of the forces for each set of vector instructions, and of the exact and the clamped Hessian [ns per element].
 type Times = (Vec<(&'static str, f64)>, [f64; 2]);
 
 fn times<const D: usize>(solid: &dyn Potential<D>, mesh: &Mesh<D>, elements: usize) -> Result<Times, Failure> {
     let nodes = mesh.positions.len();
     let column_length = Layout::Single.index_count(nodes);
     let v = Columns::<D>::zeros(column_length);
-    // Two states by turns: a model may keep what it found in the last one.
+    // Two alternating states, because a model may reuse its results for the last one.
     let mut states = [Columns::<D>::zeros(column_length), Columns::<D>::zeros(column_length)];
     for (k, p) in mesh.positions.iter().enumerate() {
         let across = p.get(2).copied().unwrap_or(0.0);

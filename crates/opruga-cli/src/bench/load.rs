@@ -1,5 +1,5 @@
-//! `opruga bench load`: how long it takes to make a body of a file with many triangles, beside reading its bytes; and a world of it, with springs along its
-//! edges and the estimate of the stable step.
+//! `opruga bench load`: how long it takes to make a body from a file with many triangles, compared with reading its bytes, and to make a world of it,
+//! with springs along its edges and the estimate of the stable step.
 
 use super::{Machine, median, processor_time};
 use crate::arguments::BenchLoad;
@@ -12,7 +12,7 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Reads a surface several times, each as a scene does it, and prints how long that takes.
+/// Reads a surface several times, as a scene does, and prints how long it takes.
 pub(crate) fn bench(call: &BenchLoad, registries: &Registries) -> Result<u8, Failure> {
     match &call.file {
         Some(file) => of_file(call, file, registries),
@@ -26,7 +26,7 @@ pub(crate) fn bench(call: &BenchLoad, registries: &Registries) -> Result<u8, Fai
     }
 }
 
-/// A torus of about so many triangles in binary STL: every corner three numbers of its own, as scanners write them.
+/// A torus of about this many triangles in binary STL, with separate numbers for every corner, as scanners write them.
 fn torus(triangles: u32) -> Vec<u8> {
     let around = (f64::from(triangles) / 4.0).sqrt().ceil().max(4.0) as u32;
     let mut bytes = vec![0; 80];
@@ -59,7 +59,7 @@ fn of_file(call: &BenchLoad, path: &Path, registries: &Registries) -> Result<u8,
     let machine = Machine::measure(Simd::best());
     let (mut plain, mut wall, mut processor, mut found) = (Vec::new(), Vec::new(), Vec::new(), [0; 3]);
     let mut built = Vec::new();
-    // The size of the step does not matter here: it is not stepped.
+    // The size of the step does not matter, because the world is not stepped.
     let world = Options { threads: 1, allow_unstable: true, ..Options::default() };
     for _ in 0..call.rounds {
         let start = Instant::now();

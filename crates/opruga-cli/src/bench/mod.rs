@@ -1,4 +1,4 @@
-//! `opruga bench`: speed by the processor time of one thread, with what the machine can do in the same run.
+//! `opruga bench`: speed measured by the processor time of one thread, with the capabilities of the machine measured in the same run.
 
 pub(crate) mod elements;
 pub(crate) mod load;
@@ -10,7 +10,7 @@ pub(crate) mod vertices;
 use opruga::Simd;
 use opruga::math::{WIDTH, calibration};
 
-/// Processor time of this thread [s]; wall time where the system has no such clock.
+/// Processor time of this thread [s]; wall time if the system has no such clock.
 pub(crate) fn processor_time() -> f64 {
     #[cfg(unix)]
     {
@@ -25,7 +25,7 @@ pub(crate) fn processor_time() -> f64 {
     }
 }
 
-/// Processor time of all threads of this program [s]; that of this one where the system has no such clock.
+/// Processor time of all threads of this program [s]; that of this thread if the system has no such clock.
 pub(crate) fn processor_time_of_all() -> f64 {
     #[cfg(unix)]
     {
@@ -41,14 +41,14 @@ fn seconds(clock: rustix::time::ClockId) -> f64 {
     now.tv_sec as f64 + now.tv_nsec as f64 * 1e-9
 }
 
-/// The middle one of some numbers.
+/// The median of some numbers.
 pub(crate) fn median(numbers: &[f64]) -> f64 {
     let mut sorted = numbers.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// The processor time of a piece of work, the best of some repetitions of at least 5 ms [s].
+/// The processor time of a piece of work: the best of several repetitions of at least 5 ms [s].
 pub(crate) fn best(repetitions: usize, mut work: impl FnMut()) -> f64 {
     let mut best = f64::INFINITY;
     let mut together = 1;
@@ -69,13 +69,13 @@ pub(crate) fn best(repetitions: usize, mut work: impl FnMut()) -> f64 {
     best
 }
 
-/// What the machine can do, measured in the run that it is printed with.
+/// The capabilities of the machine, measured in the run with which they are printed.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
 pub(crate) struct Machine {
     simd: &'static str,
-    /// Products and sums in registers, not fused [10⁹/s].
+    /// Multiplications and additions in registers, not fused [10⁹/s].
     operations: f64,
-    /// a = b + s c over arrays of 32 MB each, three numbers counted [10⁹ bytes/s].
+    /// a = b + s c over arrays of 32 MB each, counted as three numbers [10⁹ bytes/s].
     memory: f64,
 }
 

@@ -1,4 +1,4 @@
-//! `opruga bench record`: what recording costs, beside the same run without, in one call.
+//! `opruga bench record`: the cost of recording, compared with the same run without it, in one call.
 
 use super::{Machine, median, processor_time_of_all};
 use crate::arguments::BenchRecord;
@@ -13,10 +13,10 @@ use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
 
-/// Times of one run: of all threads on the processor, and by the clock on the wall [ms].
+/// Times of one run: processor time of all threads, and wall time [ms].
 type Times = [f64; 2];
 
-/// Runs a scene again and again, with and without a recording, and prints what that adds.
+/// Runs a scene repeatedly, with and without a recording, and prints the difference.
 pub(crate) fn bench(call: &BenchRecord, registries: &Registries) -> Result<u8, Failure> {
     let opened = open(&call.scene, registries, &call.set, call.allow_outside, call.json)?;
     let name = format!("opruga-bench-{}.rec", std::process::id());
@@ -40,7 +40,7 @@ fn of_scene(call: &BenchRecord, opened: &Opened, path: &Path) -> Result<u8, Fail
         let mut world = new()?;
         let failed = |error: WorldError, world: &dyn AnyWorld| source.frame_error(&error, world, reading);
         let start = now();
-        // One of a pair comes first as often as the other.
+        // Each of a pair comes first equally often.
         if round % 4 == 0 || round % 4 == 3 {
             for _ in 0..frames {
                 world.frame().map_err(|error| failed(error, &*world))?;
@@ -61,7 +61,7 @@ fn of_scene(call: &BenchRecord, opened: &Opened, path: &Path) -> Result<u8, Fail
         bytes = tape.finish(&mut *world)?;
         around.push([0, 1].map(|clock| beginning[clock] + since(end)[clock]));
         with.push(since(start));
-        // One that takes the place of another is made to last first.
+        // A recording that replaces another one would first be synced.
         let _ = std::fs::remove_file(path);
     }
     let of = |times: &[Times], clock: usize| median(&times.iter().map(|times| times[clock]).collect::<Vec<_>>());
@@ -106,12 +106,12 @@ fn of_scene(call: &BenchRecord, opened: &Opened, path: &Path) -> Result<u8, Fail
     Ok(0)
 }
 
-/// What both clocks show.
+/// The readings of both clocks.
 fn now() -> (f64, Instant) {
     (processor_time_of_all(), Instant::now())
 }
 
-/// What both clocks have gone on.
+/// The time elapsed on both clocks.
 fn since((processor, wall): (f64, Instant)) -> Times {
     [processor_time_of_all() - processor, wall.elapsed().as_secs_f64()].map(|seconds| seconds * 1e3)
 }

@@ -1,4 +1,4 @@
-//! `opruga bench scene`: the time of the frames of a scene, and what implicit bodies spend it on.
+//! `opruga bench scene`: the time of the frames of a scene, and how implicit bodies spend it.
 
 use super::timed::{Spent, registries};
 use super::{Machine, median, processor_time};
@@ -15,8 +15,7 @@ use std::sync::Arc;
 pub(crate) fn bench(call: &BenchScene, library: &Registries) -> Result<u8, Failure> {
     let Opened { source, reading, options, blueprint, .. } =
         open(&call.scene, library, &call.set, call.allow_outside, call.json)?;
-    // What is wrong with it is told as `run` tells it. Explicit integrators call models tile by tile: the clock would be most of what it
-    // measures.
+    // Errors in it are reported as by `run`. Explicit integrators call models tile by tile, so the clock would be most of the measured time.
     let implicit = is_implicit(&*source.build(blueprint.clone(), &reading, &options)?);
     let spent = Arc::new(Spent::default());
     let models = if implicit { registries(library, &spent) } else { library.clone() };

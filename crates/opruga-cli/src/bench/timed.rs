@@ -1,4 +1,4 @@
-//! Models that count the time that integrators spend in them: each stands in the registry before the one that it wraps.
+//! Models that measure the time that integrators spend in them: each replaces the model that it wraps in the registry.
 
 use super::processor_time;
 use opruga::core::error::{BuildError, StepError};
@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub(crate) struct Spent {
     /// Forces and energies.
     pub(crate) forces: AtomicU64,
-    /// Second derivatives, and adding them to the matrix.
+    /// Second derivatives and their addition to the matrix.
     pub(crate) matrices: AtomicU64,
 }
 
@@ -37,7 +37,7 @@ fn count<T>(to: &AtomicU64, work: impl FnOnce() -> T) -> T {
     out
 }
 
-/// The models of registries, timed; everything else as it is.
+/// Registries with timed models; everything else is unchanged.
 pub(crate) fn registries(library: &Registries, spent: &Arc<Spent>) -> Registries {
     fn timed<const D: usize>(library: &Arc<Registry<D>>, spent: &Arc<Spent>) -> Arc<Registry<D>> {
         let mut out = Registry::clone(library);

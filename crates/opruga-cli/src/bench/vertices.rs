@@ -20,14 +20,14 @@ pub(crate) struct Row {
     threads: usize,
     simd: &'static str,
     integrator: String,
-    /// Median over the repetitions; processor time on one thread, wall time on several.
+    /// Median over the repetitions: processor time with one thread, wall time with several.
     nanoseconds_per_vertex_step: f64,
     steps_per_second: f64,
-    /// Frames of 16 steps, drawing included if it was asked for.
+    /// Frames of 16 steps, including drawing if it was requested.
     frames_per_second: f64,
-    /// What the world keeps on the heap.
+    /// Heap memory of the world.
     heap_bytes_per_vertex: f64,
-    /// Time of eight square roots and divisions in the same run: what this machine can do.
+    /// Time of eight square roots and divisions in the same run, which characterises the machine.
     calibration_nanoseconds: f64,
 }
 
@@ -47,7 +47,7 @@ pub(crate) const ROWS: [(usize, usize); 12] = [
     (27_778, 36),
 ];
 
-/// The row that `--only` names: `36` is one ring of 36 vertices, `1000x36` a thousand of them.
+/// The row that `--only` names: `36` is one ring of 36 vertices, `1000x36` is a thousand such rings.
 pub(crate) fn row(only: &str) -> Result<(usize, usize), Failure> {
     let (bodies, vertices) = only.split_once(['x', '×']).unwrap_or(("1", only));
     let asked = bodies.trim().parse().ok().zip(vertices.trim().parse().ok());
@@ -69,8 +69,8 @@ fn values(spec: &'static opruga::core::spec::Spec, fields: &[(&str, Value)]) -> 
     values
 }
 
-/// Rings as in the baseline: masses of 1 kg, edges of 0.1 m, k = 1600 N/m, c = 40 N·s/m, a gas that pulls every edge
-/// with 160 N at rest, a floor below. They start 60 m above it and are in flight while they are timed.
+/// Rings as in the baseline: masses of 1 kg, edges of 0.1 m, k = 1600 N/m, c = 40 N·s/m, a gas that pulls every edge with 160 N at rest, and a floor
+/// below. They start 60 m above it and are in flight while they are measured.
 pub(crate) fn rings(
     (bodies, vertices): (usize, usize),
     registry: &Registry<2>,
@@ -107,7 +107,7 @@ pub(crate) fn rings(
     Ok(scene)
 }
 
-/// Times one row; `draw` is called once a frame.
+/// Measures one row; `draw` is called once per frame.
 pub(crate) fn time(
     (bodies, vertices): (usize, usize),
     registries: &Registries,
@@ -128,7 +128,7 @@ pub(crate) fn time(
         let mut left = frames;
         while left > 0 {
             world.restore(&start).map_err(AnyMessage::from)?;
-            // The first frame meets memory that nobody has touched.
+            // The first frame uses memory that has not been accessed yet.
             world.frame().map_err(AnyMessage::from)?;
             let some = left.min(FLIGHT);
             let (wall, processor) = (Instant::now(), processor_time());
@@ -140,7 +140,7 @@ pub(crate) fn time(
         }
         Ok(elapsed)
     };
-    // A warm-up, and how many frames fill the time.
+    // A warm-up, and the number of frames that fill the time.
     fly(&mut world, 2)?;
     let frames = ((seconds / 5.0 / fly(&mut world, 2)? * 2.0) as usize).clamp(2, 1_000_000);
     let mut repetitions = Vec::new();
@@ -204,11 +204,11 @@ pub(crate) fn table(rows: &[Row]) -> String {
 }
 
 impl Row {
-    /// All vertices, and frames a second.
+    /// The total number of vertices, and frames per second.
     pub(crate) fn point(&self) -> (f64, f64) {
         ((self.bodies * self.vertices) as f64, self.frames_per_second)
     }
-    /// Bodies.
+    /// The number of bodies.
     pub(crate) fn bodies(&self) -> usize {
         self.bodies
     }

@@ -1,4 +1,4 @@
-//! What a sweep found, as text and as data.
+//! The findings of a sweep, as text and as data.
 
 use opruga::draw::format_value;
 use opruga::io::problem::visible;
@@ -6,21 +6,21 @@ use opruga::math::words::counted;
 use opruga::sweep::{Design, Row, Status, Sweep};
 use serde_json::json;
 
-/// What the table shows.
+/// The findings of a table.
 pub(super) struct Found<'a> {
     pub(super) sweep: &'a Sweep,
     pub(super) rows: &'a [Row],
     pub(super) length_unit: &'a str,
 }
 
-/// The lowest and the highest number of a metric, and the rows that have them.
+/// The lowest and the highest value of a metric, with their rows.
 struct Ends<'a> {
     lowest: (f64, &'a Row),
     highest: (f64, &'a Row),
 }
 
 impl Found<'_> {
-    /// The ends of a metric over some rows; none where no row has a number.
+    /// The extremes of a metric over some rows; none if no row has a value.
     fn ends<'r>(&self, metric: usize, rows: impl Iterator<Item = &'r Row>) -> Option<Ends<'r>> {
         rows.filter_map(|row| Some((row.numbers[metric]?, row))).fold(None, |ends, found| match ends {
             None => Some(Ends { lowest: found, highest: found }),
@@ -31,7 +31,7 @@ impl Found<'_> {
         })
     }
 
-    /// The rows in which a parameter varies; one after the other each has its own.
+    /// The rows in which a parameter varies: if parameters vary one at a time, each has its own rows.
     fn rows_of(&self, axis: usize) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(move |row| row.values[axis].is_some())
     }
@@ -82,7 +82,7 @@ impl Found<'_> {
         })
     }
 
-    /// A line for a metric over some rows.
+    /// Writes a line for a metric over some rows.
     pub(super) fn write_line(
         &self,
         f: &mut core::fmt::Formatter<'_>,

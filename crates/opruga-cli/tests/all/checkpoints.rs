@@ -1,5 +1,5 @@
-//! Checkpoints on the way: a run may be killed, stopped or kept from writing at any moment, and goes on with the same
-//! bits. The numbers are rows of a list of torments.
+//! Intermediate checkpoints: a run that is killed, stopped or kept from writing at any moment can be resumed with the same bits. The numbers are rows
+//! of the torture list.
 #![cfg(unix)]
 #![allow(clippy::disallowed_methods)] // no physics here
 
@@ -21,15 +21,15 @@ fn resume(folder: &Path, checkpoint: &str, seconds: &str, out: &str) -> Value {
     summary(folder, &[&arguments[..], &["--checkpoint-every", "0"]].concat())
 }
 
-/// A run that lasts until it is ended, and writes checkpoints every few milliseconds into `o`.
+/// A run that lasts until it is ended, and writes checkpoints to `o` every few milliseconds.
 fn endless(folder: &Path) -> Child {
     let arguments =
         ["run", "pressures", "--seconds", "1e6", "--no-pictures", "--out", "o", "--checkpoint-every", "0.01"];
     program(folder, &arguments).spawn().expect("the program runs")
 }
 
-/// Rows 79 to 81: killed at any moment, also in the middle of a checkpoint, a run leaves a whole checkpoint and the one
-/// before it; from both it goes on to the bits of a run that nobody has killed. The table reaches to the checkpoint.
+/// Rows 79 to 81: killed at any moment, even while a checkpoint is written, a run leaves an intact checkpoint and the previous one. Resumed from
+/// either, it gives the same bits as an uninterrupted run. The table extends to the checkpoint.
 #[test]
 fn a_run_that_is_killed_goes_on_from_a_whole_checkpoint() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -43,10 +43,10 @@ fn a_run_that_is_killed_goes_on_from_a_whole_checkpoint() {
         let checkpoint = folder.join("o/checkpoint");
         until("no checkpoint is written", || checkpoint.exists());
         if round % 2 == 1 {
-            // However slow the machine is, half of the runs have written two.
+            // However slow the machine is, half of the runs have written two checkpoints.
             until("no second checkpoint is written", || folder.join("o/checkpoint.previous").exists());
         }
-        // Microseconds, spread over the run without a pattern.
+        // Microseconds, spread irregularly over the run.
         std::thread::sleep(Duration::from_micros(round.wrapping_mul(7_919_777) % 60_000));
         let _ = child.kill();
         child.wait().expect("it ends");
@@ -74,14 +74,14 @@ fn a_run_that_is_killed_goes_on_from_a_whole_checkpoint() {
         }
     }
     assert!(on_the_way >= 8 && previous >= 4, "{on_the_way} checkpoints on the way, {previous} older ones");
-    // What was left half written is gone with the next run.
+    // Files that were left half written are removed by the next run.
     summary(folder, &[&LONG[..3], &["0", "--out", "o", "--force"]].concat());
     let names: Vec<String> = contents(&folder.join("o")).into_iter().map(|f| f.0).collect();
     assert_eq!(names, ["checkpoint", "diagnostics.csv", "final.csv", "summary.json"]);
 }
 
-/// A run that is killed long before its first checkpoint leaves the head of its table; the table of an earlier run stays as long
-/// as that run's checkpoint does.
+/// A run that is killed long before its first checkpoint leaves the header of its table; the table of an earlier run stays as long as its checkpoint
+/// does.
 #[test]
 fn a_run_has_the_head_of_its_table_from_the_start() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -104,7 +104,7 @@ fn a_run_has_the_head_of_its_table_from_the_start() {
     assert!(before.iter().all(|file| after.contains(file)), "the earlier run is whole");
 }
 
-/// What a run was called with, it is resumed with: its end, its changes of the scene, and what it was allowed.
+/// A run is resumed with the arguments with which it was started: its end, the changes of the scene, and the permissions.
 #[test]
 fn a_killed_run_is_resumed_as_it_was_called() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -114,12 +114,12 @@ fn a_killed_run_is_resumed_as_it_was_called() {
     let path = folder.join("mine.toml");
     let text = std::fs::read_to_string(&path).expect("a scene");
     std::fs::write(&path, text.replace("seed = 1 ", "sede = 1 ")).expect("a file");
-    // A hair above the stated limit, which keeps a margin to the true one.
+    // Slightly above the stated limit, which has a margin to the true one.
     let check = opruga(folder, &["check", "mine.toml", "--lenient", "--json"]);
     let check: Value = serde_json::from_slice(&check.stdout).expect("JSON");
     let limit = check["stability"][0]["largest_stable_step"].as_f64().expect("a limit");
     let frame = format!("time.frame={}", 1.005 * limit * 32.0);
-    // So long that it is killed on its way on a busy machine too.
+    // So long that it is killed before its end even on a busy machine.
     let call = ["run", "mine.toml", "--lenient", "--seconds", "20", "--set", &frame, "--allow-unstable"];
     let unstable = opruga(folder, &[&call[..7], &["--out", "u"]].concat());
     assert!(said(&unstable).contains("error[step.unstable]"), "{}", said(&unstable));
@@ -135,7 +135,7 @@ fn a_killed_run_is_resumed_as_it_was_called() {
     assert_eq!((hash(&rest), &rest["time"], &rest["h"]), (hash(&whole), &whole["time"], &whole["h"]));
 }
 
-/// Row 82: a damaged, missing or foreign checkpoint is refused, and the one before it is offered if it is whole.
+/// Row 82: a damaged, missing or foreign checkpoint is refused, and the previous one is offered if it is intact.
 #[test]
 fn a_damaged_checkpoint_offers_the_one_before_it() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -156,14 +156,14 @@ fn a_damaged_checkpoint_offers_the_one_before_it() {
         assert!(!folder.join("x").exists());
     };
     for bytes in [flipped, good[..good.len() - 1].to_vec(), b"notes".to_vec()] {
-        // A file of its own: for a moment the two names may mean the same one.
+        // It is a separate file: for a moment the two names may mean the same file.
         std::fs::remove_file(&path).expect("a file");
         std::fs::write(&path, &bytes).expect("a file");
         refused(true, 2);
     }
     std::fs::remove_file(&path).expect("a file");
     refused(true, 4);
-    // The offer is good; the message tells six digits of the time, that of a frame.
+    // The offer is valid; the message gives six digits of the time, which is that of a frame.
     let output = opruga(folder, &["run", "--resume", "o/checkpoint", "--out", "x"]);
     let time: f64 = said(&output)
         .split("at t = ")
@@ -178,8 +178,7 @@ fn a_damaged_checkpoint_offers_the_one_before_it() {
     );
 }
 
-/// A run into the folder that it goes on from keeps the checkpoint that it came from; a run of something else leaves none
-/// of another run behind.
+/// A run that is resumed in its own folder keeps the checkpoint from which it was resumed; a different run removes those of other runs.
 #[test]
 fn the_older_checkpoint_is_of_the_same_run() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -191,7 +190,7 @@ fn the_older_checkpoint_is_of_the_same_run() {
     let longer = resume(folder, "o/checkpoint", "0.2", "o");
     assert!(with_older(names()));
     assert!(longer["files"].as_array().expect("a list").contains(&"checkpoint.previous".into()));
-    // Going on from the older one, as its offer says, does not lose it to the newer.
+    // Resuming from the older one, as offered, does not replace it by the newer one.
     let again = resume(folder, "o/checkpoint.previous", "0.2", "o");
     assert_eq!(hash(&again), hash(&longer));
     assert!((again["resumed_at"].as_f64().expect("a time") - 0.1).abs() < 1e-12);
@@ -200,8 +199,7 @@ fn the_older_checkpoint_is_of_the_same_run() {
     assert!(!with_older(names()));
 }
 
-/// Rows 83 and 91: a checkpoint on the way that cannot be written is told and counted; the run lasts, and the next one
-/// succeeds.
+/// Rows 83 and 91: an intermediate checkpoint that cannot be written is reported and counted; the run continues, and the next one succeeds.
 #[test]
 fn a_checkpoint_that_cannot_be_written_does_not_end_the_run() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -209,7 +207,7 @@ fn a_checkpoint_that_cannot_be_written_does_not_end_the_run() {
     let child = endless(folder);
     let checkpoint = folder.join("o/checkpoint");
     until("no checkpoint is written", || checkpoint.is_file());
-    // A folder in its place, until one checkpoint has failed.
+    // A folder has its name until one checkpoint has failed.
     until("the place is never free", || {
         let _ = std::fs::remove_file(&checkpoint);
         std::fs::create_dir(&checkpoint).is_ok()
@@ -228,8 +226,8 @@ fn a_checkpoint_that_cannot_be_written_does_not_end_the_run() {
     assert!(warning["count"].as_u64().is_some_and(|n| n >= 1), "{warning}");
 }
 
-/// Row 88: a clock that jumps, here because the process is stopped as a laptop is put to sleep, changes no simulated time
-/// and no bits; nor does the rhythm of the checkpoints.
+/// Row 88: a clock that jumps, here because the process is stopped as on a sleeping laptop, changes neither the simulated time nor any bits; nor does
+/// the interval of the checkpoints.
 #[test]
 fn a_run_that_is_put_to_sleep_computes_the_same() {
     let folder = tempfile::tempdir().expect("a folder");

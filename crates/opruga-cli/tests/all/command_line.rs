@@ -1,4 +1,4 @@
-//! The program as its users meet it: files, exit codes, errors, interruption.
+//! The program as its users see it: files, exit codes, errors, interruption.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use crate::common;
@@ -147,7 +147,7 @@ fn errors_have_their_exit_codes_and_leave_old_files_whole() {
     for key in ["code", "message", "file", "line", "column", "path", "value", "allowed", "hint"] {
         assert!(error.get(key).is_some(), "the error lacks {key}");
     }
-    // What an error does not have is null.
+    // Missing parts of an error are null.
     for (arguments, absent) in [
         (&["run", "ball", "--fps", "-3", "--json"][..], &["file", "line", "column", "path", "value"][..]),
         (&["check", "bad.toml", "--json"], &[]),
@@ -247,7 +247,7 @@ fn an_interrupted_run_closes_its_files_and_says_so() {
     }
 }
 
-/// A frame of a million steps of 100,000 vertices goes on for minutes.
+/// A frame of a million steps with 100,000 vertices takes minutes.
 #[cfg(unix)]
 #[test]
 fn a_second_signal_ends_a_long_step_at_once() {
@@ -261,7 +261,7 @@ fn a_second_signal_ends_a_long_step_at_once() {
         .expect("the program runs");
     let id = child.id().to_string();
     let interrupt = || Command::new("kill").args(["-INT", &id]).status();
-    // Its table is there once it looks at signals.
+    // Its table exists once it handles signals.
     while !folder.path().join("o/diagnostics.csv").exists() {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
@@ -287,8 +287,8 @@ fn a_full_disk_is_an_error_of_writing() {
     assert_eq!(output.status.code(), Some(4), "{}", said(&output));
 }
 
-/// A kind that exists in the plane and in space stands once: links to headings lead to one place, and a table fits one of
-/// the alternatives of the schema.
+/// A kind that exists in the plane and in space occurs once: links to headings have one target, and a table matches one of the alternatives of the
+/// schema.
 #[test]
 fn every_kind_stands_once_in_the_reference_and_in_the_schema() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -370,7 +370,7 @@ fn bodies_that_commands_add_have_columns_of_their_own() {
     }
 }
 
-/// The fields of the scene's integrator that statics does not have are left out, the others are kept.
+/// The fields of the scene's integrator that statics does not have are dropped, the others are kept.
 #[test]
 fn modes_about_the_equilibrium_keep_what_statics_understands() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -386,7 +386,7 @@ fn modes_about_the_equilibrium_keep_what_statics_understands() {
             &["modes", "bar.toml", "-n", "2", "--equilibrium", "--json", "--force", "--out", "o", "--set", set],
         )
     };
-    // One iteration does not lead from the line to the chain that hangs.
+    // One iteration is not enough from the straight line to the hanging chain.
     let refused = call("integrator.iterations=1");
     assert!(code(&refused) != 0 && said(&refused).contains("did not converge in 1 iteration at"), "{}", said(&refused));
     let output = call("integrator.iterations=200");

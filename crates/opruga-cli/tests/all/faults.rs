@@ -1,5 +1,5 @@
-//! Faults from outside and what the program promises: exit codes, texts, and that nothing old is lost.
-//! The numbers are rows of a list of torments: 16–18 sizes, 49–58 parameters, 79–88 files and signals.
+//! External faults and the guarantees of the program: exit codes, texts, and that nothing old is lost. The numbers are rows of the torture list:
+//! 16–18 sizes, 49–58 parameters, 79–88 files and signals.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use crate::common;
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 const SHORT: [&str; 6] = ["run", "pressures", "--seconds", "0.1", "--no-pictures", "--out"];
 
-/// A run that lasts until it is ended; returns once it steps.
+/// A run that lasts until it is ended; returns once it is stepping.
 fn endless(folder: &Path, more: &[&str]) -> Child {
     let arguments = [&["run", "thousand-balls", "--seconds", "1e6", "--no-pictures"], more].concat();
     let child = program(folder, &arguments).spawn().expect("the program runs");
@@ -25,7 +25,7 @@ fn endless(folder: &Path, more: &[&str]) -> Child {
     child
 }
 
-/// Rows 79 and 80: killed in mid run, what was there before is whole, and the next run needs no cleaning up.
+/// Rows 79 and 80: if a run is killed, earlier files stay intact, and the next run needs no cleaning up.
 #[cfg(unix)]
 #[test]
 fn kill_9_leaves_old_files_whole() {
@@ -38,7 +38,7 @@ fn kill_9_leaves_old_files_whole() {
         child.wait().expect("it ends");
         assert_eq!(contents(&folder.path().join("o")), before);
     }
-    // A resumed run does not replace what it goes on from, unless it is asked to.
+    // A resumed run does not replace the files that it was resumed from, unless asked to.
     let resumed = ["run", "--resume", "o/checkpoint", "--seconds", "0.2", "--no-pictures", "--out", "o"];
     assert_eq!(code(&opruga(folder.path(), &resumed)), 4);
     assert_eq!(contents(&folder.path().join("o")), before);
@@ -77,7 +77,7 @@ fn damaged_checkpoints_are_refused() {
     }
 }
 
-/// Row 83: the disk is full at any file, here by a limit on the size of files.
+/// Row 83: the disk is full at any file, simulated by a limit of file sizes.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_no_half_file() {
@@ -94,14 +94,14 @@ fn a_full_disk_leaves_no_half_file() {
         assert_eq!(code(&output), 4, "{kilobytes}: {}", said(&output));
         assert!(said(&output).contains("error[write."), "{}", said(&output));
         assert!(!said(&output).contains("panicked"), "{}", said(&output));
-        // Every name is a whole file, none is left aside, and those of two runs are never mixed.
+        // Every name is a complete file, no temporary file is left, and files of two runs are never mixed.
         let now = contents(&folder.path().join("o"));
         assert!(!now.is_empty());
         let names: Vec<&str> = now.iter().map(|file| file.0.as_str()).collect();
         let of = |run: &[(String, Vec<u8>)]| now.iter().all(|file| run.contains(file));
         assert!(now == before || of(&after), "{kilobytes}: {names:?} are neither the old run's nor the new one's");
     }
-    // A device that is full, where there is one.
+    // A device that is full, if the system has one.
     if Path::new("/dev/full").exists() {
         for arguments in [&["reference"][..], &["list"], &["list", "--json"], &["--help"]] {
             let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a full device");
@@ -116,7 +116,7 @@ fn a_full_disk_leaves_no_half_file() {
     }
 }
 
-/// Row 84: paths that cannot be written are found before the run, within a second of a scene that would take hours.
+/// Row 84: paths that cannot be written are found before the run, within a second for a scene that would take hours.
 #[test]
 fn bad_output_paths_are_found_before_the_run() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -134,7 +134,7 @@ fn bad_output_paths_are_found_before_the_run() {
         use std::os::unix::fs::PermissionsExt as _;
         std::fs::set_permissions(&locked, std::fs::Permissions::from_mode(0o555)).expect("permissions");
     }
-    // Whoever may write everywhere (root) is not kept out by permissions.
+    // A user who may write everywhere (root) is not stopped by permissions.
     let trial = locked.join("trial");
     if std::fs::write(&trial, b"x").is_err() {
         cases.push(("locked", "error[write.folder]"));
@@ -155,7 +155,7 @@ fn bad_output_paths_are_found_before_the_run() {
     }
 }
 
-/// Row 85: what is there stays without --force; all of it, and the text says how to go on.
+/// Row 85: existing files stay without --force, all of them, and the text says how to continue.
 #[test]
 fn old_output_is_not_replaced_unasked() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -170,7 +170,7 @@ fn old_output_is_not_replaced_unasked() {
     );
     assert_eq!(contents(&folder.path().join("o")), before);
     assert_eq!(code(&opruga(folder.path(), &[&SHORT[..], &["o", "--force"]].concat())), 0);
-    // A foreign file in the folder is no output of ours, but it is somebody's.
+    // A foreign file in the folder is not our output, but it belongs to somebody.
     std::fs::create_dir(folder.path().join("p")).expect("a folder");
     std::fs::write(folder.path().join("p/thesis.tex"), b"years of work").expect("a file");
     let output = opruga(folder.path(), &[&SHORT[..], &["p"]].concat());
@@ -181,7 +181,7 @@ fn old_output_is_not_replaced_unasked() {
     assert_eq!(std::fs::read(folder.path().join("p/thesis.tex")).expect("still there"), b"years of work");
 }
 
-/// Rows 86 and 87: two runs into one folder; SIGINT, SIGTERM and SIGHUP close the files, also of a run that is resumed.
+/// Rows 86 and 87: two runs in one folder; SIGINT, SIGTERM and SIGHUP close the files, also of a resumed run.
 #[cfg(unix)]
 #[test]
 fn signals_close_the_files_and_a_folder_has_one_writer() {
@@ -214,7 +214,7 @@ fn signals_close_the_files_and_a_folder_has_one_writer() {
     }
 }
 
-/// Row 87: whoever reads goes away.
+/// Row 87: the reader closes the pipe.
 #[test]
 fn closed_pipes_are_no_failure() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -238,7 +238,7 @@ fn closed_pipes_are_no_failure() {
     assert_eq!(child.wait().expect("it ends").code(), Some(4));
 }
 
-/// Rows 4, 9 and 18: what a scene would cost is said before anything is allocated: at once, with little memory.
+/// Rows 4, 9 and 18: the cost of a scene is reported before anything is allocated: at once, and with little memory.
 #[test]
 fn limits_are_checked_before_memory_is_taken() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -279,7 +279,7 @@ fn limits_are_checked_before_memory_is_taken() {
     for (text, expected) in cases {
         std::fs::write(folder.path().join("b.toml"), &text).expect("a file");
         let start = Instant::now();
-        // 1 GiB of address space is all that there is.
+        // Only 1 GiB of address space is available.
         let output = if cfg!(target_os = "linux") {
             let call = format!("ulimit -v 1048576; exec {} run b.toml --out o", env!("CARGO_BIN_EXE_opruga"));
             Command::new("bash").args(["-c", &call]).current_dir(folder.path()).output().expect("a shell")
@@ -294,7 +294,7 @@ fn limits_are_checked_before_memory_is_taken() {
     }
 }
 
-/// Rows 49, 50, 56 and calls that make no sense: exit code 2 and the text.
+/// Rows 49, 50, 56 and invalid calls: exit code 2 and the text.
 #[test]
 fn calls_that_make_no_sense_are_explained() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -306,7 +306,7 @@ fn calls_that_make_no_sense_are_explained() {
             run("time.frame=1e6"),
             "error[step.unstable]: the step h = 25000 s of `symplectic_euler` is unstable for body `soft`",
         ),
-        // So many substeps as that would take are not offered.
+        // The number of substeps that it would need is too large to be offered.
         (
             run("time.frame=1e6"),
             "= hint: a frame has at most 1000000 substeps: a shorter one, a softer or heavier body, or another integrator",
@@ -341,7 +341,7 @@ fn calls_that_make_no_sense_are_explained() {
     }
 }
 
-/// Bodies that are taken away or come later keep the columns of the others in their places, to the end of the table.
+/// If bodies are removed or added later, the columns of the others stay where they are, to the end of the table.
 #[test]
 fn columns_stay_apart_when_bodies_come_and_go() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -366,15 +366,15 @@ fn columns_stay_apart_when_bodies_come_and_go() {
     assert!(rows.iter().all(|r| r.len() == rows[0].len()));
     assert_eq!(rows.len(), 1 + 13);
     assert!(number(1, "p.x").abs() < 1e-9 && (number(1, "q.x") - 5.0).abs() < 1e-9);
-    // From 0.05 s on `a` is gone, from 0.15 s on `b` is.
+    // From 0.05 s on `a` does not exist, from 0.15 s on `b` exists.
     let (middle, last) = (8, 13);
     assert!(number(middle, "p.x").is_nan() && (number(middle, "q.x") - 5.0).abs() < 1e-9);
     assert!(number(middle, "a.volume").is_nan() && number(middle, "b.volume") > 0.7);
     assert!(number(last, "q.x").is_nan() && number(last, "b.volume").is_nan());
 }
 
-/// Row 88: the length of a run and its results come from the scene, not from a clock; row 81 with commands that change
-/// the scene on the way, through the checkpoint.
+/// Row 88: the length of a run and its results are determined by the scene, not by a clock; row 81 with commands that change the scene during the
+/// run, through the checkpoint.
 #[test]
 fn a_resumed_run_knows_what_commands_have_changed() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -404,7 +404,7 @@ fn a_resumed_run_knows_what_commands_have_changed() {
     }
 }
 
-/// Row 17: a scene without bodies, and one that loses them all, run with pictures; time passes, nothing has energy.
+/// Row 17: a scene without bodies, and one that loses all of them, run with pictures; time passes, and the energy is zero.
 #[test]
 fn scenes_without_bodies_run() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -437,7 +437,7 @@ fn scenes_without_bodies_run() {
     }
 }
 
-/// Rows 84 and 112: names that are no UTF-8, and streams that are closed from the beginning.
+/// Rows 84 and 112: names that are not UTF-8, and streams that are closed from the start.
 #[cfg(target_os = "linux")]
 #[test]
 fn odd_names_and_closed_streams() {

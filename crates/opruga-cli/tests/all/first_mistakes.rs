@@ -1,4 +1,4 @@
-//! Mistakes of the first hour: what the program says of them, in sentences and numbers that people read.
+//! Mistakes of the first hour: the program reports them in readable sentences and numbers.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use crate::common;
@@ -6,7 +6,7 @@ use common::*;
 use serde_json::Value;
 use std::path::Path;
 
-/// A scene of one body, with its shape and model, and a place for more lines.
+/// A scene of one body, with its shape and model, and space for more lines.
 fn scene(dimension: u32, body: &str, more: &str) -> String {
     format!(
         "format = \"opruga-1\"\ndimension = {dimension}\n[time]\nseconds = 0.1\nsubsteps = 20\n[integrator]\nkind = \"verlet\"\n\
@@ -22,7 +22,7 @@ fn write(folder: &Path, text: &str) {
     std::fs::write(folder.join("s.toml"), text).expect("a file");
 }
 
-/// A body that begins inside an obstacle is told of with the obstacle, the depth and the shift that frees it; the shift does.
+/// A body that begins inside an obstacle is reported with the obstacle, the depth and the displacement that frees it; that displacement works.
 #[test]
 fn a_body_that_begins_inside_an_obstacle_is_told_of() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -33,7 +33,7 @@ fn a_body_that_begins_inside_an_obstacle_is_told_of() {
     let line = all.lines().find(|l| l.contains("contact.starts_inside")).unwrap_or_else(|| panic!("it is told: {all}"));
     assert!(line.contains("body `it` begins inside obstacle 0 (half_space)"), "{line}");
     assert!(line.contains("deepest by 0.1 m") && line.contains("moved by (0, 0.1) m it would be free"), "{line}");
-    // The run tells it before it begins, once, and counts it.
+    // The run reports it once, before it begins, and counts it.
     let output = opruga(folder.path(), &["run", "s.toml", "--no-pictures", "--out", "a"]);
     assert_eq!(said(&output).matches("contact.starts_inside").count(), 1, "{}", said(&output));
     assert!(said(&output).starts_with("warning[contact.starts_inside]"), "{}", said(&output));
@@ -49,7 +49,7 @@ fn a_body_that_begins_inside_an_obstacle_is_told_of() {
     );
     let freed = opruga(folder.path(), &["check", "s.toml", "--strict", "--set", "body.it.position=[0, 0.1]"]);
     assert_eq!(code(&freed), 0, "{}", said(&freed));
-    // Held nodes stay where they are, and copies are told of once.
+    // Pinned nodes stay where they are, and copies are reported once.
     let held =
         opruga(folder.path(), &["check", "s.toml", "--strict", "--set", "body.it.pin=[{ select = { all = true } }]"]);
     assert_eq!(code(&held), 0, "{}", said(&held));
@@ -61,7 +61,7 @@ fn a_body_that_begins_inside_an_obstacle_is_told_of() {
     assert!(copies.contains("`it[4]`") && copies.contains("by 0.14 m") && copies.contains("(5 times)"), "{copies}");
 }
 
-/// The shift frees a body from any obstacle: inside a box, in the corner of a room, across a ball, in a convex block.
+/// The displacement frees a body from any obstacle: inside a box, in the corner of a room, across a ball, in a convex block.
 #[test]
 fn the_shift_out_of_an_obstacle_frees_the_body() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -85,7 +85,7 @@ fn the_shift_out_of_an_obstacle_frees_the_body() {
     }
 }
 
-/// What an override has caused is told as the fault of that override, and else at the field that is meant.
+/// An error that an override has caused is reported for that override, otherwise for the field in question.
 #[test]
 fn an_override_that_a_model_refuses_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -105,7 +105,7 @@ fn an_override_that_a_model_refuses_is_named() {
     assert!(said(&output).starts_with(&format!("s.toml:{line}:")), "{}", said(&output));
 }
 
-/// An error of a turn says what is wanted, with an example.
+/// The error about a rotation says what is expected, with an example.
 #[test]
 fn a_rotation_that_is_none_is_explained() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -123,7 +123,7 @@ fn a_rotation_that_is_none_is_explained() {
     assert!(said(&output).contains("the angle in radians, counter-clockwise"), "{}", said(&output));
 }
 
-/// What is offered instead of an unknown word exists in the dimension of the scene, each word once.
+/// The words suggested for an unknown one exist in the dimension of the scene, each once.
 #[test]
 fn words_of_the_other_dimension_are_not_offered() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -140,7 +140,7 @@ fn words_of_the_other_dimension_are_not_offered() {
     }
 }
 
-/// A name that is near to several scenes brings the nearest of them, not the first.
+/// For a name that is similar to several scenes, the nearest of them are suggested, not the first.
 #[test]
 fn all_near_names_are_offered() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -150,7 +150,7 @@ fn all_near_names_are_offered() {
         said(&output).lines().find(|l| l.contains("hint")).unwrap_or_default().to_string()
     };
     let near = hint("ballon");
-    // Both are two letters away, one of them up to a part of its name.
+    // Both differ by two letters, one of them only from a part of its name.
     assert!(
         near.starts_with("  = hint: did you mean `balloon-press`, `balloons`") && near.contains("`ball`"),
         "{near}"
@@ -160,7 +160,7 @@ fn all_near_names_are_offered() {
     assert_eq!(hint("presures"), "  = hint: did you mean `pressures`?");
 }
 
-/// Times and energies in sentences have the digits that people read, whatever the run does.
+/// Times and energies in sentences have a readable number of digits, whatever the run does.
 #[test]
 fn numbers_of_messages_are_short() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -170,7 +170,7 @@ fn numbers_of_messages_are_short() {
         "[[command]]\ndo = \"set\"\nat = 0.05\npath = \"body.it.models.mass_spring.stiffness\"\nvalue = -1\n",
     );
     write(folder.path(), &text);
-    // A step that blows up: energies of many digits.
+    // A step that diverges: energies of many digits.
     let arguments = [
         "run",
         "s.toml",
@@ -194,7 +194,7 @@ fn numbers_of_messages_are_short() {
     for word in all.split(|c: char| !(c.is_ascii_digit() || c == '.')) {
         assert!(word.len() <= 12, "{word}: {all}");
     }
-    // A command that is refused says once when it was.
+    // A command that is refused gives its time once.
     let late = scene(
         2,
         RING,
@@ -205,11 +205,11 @@ fn numbers_of_messages_are_short() {
     assert!(said(&output).matches("t = ").count() <= 1, "{}", said(&output));
 }
 
-/// Frequencies are printed as people write them; a mode that grows has an imaginary one.
+/// Frequencies are printed in readable form; a growing mode has an imaginary one.
 #[test]
 fn frequencies_are_read_by_people_and_an_unstable_mode_is_called_so() {
     let folder = tempfile::tempdir().expect("a folder");
-    // Pressed springs in a row between two walls give way sideways.
+    // Compressed springs in a row between two walls buckle sideways.
     let chain = "shape = { kind = \"line\", from = [0, 0], to = [1, 0], segments = 4 }\npin = [{ select = { nodes = [0, 4] } }]\n\
                  models = [{ kind = \"mass_spring\", stiffness = 900.0, rest_scale = 1.2 }]";
     write(folder.path(), &scene(2, chain, ""));
@@ -226,7 +226,7 @@ fn frequencies_are_read_by_people_and_an_unstable_mode_is_called_so() {
         "{rows}"
     );
     assert!(folder.path().join("o/modes.png").is_file());
-    // Without a load nothing resists them sideways, and what rounding makes of that is no growth.
+    // Without a load nothing resists lateral displacements, and the rounding error of that is not a growing mode.
     let slack = ["modes", "s.toml", "-n", "4", "--out", "p", "--set", "body.it.models.mass_spring.rest_scale=1"];
     let output = opruga(folder.path(), &slack);
     let all = printed(&output);
@@ -234,7 +234,7 @@ fn frequencies_are_read_by_people_and_an_unstable_mode_is_called_so() {
     assert!(all.matches("nothing resists it").count() == 3 && !all.contains("unstable"), "{all}");
 }
 
-/// A run that takes minutes says so after its first frames, and what would make it shorter.
+/// A run that takes minutes reports this after its first frames, with ways to make it shorter.
 #[test]
 fn a_long_run_says_how_long_it_will_take() {
     use std::io::{BufRead as _, BufReader};
@@ -243,7 +243,7 @@ fn a_long_run_says_how_long_it_will_take() {
     let call =
         ["run", "s.toml", "--no-pictures", "--seconds", "1e6", "--out", "o", "--set", "integrator=backward_euler"];
     let mut run = program(folder.path(), &call).spawn().expect("it runs");
-    // It comes before the first of the lines that tell every ten seconds how far the run is.
+    // It precedes the first of the progress lines, which come every ten seconds.
     let mut all = String::new();
     for line in BufReader::new(run.stderr.take().expect("its talk")).lines() {
         all += &(line.expect("text") + "\n");
@@ -267,7 +267,7 @@ fn a_long_run_says_how_long_it_will_take() {
     }
 }
 
-/// What a world refuses is shown at the parameter that it is about, with its value; how bodies are called changes nothing.
+/// An error of the world is located at the parameter that it is about, with its value, whatever the names of bodies are.
 #[test]
 fn what_a_world_refuses_is_shown_at_its_parameter_whatever_bodies_are_called() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! Pictures of the documentation are what the program draws today; `cargo xtask gallery --check` compares all of them.
+//! Pictures of the documentation are equal to what the program draws now; `cargo xtask gallery --check` compares all of them.
 
 use crate::common;
 use common::*;
@@ -14,7 +14,7 @@ fn pixels(path: &Path) -> ([u32; 2], Vec<u8>) {
     ([info.width, info.height], found)
 }
 
-/// In the plane and in space, with a credit, a drawing, stresses, pins and pulls among them.
+/// In the plane and in space, including a credit, a drawing, stresses, pins and pulls.
 #[test]
 fn a_few_pictures_of_the_documentation_are_what_is_drawn_today() {
     let documented = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../docs/pictures");

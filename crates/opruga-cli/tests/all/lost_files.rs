@@ -1,4 +1,4 @@
-//! No call loses a file that it reads, or one of its outputs to another, whatever `--force` allows; and what killed processes leave goes.
+//! No call loses a file that it reads, or one of its outputs to another one, whatever `--force` allows; and files of killed processes are removed.
 
 use crate::common;
 
@@ -21,7 +21,7 @@ models = [{ kind = "mass_spring", stiffness = 10.0 }]
 const DRAWING: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10"><path d="M0 0H10V10H0Z"/></svg>"#;
 const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
-/// Calls that are refused with this code, before anything is computed or made, and leave everything as it was.
+/// Calls that are refused with this code, before anything is computed or created, and change nothing.
 fn refused(at: &Path, word: &str, calls: &[&[&str]]) {
     for call in calls {
         let before = contents_below(at);
@@ -89,7 +89,7 @@ fn no_run_replaces_its_scene_a_file_that_this_names_or_one_of_its_outputs() {
             &["run", "s.toml", "--force", "--out", "folder", "--record", "folder/../folder/checkpoint"],
         ],
     );
-    // What is no input may be replaced.
+    // A file that is not an input may be replaced.
     let out = ["run", "s.toml", "--no-pictures", "--out", "o", "--record", "o/run.rec", "--force"];
     for _ in 0..2 {
         let output = opruga(at, &out);
@@ -99,7 +99,7 @@ fn no_run_replaces_its_scene_a_file_that_this_names_or_one_of_its_outputs() {
     refused(at, "write.input", &[&onto]);
     std::fs::rename(at.join("o/run.rec"), at.join("folder/run.glb")).expect("another name");
     refused(at, "write.input", &[&["replay", "folder/run.glb", "--gltf", "--force", "--out", "folder"]]);
-    // A run goes on in its own folder, as it always could.
+    // A run can be resumed in its own folder, as always.
     let output = opruga(at, &go_on(&["--resume", "o/checkpoint", "--out", "o"]));
     assert_eq!(code(&output), 0, "{}", said(&output));
     assert!(at.join("o/checkpoint.previous").is_file());
@@ -143,8 +143,8 @@ fn no_mesh_replaces_its_input_and_no_picture_its_mesh() {
     assert!(at.join("q.msh").is_file() && at.join("q.msh.png").is_file());
 }
 
-/// A killed run leaves a lock and a half written checkpoint: the next run in the folder removes them, also where it is refused; what a living
-/// process writes stays.
+/// A killed run leaves a lock and a half-written checkpoint. The next run in the folder removes them, even if it is refused; files that a living
+/// process writes stay.
 #[test]
 fn what_a_killed_process_leaves_goes_with_the_next_one() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -155,7 +155,7 @@ fn what_a_killed_process_leaves_goes_with_the_next_one() {
     until("a checkpoint", || out.join("checkpoint").is_file());
     child.kill().expect("it is killed");
     child.wait().expect("it ends");
-    // As a kill in the middle of a write leaves it.
+    // As a kill during a write leaves it.
     std::fs::write(out.join(".checkpoint.7.writing"), "half").expect("a file");
     assert!(out.join(".opruga-lock").exists());
     let living = std::fs::File::create(out.join(".other.msh.8.writing")).expect("a file");
@@ -173,7 +173,7 @@ fn what_a_killed_process_leaves_goes_with_the_next_one() {
     let output = opruga(at, &["run", "ball", "--seconds=0", "--no-pictures", "--out=o", "--force"]);
     assert_eq!(code(&output), 0, "{}", said(&output));
     assert!(hidden().is_empty(), "{:?}", hidden());
-    // Beside single files too.
+    // Next to single files as well.
     std::fs::write(at.join("in.obj"), TETRAHEDRON).expect("a file");
     std::fs::write(at.join(".q.msh.7.writing"), "half").expect("a file");
     let output = opruga(at, &["mesh", "in.obj", "--size=0.06", "-o", "q.msh"]);

@@ -1,4 +1,4 @@
-//! `opruga material`: what a law says at one deformation gradient.
+//! `opruga material`: the results of a law at one deformation gradient.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use crate::common;
@@ -32,7 +32,7 @@ fn energy_stress_and_tangent_of_hookes_law_are_those_of_the_textbook() {
     close(number(&space["tangent"][0][4]), lambda);
     close(number(&space["tangent"][1][3]), mu);
     assert_eq!((space["setting"].as_str(), space["stretch_across"].as_f64()), (Some("space"), None));
-    // A plate is softer: E/(1 − ν²), and thins by ν/(1 − ν) of the strain.
+    // A plate is softer in plane stress: E/(1 − ν²), and its thickness decreases by ν/(1 − ν) of the strain.
     let plate = told(&["linear", "--F", "[[1.1, 0], [0, 1]]", "--E", "1e3", "--nu", "0.25", "--plane", "stress"]);
     close(number(&plate["stress"][0][0]), e / (1.0 - nu * nu) * strain);
     close(number(&plate["tangent"][0][0]), e / (1.0 - nu * nu));
@@ -83,7 +83,7 @@ fn people_read_the_parameters_and_both_tables() {
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }
-    // Heads and rows of the tangent.
+    // Headers and rows of the tangent.
     assert_eq!(text.lines().filter(|line| line.trim_start().starts_with("xy ")).count(), 1, "{text}");
 }
 
@@ -99,7 +99,7 @@ fn what_makes_no_sense_is_refused_with_what_is_allowed() {
         (&["neo_hookean", "--F", "1,0,0,1", "--set", "mooney_share=0.1"], "scene.unknown_field", "E and ν are all"),
         (&["mooney_rivlin", "--F", "1,0,0,1", "--set", "mooney_share=0.9"], "model.not_convex", "at most 0.7"),
         (&["linear", "--F", "1,0,0,0,1,0,0,0,1", "--plane", "stress"], "scene.dimension", "4 numbers"),
-        // No thickness is without stress across where a plate is turned inside out.
+        // For an inverted plate, no thickness makes the transverse stress zero.
         (
             &["stable_neo_hookean", "--F", "-1,0,0,1", "--plane", "stress", "--nu", "0.45"],
             "model.no_value",

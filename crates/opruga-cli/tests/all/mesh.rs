@@ -1,4 +1,4 @@
-//! `opruga mesh` as its users meet it: surfaces and drawings filled, meshes told of and written in other formats.
+//! `opruga mesh` as its users see it: surfaces and drawings filled, meshes described and converted to other formats.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use std::path::Path;
@@ -43,15 +43,15 @@ fn a_surface_becomes_tetrahedra_with_a_picture_and_goes_from_format_to_format() 
     let png = std::fs::read(folder.path().join("spot.msh.png")).expect("a picture");
     assert!(png.starts_with(b"\x89PNG") && png.len() > 20_000);
 
-    // What was written is not replaced; through all formats it stays the same mesh.
+    // An existing output is not replaced; through all formats the mesh stays the same.
     assert_eq!(code(&run(&["mesh", "spot.obj", "--size", "0.15", "-o", "spot.msh"])), 4);
-    // All files of a call or none: a picture that is in the way leaves no mesh behind.
+    // All files of a call or none: if a picture is in the way, no mesh is written.
     std::fs::write(folder.path().join("other.vtk.png"), "mine").expect("a file");
     let refused = run(&["mesh", "spot.msh", "-o", "other.vtk"]);
     assert_eq!(code(&refused), 4, "{}", text(&refused.stderr));
     assert!(text(&refused.stderr).contains("other.vtk.png"), "{}", text(&refused.stderr));
     assert!(!folder.path().join("other.vtk").exists());
-    // The second format of a mesh lies beside the first, each with its picture.
+    // The second format of a mesh is written next to the first, each with its picture.
     let beside = json(&run(&["mesh", "spot.msh", "-o", "spot.vtk", "--json"]));
     assert_eq!(beside["files"], serde_json::json!(["spot.vtk", "spot.vtk.png"]));
     let mut from = "spot.msh".to_string();
@@ -80,7 +80,7 @@ fn a_drawing_becomes_triangles() {
     assert!(folder.path().join("heart.vtk.png").is_file());
 }
 
-/// What a scene can choose of a file, the call can choose too: a layer and a feature of a map, an element of a drawing, a text in a font.
+/// The call can choose the same parts of a file as a scene: a layer and a feature of a map, an element of a drawing, a text in a font.
 #[test]
 fn parts_of_files_are_chosen_as_in_scenes() {
     let folder = folder();
@@ -98,7 +98,7 @@ fn parts_of_files_are_chosen_as_in_scenes() {
     };
     assert!((measure("two.svg", &["path=b"]) - 0.5).abs() < 1e-9);
     assert!((measure("two.svg", &["path=a"]) - 1.0).abs() < 1e-9);
-    // The areas that the scenes of these shapes have, within what their spacing leaves out.
+    // The areas that the scenes of these shapes have, up to the details that their spacing omits.
     let near = |found: f64, wanted: f64| assert!((found / wanted - 1.0).abs() < 0.02, "{found}, not {wanted}");
     near(measure("countries-110m.json", &["layer=countries", "feature=Italy"]), 0.23453);
     near(measure("countries-110m.json", &["layer=countries", "feature=\"South Africa\""]), 0.47180);
@@ -107,13 +107,13 @@ fn parts_of_files_are_chosen_as_in_scenes() {
         &["mesh", "inter-black-subset.otf", "--size", "0.01", "--scale-to", "1", "--set", "text=OPRUGA", "--json"],
     ));
     near(word["measure"].as_f64().expect("an area"), 0.09967);
-    // A map of several layers asks for one, in the words of the call.
+    // A map with several layers requires a choice, and the message uses the terms of the call.
     let told = opruga(folder.path(), &["mesh", "countries-110m.json", "--size", "0.02", "--scale-to", "1"]);
     let said = text(&told.stderr);
     assert!(code(&told) == 2 && said.contains("name one by --set layer=…") && said.contains("countries"), "{said}");
 }
 
-/// What tetrahedra cut off a surface is told in figures, with a size that keeps it; too much of it is an error.
+/// The volume that tetrahedra cut off a surface is reported with numbers and with a size that avoids it; a large loss is an error.
 #[test]
 fn a_filling_that_loses_volume_is_told_and_refused_where_it_is_much() {
     let folder = folder();
@@ -133,7 +133,7 @@ fn calls_that_make_no_sense_and_bad_files_are_told_with_what_would_help() {
     let folder = folder();
     std::fs::write(folder.path().join("cut.msh"), "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n").expect("a file");
     std::fs::write(folder.path().join("box.mesh"), "MFEM mesh v1.0\ndimension\n3\n").expect("a file");
-    // Words of a file are quoted as they are, though fields of shapes have the same names.
+    // Words of a file are quoted as they are, even if fields of shapes have the same names.
     let facet = "solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nv";
     std::fs::write(folder.path().join("k.stl"), facet).expect("a file");
     let empty = "MFEM mesh v1.0\ndimension\n3\nboundary\n1\n3 2 0 2 1\nvertices\n3\n3\n0 0 0\n1 0 0\n0 1 0\n";
@@ -168,7 +168,7 @@ fn calls_that_make_no_sense_and_bad_files_are_told_with_what_would_help() {
     }
 }
 
-/// Errors of the command speak of the file and its options, not of a scene that nobody has written.
+/// Errors of the command refer to the file and its options, not to a scene that does not exist.
 #[test]
 fn errors_of_mesh_speak_of_the_call() {
     let folder = folder();
@@ -205,7 +205,8 @@ fn errors_of_mesh_speak_of_the_call() {
     }
 }
 
-/// `--strict`: what is odd about the file, or has no place in the format, is an error, and nothing is written; what the call itself asks for is none.
+/// `--strict`: a notice about the file, or a part that the format cannot represent, is an error, and nothing is written; this does not apply to what
+/// the call itself asks for.
 #[test]
 fn warnings_are_errors_where_the_call_says_so() {
     let folder = folder();
@@ -227,7 +228,7 @@ fn warnings_are_errors_where_the_call_says_so() {
         let output = run(file, &["--strict"]);
         assert_eq!(code(&output), 0, "{file}: {}", text(&output.stderr));
     }
-    // Of tetrahedra that lose volume too.
+    // Lost volume of tetrahedra is included.
     let coarse = opruga(folder.path(), &["mesh", "spot.obj", "--size", "0.25", "--scale-to", "1.5", "--strict"]);
     assert!(
         code(&coarse) == 2 && text(&coarse.stderr).contains("error[shape.lost_volume]"),
@@ -236,7 +237,7 @@ fn warnings_are_errors_where_the_call_says_so() {
     );
 }
 
-/// Areas of a drawing that overlap are made one, and it is said how many; an outline that crosses itself has a place.
+/// Overlapping areas of a drawing are united, and their number is reported; the error about an outline that crosses itself has a location.
 #[test]
 fn overlapping_areas_are_united_with_a_message() {
     let folder = folder();
@@ -260,7 +261,7 @@ fn overlapping_areas_are_united_with_a_message() {
     assert_eq!((code(&apart), text(&apart.stderr)), (0, String::new()));
     let open = text(&mesh("open.svg").stderr);
     assert!(open.contains("1 open path is closed by a straight line"), "{open}");
-    // The halves of a bow tie meet in a point, where they are taken apart; a scene that allows no crossing refuses it.
+    // The halves of a bow tie meet in a point, where they are separated; a scene that allows no crossing refuses it.
     let bow = text(&mesh("bow.svg").stderr);
     assert!(bow.contains("1 outline crosses, covers or touches others or itself: "), "{bow}");
     assert!(bow.contains("2 outlines are left"), "{bow}");

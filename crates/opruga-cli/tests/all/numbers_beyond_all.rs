@@ -1,4 +1,4 @@
-//! Numbers of a scene that leave nothing for sums or masses: refused at their line, and JSON without `null` for a number.
+//! Numbers in a scene that make sums or masses overflow or vanish are refused at their line, and JSON never has `null` for a number.
 
 use std::path::PathBuf;
 use std::process::{Command, Output};
@@ -51,7 +51,7 @@ fn masses_and_weights_beyond_all_numbers_are_refused_at_their_line() {
     }
 }
 
-/// Sums may leave the finite numbers later, where every state is still one: here by a load.
+/// Sums may overflow later although every state is finite; here because of a load.
 #[test]
 fn sums_that_overflow_in_a_run_stop_it() {
     let load = "[[load]]\nkind = \"force\"\nbody = \"b\"\nselect = { all = true }\nvalue = [1e307, 0.0]\ncurve = [[0.02, 0.0], [0.021, 1.0]]\n";
@@ -90,7 +90,7 @@ fn hints_are_of_the_field_they_are_for() {
     assert!(refused("mass", &text).0["hint"].as_str().is_some_and(|hint| hint.contains("decimal point")));
 }
 
-/// A direction has a place where the squares of its numbers have none.
+/// A direction is valid even if the squares of its components overflow or underflow.
 #[test]
 fn normals_of_any_length_are_directions() {
     let hash = |normal: &str| {

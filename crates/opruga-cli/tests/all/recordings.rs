@@ -1,4 +1,4 @@
-//! Recorded runs: killed, damaged, replayed, exported, computed again. The numbers are rows of a list of torments.
+//! Recorded runs: killed, damaged, replayed, exported, computed again. The numbers are rows of the torture list.
 #![cfg(unix)]
 #![allow(clippy::disallowed_methods)] // no physics here
 
@@ -21,8 +21,8 @@ fn verified(folder: &Path, more: &[&str]) -> Value {
     row
 }
 
-/// Without a step being computed, a recording gives the pictures and tables of its run again, byte by byte; computed
-/// again, also on other threads and from the middle, every frame is the same. The scene is not needed any more.
+/// Without computing a step, a recording gives the pictures and tables of its run again, byte by byte. Computed again, also on other threads and from
+/// the middle, every frame is the same. The scene is not needed any more.
 #[test]
 fn a_replay_gives_the_files_of_its_run_again() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -33,7 +33,7 @@ fn a_replay_gives_the_files_of_its_run_again() {
     let output = opruga(folder, &[&run[..], &["--json"]].concat());
     assert_eq!(code(&output), 0, "{}", said(&output));
     let summary = json(&output);
-    // Row 90: the scene changes, and is told of; then it is gone.
+    // Row 90: the scene changes, which is reported; then it is deleted.
     std::fs::write(folder.join("mine.toml"), "else").expect("a file");
     let row = verified(folder, &[]);
     assert_eq!(row["state_hash"], summary["state_hash"]);
@@ -78,7 +78,7 @@ fn a_replay_gives_the_files_of_its_run_again() {
     assert!(!exported.is_empty() && exported == reached);
 }
 
-/// One call compares every frame and writes the files of the run again; of a run that differs nothing is written, and no folder made.
+/// One call compares every frame and writes the files of the run again; if the run differs, nothing is written, and no folder is made.
 #[test]
 fn a_replay_compares_and_writes_in_one_call() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -98,7 +98,7 @@ fn a_replay_compares_and_writes_in_one_call() {
         let of = |run: &str| std::fs::read(folder.join(run).join(name)).expect("a file");
         assert!(of("again") == of("o"), "{name} is another one");
     }
-    // A folder that is not free is told before the work, and left as it is.
+    // A folder that is not free is reported before the work, and is not changed.
     let output = opruga(folder, &["replay", "r", "--verify", "--out=o"]);
     assert_eq!(code(&output), 4, "{}", said(&output));
     assert!(said(&output).contains("write.exists") && !said(&output).contains("computed again"), "{}", said(&output));
@@ -113,7 +113,7 @@ fn a_replay_compares_and_writes_in_one_call() {
     assert!(!folder.join("wrong").exists() || contents(&folder.join("wrong")).is_empty());
 }
 
-/// The recording `r` with one thing changed: the hash of a frame, or a byte of a state.
+/// The recording `r` with one change: the hash of a frame, or a byte of a state.
 fn tampered(folder: &Path, name: &str, wrong_hash: Option<u64>, wrong_state: Option<u64>) {
     use opruga::io::recording::{Recording, RecordingFile};
     let mut recording = Recording::open(std::fs::File::open(folder.join("r")).expect("a file")).expect("a recording");
@@ -132,7 +132,7 @@ fn tampered(folder: &Path, name: &str, wrong_hash: Option<u64>, wrong_state: Opt
     file.finish().expect("an end");
 }
 
-/// A frame whose state is not kept is compared too: a recording that differs in one of them alone is found out, at that frame.
+/// Frames without kept states are compared, too: a recording that differs only in one of them is detected at that frame.
 #[test]
 fn a_frame_between_two_states_that_differs_is_found() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -155,7 +155,7 @@ fn a_frame_between_two_states_that_differs_is_found() {
     }
 }
 
-/// Folders around an output are made, whichever it is; where that cannot be, none is left behind.
+/// Parent folders of every output are made; if that fails, none is left behind.
 #[test]
 fn folders_around_outputs_are_made() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -178,8 +178,8 @@ fn folders_around_outputs_are_made() {
     }
 }
 
-/// Bodies that come and go, pulls and parameters that are set: all of it is in the states. A run that goes on from a
-/// checkpoint records the rest.
+/// Bodies that are added and removed, pulls, and parameters that are set are all part of the states. A run resumed from a checkpoint records the
+/// rest.
 #[test]
 fn commands_and_resumed_runs_are_verified_too() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -188,7 +188,7 @@ fn commands_and_resumed_runs_are_verified_too() {
     summary(folder, &["run", "--resume", "o/checkpoint", "--seconds", "0.5", "--out", "p", "--record", "r"]);
     let row = verified(folder, &[]);
     assert!(row["frames"]["first"].as_u64() > Some(0), "{row}");
-    // A scene with a file needs it no more, nor the scene itself.
+    // Neither a file of the scene nor the scene itself is needed any more.
     let heart = opruga::scenes::find("heart").expect("a scene");
     std::fs::create_dir(folder.join("shapes")).expect("a folder");
     let drawing = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/shapes/heart.svg");
@@ -205,7 +205,7 @@ fn commands_and_resumed_runs_are_verified_too() {
     verified(folder, &[]);
 }
 
-/// Rows 79 and 87: killed or interrupted at any moment, a run leaves a recording whose frames are whole and right.
+/// Rows 79 and 87: killed or interrupted at any moment, a run leaves a recording whose frames are intact and right.
 #[test]
 fn a_run_that_is_killed_leaves_its_frames() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -234,7 +234,7 @@ fn a_run_that_is_killed_leaves_its_frames() {
     assert!(most >= 5, "frames reach the file on the way: {most}");
 }
 
-/// Rows 82 to 85: damage, other files and full disks are errors with their place; nothing old is lost.
+/// Rows 82 to 85: damage, other files and full disks are errors with their location; nothing old is lost.
 #[test]
 fn faults_of_recordings_are_told() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -256,7 +256,7 @@ fn faults_of_recordings_are_told() {
         std::fs::write(folder.join("bad"), bad).expect("a file");
         refused(&["replay", "bad", "--verify"], 2, "bad: error[recording.damaged]");
     }
-    // A device that is full takes no recording, and no device is replaced by one.
+    // A recording cannot be written to a full device, and a device is never replaced by one.
     if Path::new("/dev/full").exists() {
         refused(
             &["run", "pressures", "--no-pictures", "--out", "q", "--record", "/dev/full", "--force"],
@@ -265,7 +265,7 @@ fn faults_of_recordings_are_told() {
         );
         assert!(!Path::new("/dev/full").is_file());
     }
-    // The end is damaged, the beginning can be seen.
+    // The end is damaged, but the beginning can be replayed.
     assert_eq!(code(&opruga(folder, &["replay", "bad", "--verify", "--to", "0.1"])), 0);
     std::fs::write(folder.join("bad"), "notes").expect("a file");
     refused(&["replay", "bad"], 2, "error[recording.not_one]");
@@ -277,7 +277,7 @@ fn faults_of_recordings_are_told() {
     if Path::new("/dev/full").exists() {
         refused(&[&run[..5], &["--out", "f", "--record", "/dev/full", "--force"]].concat(), 4, "not a regular file");
     }
-    // The disk is full in mid run: the run ends, says so, and its state is kept.
+    // The disk becomes full during the run: the run ends with an error, and its state is kept.
     let call = format!(
         "ulimit -f 64; exec {} run pressures --no-pictures --out full --record s --record-every 1",
         env!("CARGO_BIN_EXE_opruga"),
@@ -290,7 +290,7 @@ fn faults_of_recordings_are_told() {
     refused(&["replay", "s", "--verify"], 0, "warning[recording.open]");
 }
 
-/// What is no recording is refused before a window opens; without a screen the hint leads to `replay`.
+/// A file that is not a recording is refused before a window opens; without a screen the hint suggests `replay`.
 #[test]
 fn a_recording_is_viewed_in_a_window_only() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! Scenes that name files, as their users meet them: where files are looked up, what is refused, what a checkpoint keeps.
+//! Scenes that name files, as their users see them: where files are looked up, what is refused, what a checkpoint contains.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use std::path::Path;
@@ -88,7 +88,7 @@ fn files_outside_of_the_folder_are_refused_and_never_shown() {
         assert!(told.contains("shape.outside") && told.contains("--allow-outside"), "{told}");
         assert!(!told.contains("root:x"), "{told}");
     }
-    // Allowed, it is read, and is no drawing.
+    // If allowed, it is read, but is not a drawing.
     let output = opruga(folder("../secret.svg").path(), &["check", "scenes/mine.toml", "--allow-outside"]);
     assert!(code(&output) == 2 && text(&output.stderr).contains("svg.syntax"), "{}", text(&output.stderr));
 }

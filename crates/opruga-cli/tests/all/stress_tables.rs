@@ -24,7 +24,7 @@ fn final_csv_has_the_stress_of_every_node_on_request() {
     let table = run("stress", &["--stress"]);
     let mut lines = table.lines();
     assert_eq!(lines.next(), Some("body,node,x,y,vx,vy,sxx,syy,szz,sxy,von_mises,volume_ratio"));
-    // What was there is there to the same digits.
+    // The other columns are unchanged, with all their digits.
     for (own, other) in table.lines().zip(plain.lines()) {
         assert!(own.starts_with(other), "{own}\n{other}");
     }

@@ -1,4 +1,4 @@
-//! `opruga sweep` as a program: the same table for any number of threads and after a kill, and what it refuses.
+//! `opruga sweep` as a program: the same table for any number of threads and after a kill, and its errors.
 
 use crate::common;
 
@@ -31,7 +31,7 @@ fn swept(folder: &Path, more: &[&str]) {
     assert_eq!(code(&output), 0, "{}", said(&output));
 }
 
-/// Sweeps the ball over stiffnesses of which some are refused, into the folder `o`; it ends with that exit code.
+/// Sweeps the ball over stiffnesses, some of which are refused, in the folder `o`; asserts the exit code.
 fn swept_over_stiffness(values: &str, exit: i32, more: &[&str]) -> (tempfile::TempDir, Output) {
     let folder = tempfile::tempdir().expect("a folder");
     let set = format!("--set=body.ball.models.mass_spring.stiffness={values}");
@@ -67,7 +67,7 @@ fn a_sweep_that_was_stopped_anywhere_goes_on_to_the_same_table() {
     let at = folder.path();
     swept(at, &["--threads=1", "--out=whole"]);
     let whole = table(&at.join("whole"));
-    // As a kill leaves it: some rows, in any order, the last one torn.
+    // As a kill leaves it: some rows, in any order, the last one truncated.
     let lines: Vec<&str> = whole.lines().collect();
     let torn = format!("{}\n{}\n{}\n{}", lines[0], lines[7], lines[2], &lines[5][..9]);
     for again in ["question", "folder"] {
@@ -146,7 +146,7 @@ fn a_row_that_was_changed_by_hand_is_no_result() {
         assert!(said(&output).contains("results.csv:5:1: error[sweep.changed_row]"), "{}", said(&output));
         assert_eq!(table(&at.join("o")), changed, "it is left as it is");
     }
-    // Without its line the point is computed anew.
+    // Without its line the point is computed again.
     std::fs::write(at.join("o/results.csv"), whole.replace(&format!("{line}\n"), "")).expect("a file");
     let output = opruga(at, &["sweep", "--resume=o"]);
     assert_eq!(code(&output), 0, "{}", said(&output));
@@ -180,7 +180,7 @@ fn bad_calls_are_refused_before_anything_is_written() {
 
 #[test]
 fn a_failed_point_is_counted_and_the_others_are_run() {
-    // As a run of that point would end: an unstable step is a bad call.
+    // The exit code is that of a run of that point: an unstable step is an invalid call.
     let (folder, output) = swept_over_stiffness("100,1e9", 2, &["--seconds=0.1", "--json"]);
     assert_eq!(
         code(&opruga(folder.path(), &["sweep", "--resume=o"])),
@@ -194,7 +194,7 @@ fn a_failed_point_is_counted_and_the_others_are_run() {
     assert!(table(&folder.path().join("o")).lines().nth(2).is_some_and(|row| row.starts_with("1,1e9,step.unstable,,")));
 }
 
-/// A run that diverges is exit code 3, whatever else was refused; every other point has its row.
+/// If a run diverges, the exit code is 3, whatever else was refused; every other point has its row.
 #[test]
 fn a_point_that_diverges_is_told_by_the_exit_code() {
     let (folder, _) = swept_over_stiffness("100,-1,1e9", 3, &["--seconds=0.5", "--allow-unstable"]);
@@ -219,7 +219,7 @@ fn the_sweep_of_the_thesis_runs_as_its_scene_says() {
     std::fs::write(folder.path().join("thesis-4-3.toml"), &text).expect("a file");
     let mut words: Vec<&str> = call.split_whitespace().skip(1).collect();
     words[1] = "thesis-4-3.toml";
-    // The points and the folder, which is made with the one around it, are those of the scene; the time is not.
+    // The points and the folder, which is made with its parent, are those of the scene; the time is not.
     let words: Vec<&str> = words.into_iter().chain(["--seconds=0.02", "--json"]).collect();
     let output = opruga(folder.path(), &words);
     assert_eq!(code(&output), 0, "{}", said(&output));
@@ -229,7 +229,7 @@ fn the_sweep_of_the_thesis_runs_as_its_scene_says() {
     assert!(folder.path().join("out/thesis-4-3/results.csv").exists());
 }
 
-/// A scene in a folder of its own, whose drawing lies above: the sweep carries the file, and goes on without it.
+/// A scene in a folder of its own with its drawing in the parent folder: the sweep stores the file, and is resumed without it.
 #[test]
 fn a_scene_with_a_file_is_swept_and_goes_on_where_the_file_is_gone() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -256,7 +256,7 @@ fn a_scene_with_a_file_is_swept_and_goes_on_where_the_file_is_gone() {
     assert_eq!(whole.lines().count(), 3, "{whole}");
     let plots = std::fs::read_to_string(folder.join("s/plots.svg")).expect("plots");
     assert!(plots.contains("Twemoji") && plots.contains("CC-BY 4.0"), "whose drawing it is");
-    // A part of the table is lost, and the drawing too.
+    // A part of the table is lost, and so is the drawing.
     let kept: String = whole.lines().take(2).map(|line| format!("{line}\n")).collect();
     std::fs::write(folder.join("s/results.csv"), kept).expect("a file");
     std::fs::remove_file(folder.join("heart.svg")).expect("it goes");

@@ -1,4 +1,4 @@
-//! What is cut, left out or chosen for the user is told, with its number.
+//! Everything that is cut, omitted or chosen for the user is reported, with numbers.
 
 use crate::common;
 
@@ -28,7 +28,7 @@ fn diagnostics_have_as_many_rows_as_are_asked_for_and_no_more_than_a_table_may_h
         (0..whole.len()).filter(|k| k % 7 == 0 || k + 1 == whole.len()).map(|k| whole[k].clone()).collect();
     assert_eq!(rows(&at.join("every")), kept, "every seventh frame and the last one");
     assert!(warning(&every, "diagnostics.thinned").is_none(), "it was asked for");
-    // A run that goes on has the rows of one that was not interrupted.
+    // A resumed run has the same rows as an uninterrupted one.
     let resumed = ["run", "--resume=every/checkpoint", "--seconds=1", "--diagnostics-every=7", "--out=on"];
     summary(at, &resumed);
     let uninterrupted = ["run", "ball", "--seconds=1", "--diagnostics-every=7", "--out=one"];
@@ -38,7 +38,7 @@ fn diagnostics_have_as_many_rows_as_are_asked_for_and_no_more_than_a_table_may_h
     assert!(one.ends_with(&on[1..]), "{on:?} {one:?}");
     let bad = opruga(at, &["run", "ball", "--diagnostics-every=0"]);
     assert_eq!(code(&bad), 2, "{}", said(&bad));
-    // More frames than fit: rows are left out, told before the run and counted behind it.
+    // More frames than fit: rows are omitted, which is reported before the run and counted after it.
     let scene = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 0.004\nframe = 1e-8\n[integrator]\nkind = \"explicit_euler\"\n";
     std::fs::write(at.join("short.toml"), scene).expect("a file");
     let output = opruga(at, &["run", "short.toml", "--no-pictures", "--out=short"]);
@@ -125,7 +125,7 @@ fn errors_are_shown_up_to_fifty_and_counted_beyond_in_both_forms() {
     std::fs::write(at.join("many.toml"), format!("format = \"opruga-1\"\ndimension = 2\n{keys}")).expect("a file");
     let people = said(&opruga(at, &["check", "many.toml"]));
     assert_eq!(people.matches("error[").count(), 51, "{people}");
-    // 600 unknown fields, and what the scene lacks.
+    // 600 unknown fields, and the missing fields of the scene.
     assert!(
         people.contains("error[scene.more]: and 551 more") && people.trim_end().ends_with("601 errors"),
         "{people}"
@@ -160,7 +160,7 @@ fn a_deep_value_of_the_command_line_is_an_error_of_every_command() {
     assert_eq!(output.status.code(), Some(2), "{:.300}", said(&output));
 }
 
-/// Free bodies have modes, whatever the scene would do with them.
+/// Free bodies have modes, whatever the integrator of the scene is.
 #[test]
 fn modes_of_a_free_body_do_not_ask_for_the_integrator_of_the_scene() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -174,12 +174,12 @@ fn modes_of_a_free_body_do_not_ask_for_the_integrator_of_the_scene() {
         found["rows"].clone()
     };
     assert_eq!(modes(&["--set", "integrator=equilibrium"]), modes(&["--set", "integrator=backward_euler"]));
-    // What needs the equilibrium is refused as before.
+    // The search for the equilibrium is refused as before.
     let looked_for = opruga(folder.path(), &["modes", "ball", "--equilibrium", "--no-pictures", "--force"]);
     assert_ne!(code(&looked_for), 0);
 }
 
-/// Notes have codes: a scene without bodies has no pictures, and runs that share the machine are slower than one alone.
+/// Notes have codes: a scene without bodies has no pictures, and runs that share the machine are slower than a single one.
 #[test]
 fn what_is_worth_knowing_is_told_with_a_code() {
     let folder = tempfile::tempdir().expect("a folder");

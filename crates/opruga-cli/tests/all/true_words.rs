@@ -1,5 +1,5 @@
-//! What is said of scenes that cannot be run is true, and complete: no fault that a scene does not have, and with every error the
-//! value, what is allowed and what would help.
+//! Messages about scenes that cannot be run are true and complete: they report no fault that a scene does not have, and every error has the value,
+//! what is allowed and what would help.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use crate::common;
@@ -11,7 +11,7 @@ fn write(folder: &Path, text: &str) {
     std::fs::write(folder.join("s.toml"), text).expect("a file");
 }
 
-/// What a command says of the scene `text`, as people read it, and its exit code.
+/// The output of a command on the scene `text` for people, and its exit code.
 fn told(text: &str, command: &[&str]) -> (i32, String) {
     let folder = tempfile::tempdir().expect("a folder");
     write(folder.path(), text);
@@ -29,7 +29,7 @@ fn error(text: &str) -> Value {
     serde_json::from_str(last.lines().last().expect("a line")).unwrap_or_else(|e| panic!("{e}: {last}"))
 }
 
-/// A plane scene under an integrator, with its bodies and all else.
+/// A plane scene with an integrator, its bodies and everything else.
 fn plane(integrator: &str, rest: &str) -> String {
     format!(
         "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1.0\nframe = 1.0\nsubsteps = 1\n[world]\ngravity = [0.0, -9.81]\n\
@@ -39,7 +39,7 @@ fn plane(integrator: &str, rest: &str) -> String {
 
 const STATICS: &str = "kind = \"equilibrium\"";
 
-/// A bar of finite elements with what else is said of it.
+/// A bar of finite elements with additional fields.
 fn bar(name: &str, more: &str) -> String {
     format!(
         "[[body]]\nname = \"{name}\"\nshape = {{ kind = \"grid\", size = [1.0, 0.25], cells = [8, 2] }}\ndensity = 1000.0\n\
@@ -49,8 +49,8 @@ fn bar(name: &str, more: &str) -> String {
 
 const LEFT: &str = "pin = [{ select = { side = \"left\" } }]";
 
-/// An error of a load, a pin, an obstacle or a probe does not make the program say that nothing holds a body that is pinned; where a
-/// body is held by nothing, that is said beside errors of what could not hold it.
+/// An error in a load, a pin, an obstacle or a probe does not cause the message that nothing holds a pinned body. If nothing holds a body, this is
+/// reported together with errors in things that could not hold it.
 #[test]
 fn a_held_body_is_not_called_loose_because_of_another_error() {
     let load = "[[load]]\nkind = \"traction\"\nbody = \"b\"\nvalue = [0.0, 1.0]\nselect = { node = 12 }\n";
@@ -69,7 +69,7 @@ fn a_held_body_is_not_called_loose_because_of_another_error() {
         (bar("b", "") + misspelt, "scene.unknown_field"),
         (bar("b", "") + &no_floor, "error["),
         (bar("b", "") + &bad_floor, "collider.no_direction"),
-        // The floor holds one body while another has an error of its own.
+        // The floor holds one body, while another has an error of its own.
         (bar("b", "") + &stiff + floor, "error["),
     ] {
         let (code, said) = told(&plane(STATICS, &rest), &["run", "s.toml", "--no-pictures", "--out", "o"]);
@@ -80,9 +80,9 @@ fn a_held_body_is_not_called_loose_because_of_another_error() {
     assert!(code == 2 && said.contains("static.rigid_modes"), "{said}");
 }
 
-/// A square of St. Venant–Kirchhoff in plane stress, which is pulled to 1.5 of its length in eight steps: where a model refuses the whole
-/// way of the pins at once, they are led along it. Without stress across, E_y = −ν E_x. Beyond √(1 + 1/ν), which is 1.795, there is no thickness
-/// for which that holds; the model says so, and what halving the steps would help.
+/// A square of St. Venant–Kirchhoff in plane stress is stretched to 1.5 times its length in eight steps. If a model refuses the whole displacement of
+/// the pins at once, they are moved in parts. Without transverse stress, E_y = −ν E_x. Beyond √(1 + 1/ν), which is 1.795, no thickness satisfies
+/// that; the model reports this, and the limit of halving the steps.
 #[test]
 fn statics_follows_pins_as_far_as_a_model_goes_and_says_where_it_ends() {
     let square = "[[body]]\nname = \"b\"\nthickness = 0.5\nshape = { kind = \"grid\", size = [1.0, 1.0], cells = [2, 2] }\n\
@@ -113,7 +113,7 @@ fn statics_follows_pins_as_far_as_a_model_goes_and_says_where_it_ends() {
     assert!((corner[2] - 1.5).abs() < 1e-12 && (corner[3] - high).abs() < 1e-8, "{corner:?}, not {high}");
 }
 
-/// A curve of equilibria is followed by the load: where there is none, that is said, and no iteration is blamed.
+/// A curve of equilibria follows the load. If there is none, this is reported, and not a failed iteration.
 #[test]
 fn a_curve_of_equilibria_without_a_load_is_said_to_have_none() {
     let text = plane(&format!("{STATICS}\narc_length = 0.01"), &bar("b", LEFT)).replace("[0.0, -9.81]", "[0.0, 0.0]");
@@ -124,8 +124,8 @@ fn a_curve_of_equilibria_without_a_load_is_said_to_have_none() {
     assert!(error["hint"].as_str().is_some_and(|hint| hint.starts_with("without `arc_length`")), "{error}");
 }
 
-/// Errors of models and rules carry what a program needs to mend the scene: the path down to the field, the value, what is allowed and
-/// what would help.
+/// Errors of models and integrators contain what a program needs to repair the scene: the path of the field, the value, what is allowed and what
+/// would help.
 #[test]
 fn errors_of_models_and_rules_have_path_value_allowed_and_hint() {
     let square = |order: &str, model: &str| {
@@ -176,7 +176,7 @@ fn errors_of_models_and_rules_have_path_value_allowed_and_hint() {
         assert_eq!(error["value"], value, "{error}");
         assert!(error["allowed"].is_string() && error["hint"].is_string() && error["line"].is_u64(), "{error}");
     }
-    // Of a rule, and of the rule of one body.
+    // For an integrator of the scene, and for the integrator of one body.
     for (text, path) in [
         (plane(newmark, &square("", soft)), "integrator.accuracy"),
         (
@@ -195,7 +195,7 @@ fn errors_of_models_and_rules_have_path_value_allowed_and_hint() {
     assert!(!said.contains("damps nothing") && said.contains("the acceleration that it remembers"), "{error}");
 }
 
-/// A number of a mesh that a material cannot have is a fault of the file of the mesh.
+/// A value in a mesh that a material cannot have is an error in the mesh file.
 #[test]
 fn a_wrong_number_of_a_cell_is_one_of_the_mesh_file() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -214,7 +214,7 @@ fn a_wrong_number_of_a_cell_is_one_of_the_mesh_file() {
     assert!(error["allowed"] == "a number > 0" && error["hint"].is_string(), "{error}");
 }
 
-/// Every free axis has its mode, and a number of modes that is none is refused.
+/// Every free axis has its mode, and an invalid number of modes is refused.
 #[test]
 fn all_modes_of_a_body_are_found() {
     let text = plane("kind = \"backward_euler\"", &bar("b", "pin = [{ select = { side = \"left\" } }]"));
@@ -234,7 +234,7 @@ fn all_modes_of_a_body_are_found() {
     }
 }
 
-/// A body of which nothing can move has no modes, and that is said instead of an empty table.
+/// A body that is pinned everywhere has no modes, which is reported instead of an empty table.
 #[test]
 fn a_body_that_is_held_everywhere_has_no_modes_and_is_said_to() {
     let text = plane("kind = \"backward_euler\"", &bar("b", "pin = [{ select = { all = true } }]"));
@@ -243,7 +243,7 @@ fn a_body_that_is_held_everywhere_has_no_modes_and_is_said_to() {
     assert!(said.contains("= hint: another body, or fewer pins"), "{said}");
 }
 
-/// What kind of integrator or model a body has is changed by another command, which is named.
+/// The kind of an integrator or model is changed by another command, which the message names.
 #[test]
 fn the_command_that_changes_kinds_is_named_where_one_that_sets_cannot() {
     let rows = ["integrator.kind", "integrator", "body.b.integrator.kind", "body.b.models", "body.b.models.fem.kind"];
@@ -257,8 +257,8 @@ fn the_command_that_changes_kinds_is_named_where_one_that_sets_cannot() {
     }
 }
 
-/// Shapes whose volume would be no number, and outlines turned so far that their nodes would fall together, are errors of the field with
-/// what is allowed, and no run that diverges.
+/// Shapes whose volume would overflow, and outlines rotated so far that their nodes would coincide, are errors of the field with what is allowed, and
+/// not a run that diverges.
 #[test]
 fn vast_shapes_and_angles_are_refused_at_their_field() {
     let springs = "mass = 1.0\nmodels = [{ kind = \"mass_spring\", stiffness = 100.0 }]\n";
@@ -288,7 +288,7 @@ fn vast_shapes_and_angles_are_refused_at_their_field() {
         assert_eq!(error["path"], format!("body.0.{field}"), "{error}");
         assert!(error["allowed"].is_string() && error["line"].is_u64(), "{error}");
     }
-    // What is large and has a volume is taken.
+    // A large shape with a finite volume is accepted.
     for text in [
         body(&format!("{ring}, radius = 1e60"), springs),
         body(&format!("{ring}, radius = 1.0, start_angle = 1e6"), springs),
@@ -298,8 +298,8 @@ fn vast_shapes_and_angles_are_refused_at_their_field() {
     }
 }
 
-/// Three squares in a row, each of a material of its own by the names of a mesh file: a force of 6 N through 1 m lengthens them by 6 (1/100 +
-/// 1/200 + 1/400) m. Where one has no material, that is said once, of all models together.
+/// Three squares in a row, each with its own material by the names in a mesh file: a force of 6 N over 1 m lengthens them by 6 (1/100 + 1/200 +
+/// 1/400) m. If one has no material, this is reported once, for all models together.
 #[test]
 fn materials_by_groups_of_a_mesh_file_stretch_in_series_and_a_missing_one_is_one_error() {
     let mesh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n2 1 \"soft\"\n2 2 \"firm\"\n2 3 \"hard\"\n$EndPhysicalNames\n\

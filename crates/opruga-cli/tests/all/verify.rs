@@ -1,4 +1,4 @@
-//! `opruga verify` as its users meet it.
+//! `opruga verify` as its users see it.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use crate::common;
@@ -52,7 +52,7 @@ fn the_table_is_for_people_and_the_list_tells_sources() {
 fn a_word_that_names_no_case_is_refused_with_the_nearest() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = opruga(folder.path(), &["verify", "--filter", "ledger"]);
-    // A part of a name is enough, but of the name of a family all is needed.
+    // A part of a name is sufficient, but the name of a family must be complete.
     assert_eq!(code(&output), 2, "{}", said(&output));
     assert!(said(&output).contains("did you mean `ledgers`"), "{}", said(&output));
 }
@@ -73,7 +73,7 @@ fn an_interrupted_verification_ends_with_130_and_writes_nothing() {
     let call = ["verify", "--report", "r", "--json", "--threads", "2"];
     let child = program(folder.path(), &call).spawn().expect("the program runs");
     until("the report's folder is there", || folder.path().join("r").join(".opruga-lock").exists());
-    // Cases run by then, which together take far longer.
+    // Cases are running by then; together they take far longer.
     std::thread::sleep(std::time::Duration::from_millis(700));
     signal(&child, "INT");
     let output = child.wait_with_output().expect("it ends");

@@ -1,4 +1,4 @@
-//! Calling the program and looking at what it leaves behind.
+//! Calls the program and inspects its output.
 #![allow(dead_code, reason = "every test file uses its own part")]
 
 use serde_json::Value;
@@ -35,12 +35,12 @@ pub(crate) fn summary(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).expect("stdout is JSON")
 }
 
-/// Names of files in a folder and their bytes.
+/// The names of the files in a folder, and their bytes.
 pub(crate) fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut out: Vec<(String, Vec<u8>)> = std::fs::read_dir(folder)
         .expect("a folder")
         .map(|entry| entry.expect("an entry"))
-        // The lock of a process that was killed holds nothing and locks nobody out.
+        // The lock of a killed process contains nothing and locks nobody out.
         .filter(|entry| entry.file_name() != ".opruga-lock")
         .map(|entry| (entry.file_name().to_string_lossy().into_owned(), std::fs::read(entry.path()).expect("a file")))
         .collect();
@@ -48,7 +48,7 @@ pub(crate) fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     out
 }
 
-/// Waits until something is so, for half a minute at most.
+/// Waits until a condition holds, for at most half a minute.
 pub(crate) fn until(what: &str, mut so: impl FnMut() -> bool) {
     let start = Instant::now();
     while !so() {

@@ -1,4 +1,4 @@
-//! What somebody meets who uses the program for the first time: wrong words, wrong order, wrong numbers.
+//! The experience of a first-time user: wrong words, wrong order, wrong numbers.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use crate::common;
@@ -8,7 +8,7 @@ mod window;
 use common::*;
 use serde_json::Value;
 
-/// A scene of one ring that falls, with a place for more lines.
+/// A scene of one falling ring, with space for more lines.
 fn scene(more: &str) -> String {
     format!(
         "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 0.1\nsubsteps = 20\n[integrator]\nkind = \"verlet\"\n\
@@ -36,7 +36,7 @@ fn options_that_exclude_each_other_are_refused() {
     assert_eq!(contents(folder.path()), []);
 }
 
-/// `--seconds` is when a run ends, also of a resumed one; a checkpoint at the end or behind it is an error.
+/// `--seconds` is the end of a run, also of a resumed one; a checkpoint at the end or after it is an error.
 #[test]
 fn a_resumed_run_with_nothing_left_to_do_says_so() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -58,7 +58,7 @@ fn a_resumed_run_with_nothing_left_to_do_says_so() {
     assert_eq!(rest["steps"], 15 * 40, "the steps of this run");
     let help = printed(&opruga(folder.path(), &["run", "--help"]));
     assert!(help.contains("The simulated time at which the run ends"), "{help}");
-    // A run that has come to its end, that of the scene or another, is not made longer unasked.
+    // A run that has reached its end, that of the scene or another one, is not extended unless asked.
     std::fs::write(folder.path().join("s.toml"), scene("")).expect("a file");
     for end in [&[][..], &["--seconds", "0.05"]] {
         summary(folder.path(), &[&["run", "s.toml", "--out", "s", "--force"], end].concat());
@@ -66,13 +66,13 @@ fn a_resumed_run_with_nothing_left_to_do_says_so() {
         assert_eq!(code(&output), 2);
         assert!(said(&output).contains("nothing is left to do"), "{}", said(&output));
     }
-    // More frames than can be counted are refused, whoever asks for them.
+    // More frames than can be counted are refused, whatever the source of the number.
     let output = opruga(folder.path(), &["run", "s.toml", "--seconds", "1e7", "--set", "time.frame=1e-6"]);
     assert_eq!(code(&output), 2);
     assert!(said(&output).contains("at most 1e12 frames"), "{}", said(&output));
 }
 
-/// What the reader finds and what a world of the rest refuses come together, in the order of their lines.
+/// Errors of the reader and of a world made from the rest are reported together, in the order of their lines.
 #[test]
 fn errors_of_fields_indices_and_models_come_at_once() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -104,18 +104,18 @@ fn errors_of_fields_indices_and_models_come_at_once() {
             ("scene.range", line("friction = -1")),
             ("scene.range", line("node = 24")),
         ];
-        // The copies have an error of their own: nothing is known of their stiffness.
+        // The copies have an error of their own, so their stiffness is unknown.
         let expected: Vec<_> = expected.into_iter().filter(|e| e.0 != "step.unstable").collect();
         assert_eq!(found, expected);
     }
-    // Once the copies are right, their step is looked at: once, not fifty times.
+    // Once the copies are right, their step is checked: once, not fifty times.
     std::fs::write(folder.path().join("s.toml"), text.replace("spacing = [2]", "spacing = [2, 0]")).expect("a file");
     let output = opruga(folder.path(), &["check", "s.toml"]);
     assert_eq!(said(&output).matches("error[step.unstable]").count(), 1, "{}", said(&output));
     assert!(said(&output).ends_with("6 errors\n"), "{}", said(&output));
 }
 
-/// A step that is too long is explained over several lines, and its place is where the step is said.
+/// Too long a step is explained over several lines; its location is that of the step.
 #[test]
 fn an_unstable_step_is_explained_line_by_line() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -133,7 +133,7 @@ fn an_unstable_step_is_explained_line_by_line() {
     assert!(lines[3].starts_with("  = allowed: h <= ") && lines[3].contains("rad/s"), "{text}");
     assert!(lines[4].starts_with("  = hint: substeps >= ") && lines[4].contains("--set time.substeps="), "{text}");
     assert!(lines.iter().all(|l| l.chars().count() < 120), "{text}");
-    // The hint is right, and what --set has said is not sought in the file.
+    // The hint is right, and a value given by --set is not searched for in the file.
     let hint = lines[4].split("--set ").nth(1).and_then(|h| h.split(';').next()).expect("a hint");
     assert_eq!(code(&opruga(folder.path(), &["check", "s.toml", "--set", hint])), 0, "{hint}");
     let output = opruga(folder.path(), &["check", "s.toml", "--set", "time.substeps=2"]);
@@ -175,13 +175,13 @@ fn what_is_not_there_is_no_error_in_a_scene() {
         assert!(said(&output).contains(text), "{arguments:?}: {}", said(&output));
         assert!(!said(&output).contains("in the scene"), "{arguments:?}: {}", said(&output));
     }
-    // A folder of the name of a scene, such as its output, is not in the way of the scene.
+    // A folder with the name of a scene, such as its output, does not hide the scene.
     let output = opruga(folder.path(), &["check", "ball"]);
     assert_eq!(code(&output), 0, "{}", said(&output));
     assert!(printed(&output).starts_with("scene ball (built in): no errors\n"), "{}", printed(&output));
     let output = opruga(folder.path(), &["check", "ball", "--set", "time.substeps=1"]);
     assert!(!said(&output).contains("ball.toml"), "{}", said(&output));
-    // A run leaves its checkpoint in a folder; whoever names the folder is told the file.
+    // A run writes its checkpoint to a folder; if the user names the folder, the message names the file.
     summary(folder.path(), &["run", "meine.toml", "--out", "o"]);
     let output = opruga(folder.path(), &["run", "--resume", "o"]);
     assert_eq!(code(&output), 4);
@@ -201,7 +201,7 @@ fn a_new_scene_replaces_an_old_one_only_with_force() {
     assert_eq!(std::fs::read(&path).expect("a file"), b"years of work");
     assert_eq!(code(&at(&["new", "a.b", "--force"])), 0);
     assert_eq!(code(&at(&["check", "a.b.toml"])), 0);
-    // What it says to try can be typed as it stands.
+    // The suggested command can be typed as it is.
     for (name, typed) in [("plain", "plain.toml"), ("two words", "'two words.toml'"), ("it's", "'it'\\''s.toml'")] {
         let output = at(&["new", name]);
         assert!(said(&output).contains(&format!("try `opruga run {typed}`")), "{}", said(&output));
@@ -255,11 +255,11 @@ fn a_run_without_steps_claims_no_speed() {
     assert!(moving["nanoseconds_per_node_step"].as_f64().is_some_and(|ns| ns > 0.0));
 }
 
-/// Row 57: a body that its own weight would stretch by more than its size is probably in other units.
+/// Row 57: if a body would be stretched by more than its size under its own weight, its units are probably inconsistent.
 #[test]
 fn mixed_units_are_warned_of() {
     let folder = tempfile::tempdir().expect("a folder");
-    // A ring of 1 m in millimetres, whose density and gravity are not.
+    // A ring of 1 m in millimetres, but not its density and gravity.
     let millimetres = scene("")
         .replace("radius = 0.5", "radius = 500.0")
         .replace("mass = 1\n", "density = 1000.0\nthickness = 1.0\n");
@@ -275,13 +275,13 @@ fn mixed_units_are_warned_of() {
     let strict = opruga(folder.path(), &["run", "mm.toml", "--out", "d", "--strict"]);
     assert_eq!(code(&strict), 2);
     assert!(said(&strict).contains("error[units.sag]"), "{}", said(&strict));
-    // Without weight, or with nothing that could sag, there is nothing to warn of.
+    // Without weight, or without anything that could sag, there is no warning.
     for set in ["world.gravity=[0, 0]", "body.ring.models=[]"] {
         assert_eq!(code(&opruga(folder.path(), &["check", "mm.toml", "--strict", "--set", set])), 0, "{set}");
     }
 }
 
-/// A rate that no film can have is found before the run, not after it.
+/// A rate that no film can have is reported before the run, not after it.
 #[test]
 fn a_film_that_cannot_be_is_refused_before_the_run() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -303,7 +303,7 @@ fn a_film_that_cannot_be_is_refused_before_the_run() {
     assert_eq!(code(&output), 0, "{}", said(&output));
 }
 
-/// There is a picture for one in so many frames of the scene: where that gives another rate than the call asks for, it is told.
+/// There is one picture for a whole number of frames of the scene; if this gives another rate than requested, it is reported.
 #[test]
 fn a_rate_of_pictures_that_frames_do_not_have_is_told() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -320,8 +320,7 @@ fn a_rate_of_pictures_that_frames_do_not_have_is_told() {
     }
 }
 
-/// Row 78: more threads than cores are a warning, once; so is what was odd in the scene. A run that fails says where its
-/// output lies.
+/// Row 78: more threads than cores are one warning, and so is anything unusual in the scene. A run that fails names the folder of its output.
 #[test]
 fn warnings_are_told_once_and_failures_say_where_the_output_lies() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -338,7 +337,7 @@ fn warnings_are_told_once_and_failures_say_where_the_output_lies() {
     let output = opruga(folder.path(), &wild);
     assert_eq!(code(&output), 3);
     assert!(said(&output).contains("written to w/\n"), "{}", said(&output));
-    // A command may make the step too long on the way: the time is said.
+    // A command may make the step too long during the run; the message gives the time.
     let harden =
         "[[command]]\ndo = \"set\"\nat = 0.05\npath = \"body.ring.models.mass_spring.stiffness\"\nvalue = 9e9\n";
     std::fs::write(folder.path().join("h.toml"), scene(harden)).expect("a file");
@@ -348,7 +347,7 @@ fn warnings_are_told_once_and_failures_say_where_the_output_lies() {
     assert!(said(&output).contains(told), "{}", said(&output));
     assert!(said(&output).contains("= hint: another `value`, or substeps >= "), "{}", said(&output));
     assert!(said(&output).contains("written to h/\n"), "{}", said(&output));
-    // Whatever else steps through the scene names the command too.
+    // Any other command that steps through the scene names the command as well.
     let timed = ["bench", "scene", "h.toml", "--frames", "9"];
     for call in [&["modes", "h.toml", "--after", "0.2", "--out", "m"][..], &timed] {
         let output = opruga(folder.path(), call);
@@ -356,7 +355,7 @@ fn warnings_are_told_once_and_failures_say_where_the_output_lies() {
     }
 }
 
-/// What a command makes unstable is told with its line, and what the hint says helps.
+/// If a command makes the step unstable, its line is reported, and the hint helps.
 #[test]
 fn a_command_that_makes_the_step_unstable_is_named_with_what_helps() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -389,7 +388,7 @@ fn a_command_that_makes_the_step_unstable_is_named_with_what_helps() {
     );
     let set = format!("time.substeps={}", number_after(&all, "--set time.substeps="));
     assert_eq!(code(&run(hard, &["--set", &set])), 0, "{set}");
-    // What an override sets lasts until a command sets it: it is not offered then.
+    // An override remains in effect until a command sets the same parameter, so it is not offered then.
     let both = format!("{}{hard}", coarse.replace("value = 1", "value = 20"));
     let all = said(&run(&both, &[]));
     assert!(all.contains("when the command begins, which a command before it sets") && !all.contains("--set"), "{all}");
@@ -405,7 +404,7 @@ fn who_leaves_out_run_is_told() {
     }
 }
 
-/// With --json whatever is said is JSON: errors of the call, warnings of the scene, and what a check finds.
+/// With --json all output is JSON: errors of the call, warnings of the scene, and the result of a check.
 #[test]
 fn with_json_nothing_else_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -434,12 +433,12 @@ fn a_command_after_the_end_is_told() {
     let output = opruga(folder.path(), &["check", "s.toml"]);
     assert_eq!(code(&output), 0, "{}", said(&output));
     assert!(said(&output).contains("warning[command.never]: the command begins at 0.5 s, after the end at 0.1 s"));
-    // Whoever asks for a shorter run knows what is left out.
+    // A user who asks for a shorter run knows what is omitted.
     let output = opruga(folder.path(), &["check", "s.toml", "--set", "time.seconds=0.2"]);
     assert!(!said(&output).contains("command.never"), "{}", said(&output));
 }
 
-/// The first command of the README works a second time too, and leaves what the first one wrote.
+/// The first command of the README also works a second time, and does not change the first output.
 #[test]
 fn the_program_without_a_command_finds_a_folder_that_is_free() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -452,7 +451,7 @@ fn the_program_without_a_command_finds_a_folder_that_is_free() {
     assert_eq!(std::fs::read(folder.path().join("out/ball/summary.json")).expect("it is there"), b"mine");
 }
 
-/// What a run does not write itself does not stay beside what it writes.
+/// Files that a run does not write itself do not stay among its output.
 #[test]
 fn pictures_of_an_earlier_run_go_with_it() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -468,7 +467,7 @@ fn pictures_of_an_earlier_run_go_with_it() {
     assert_eq!(names(&["--no-pictures"]), ["checkpoint", "diagnostics.csv", "final.csv", "summary.json"]);
 }
 
-/// What `run --allow-unstable` takes, `check --allow-unstable` takes too, with the same warning.
+/// `check --allow-unstable` accepts what `run --allow-unstable` accepts, with the same warning.
 #[test]
 fn a_step_above_the_limit_can_be_checked_as_it_is_run() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,8 +1,8 @@
-//! Scenes whose text goes wrong: another encoding, slips of syntax, other files, words that are called otherwise here.
+//! Scenes with errors in the text: another encoding, slips of syntax, other files, words that have another name here.
 
 use super::*;
 
-/// A scene in another encoding is refused with its place: no letter is replaced in silence.
+/// A scene in another encoding is refused with its location: no character is silently replaced.
 #[test]
 fn a_scene_that_is_no_utf_8_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -14,7 +14,7 @@ fn a_scene_that_is_no_utf_8_is_refused() {
     assert!(said(&output).contains("latin.toml:15:6: error[scene.encoding]"), "{}", said(&output));
 }
 
-/// One slip is one error, however many lines lose their sense by it.
+/// One slip is one error, however many lines become meaningless because of it.
 #[test]
 fn one_slip_of_syntax_is_one_error() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -34,7 +34,7 @@ fn one_slip_of_syntax_is_one_error() {
         assert_eq!(said.matches("error[scene.syntax]").count(), 1, "{said}");
         assert!(said.contains(message) && said.contains(hint), "{said}");
     }
-    // A list that is never closed swallows what follows; the error stands where that begins to make no sense.
+    // An unclosed list includes everything that follows; the error is located where that stops making sense.
     let path = "[[command]]\ndo = \"drag\"\nat = 0\nuntil = 1\nbody = \"ring\"\nnode = 0\npath = [\n  [0, 0, 1],\n  [1, 0, 1\n  [2, 0, 1],\n]\n";
     let more = "[[probe]]\nname = \"p\"\nbody = \"ring\"\nselect = { node = 1 }\nrecord = [\"position\"]\n";
     for (text, place) in [
@@ -51,7 +51,7 @@ fn one_slip_of_syntax_is_one_error() {
             "{said}"
         );
     }
-    // Two slips are two errors, also in lines that follow each other.
+    // Two slips are two errors, also in consecutive lines.
     let two = good.replace("dimension = 2\n", "dimension = = 2\nseed = 1 2\n");
     std::fs::write(folder.path().join("s.toml"), two).expect("a file");
     let output = opruga(folder.path(), &["check", "s.toml"]);
@@ -74,7 +74,7 @@ fn the_file_of_a_shape_is_not_read_as_a_scene() {
     }
 }
 
-/// Words of the field that are called otherwise here, and fields that a new kind does not know.
+/// Terms of the field that have another name here, and fields that a new kind does not have.
 #[test]
 fn other_words_of_the_field_lead_to_ours() {
     let folder = tempfile::tempdir().expect("a folder");

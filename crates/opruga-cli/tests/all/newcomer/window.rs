@@ -1,4 +1,4 @@
-//! The window is built when it is wanted first.
+//! The window is built when it is first used.
 
 use super::*;
 
@@ -9,7 +9,7 @@ fn what_cargo_says_while_it_builds_the_window_is_seen() {
     use std::os::unix::fs::PermissionsExt as _;
     let folder = tempfile::tempdir().expect("a folder");
     let cargo = folder.path().join("cargo");
-    // In its place stands one that says how it was called, where cargo shows how far it is.
+    // It is replaced by a script that prints its arguments where cargo shows its progress.
     std::fs::write(&cargo, "#!/bin/sh\necho \"   Compiling $*\" >&2\n").expect("a file");
     std::fs::set_permissions(&cargo, std::fs::Permissions::from_mode(0o755)).expect("it is one's own");
     for call in [&[][..], &["studio", "heart"]] {

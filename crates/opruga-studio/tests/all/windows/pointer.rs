@@ -332,7 +332,7 @@ fn a_body_from_the_menu_comes_to_the_pointer_and_into_no_other_one() {
     let mut window = Window::open("ball", SIZE);
     for count in 2..6 {
         window.click("Add");
-        // The name of the body that was added last is shown in the panel.
+        // The name of the body that was added last is also shown next to the scene.
         let canvas = window.canvas();
         let entries: Vec<Pos2> = window.harness.get_all_by_label("jelly").map(|entry| entry.rect().center()).collect();
         let at = entries.into_iter().find(|at| canvas.contains(*at)).expect("an entry of the menu");
