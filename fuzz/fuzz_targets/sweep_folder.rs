@@ -1,4 +1,4 @@
-//! Any bytes are the question of a sweep and its table, or typed errors. A zero stands between the two.
+//! Any bytes are the question of a sweep and its table, or typed errors. A zero byte separates the two.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| opruga_fuzz::sweep_folder(bytes));

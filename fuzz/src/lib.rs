@@ -1,5 +1,5 @@
-//! What the fuzz targets do with any bytes, without a fuzzer: the targets in `fuzz_targets` call these functions under
-//! libFuzzer, and the test `opruga/tests/all/fuzz_corpus.rs` with every file of `fuzz/corpus`, on any compiler.
+//! The functions of the fuzz targets, without a fuzzer: the targets in `fuzz_targets` call them with libFuzzer, and the test
+//! `opruga/tests/all/fuzz_corpus.rs` calls them with every file of `fuzz/corpus`, on any compiler.
 
 use opruga::Input;
 use opruga::core::spec::Spec;
@@ -11,10 +11,10 @@ use opruga::sweep::{Design, Question, read_rows};
 use std::io::Cursor;
 use std::sync::Arc;
 
-/// A function for any bytes: what is wrong with the library is a panic.
+/// A function that takes any bytes; an error in the library shows as a panic.
 pub type Target = fn(&[u8]);
 
-/// The targets by their names, which are those of the folders of the corpus.
+/// The targets by their names, which are also those of the folders of the corpus.
 pub const TARGETS: [(&str, Target); 5] = [
     ("checkpoint", checkpoint),
     ("recording", recording),
@@ -23,8 +23,8 @@ pub const TARGETS: [(&str, Target); 5] = [
     ("sweep_folder", sweep_folder),
 ];
 
-/// Any bytes are a scene or a list of errors with places that can be printed: with all models, integrators and obstacles that
-/// the library has, and the files that its scenes name.
+/// Any bytes are a scene or a list of errors with locations that can be printed: with all models, integrators and obstacles of the library, and the
+/// files that its scenes name.
 pub fn scene_reader(bytes: &[u8]) {
     let limits = Limits { nodes: 20_000, bodies: 2_000, memory_bytes: 64 << 20, ..Limits::default() };
     let options = Options { limits, files: opruga::scenes::files(), ..Options::default() };
@@ -46,14 +46,14 @@ static EULER: Spec =
 
 include!("shape_kinds.rs");
 
-/// Any bytes are a shape that is sound, or an error that names the file. The first byte says which format.
+/// Any bytes are a valid shape, or an error that names the file. The first byte selects the format.
 pub fn shape_files(bytes: &[u8]) {
     let Some((which, bytes)) = bytes.split_first() else { return };
     let (dimension, name, shape) = SHAPES[usize::from(*which) % SHAPES.len()];
     let text = format!(
         "format = \"opruga-1\"\ndimension = {dimension}\n[time]\nseconds = 1\n[integrator]\nkind = \"symplectic_euler\"\n\
          [[body]]\nname = \"it\"\nmass = 1\nshape = {{ file = \"{}\", {shape} }}\n",
-        // The cells are what a scene names.
+        // The scene names the file with the cells.
         name.replace(".node", ".ele")
     );
     let catalogue = Catalogue { models: vec![], integrators: vec![&EULER], colliders: vec![] };
@@ -71,7 +71,7 @@ pub fn shape_files(bytes: &[u8]) {
     }
 }
 
-/// Any bytes are the question of a sweep and its table, or typed errors. A zero stands between the two.
+/// Any bytes are the question of a sweep and its table, or typed errors. A zero byte separates the two.
 pub fn sweep_folder(bytes: &[u8]) {
     let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
     let (question, table) = (&bytes[..end], bytes.get(end + 1..).unwrap_or_default());
@@ -80,13 +80,13 @@ pub fn sweep_folder(bytes: &[u8]) {
         Ok(question) => question,
         Err(error) => return printable(error.to_string()),
     };
-    // Reading what was written asks the same.
+    // Reading the written question gives the same question.
     assert!(Question::read(question.to_text().as_bytes()).is_ok_and(|again| again.same(&question)));
     let sweep = match question.sweep(&opruga::Registries::default()) {
         Ok(sweep) => sweep,
         Err(errors) => return errors.iter().for_each(|error| printable(error.to_string())),
     };
-    // A sample asks for as many points as it likes.
+    // A sample may ask for any number of points.
     if matches!(sweep.design, Design::Sample { count, .. } if count > 1000) {
         return;
     }
@@ -99,9 +99,9 @@ pub fn sweep_folder(bytes: &[u8]) {
     }
 }
 
-/// Any bytes are a recording whose frames and inputs can be asked for, or a typed error.
+/// Any bytes are a recording whose frames and inputs can be read, or a typed error.
 pub fn recording(bytes: &[u8]) {
-    // What a program did stands in chunks of its own.
+    // The actions of a program are in separate chunks.
     let _ = Input::<2>::from_bytes(bytes);
     let _ = Input::<3>::from_bytes(bytes);
     let Ok(mut recording) = Recording::open(Cursor::new(bytes)) else { return };

@@ -1,6 +1,6 @@
-/// The shapes that a file is read as: dimension, name of the file, shape. The first byte of an input says which.
+/// The shapes as which a file is read: dimension, name of the file, shape. The first byte of an input selects one.
 ///
-/// The fuzz target `shape_files` and the test `shape_fuzz` have it in common, and begin from `fuzz/corpus/shape_files`.
+/// The fuzz target `shape_files` and the test `shape_fuzz` share this list, and start from `fuzz/corpus/shape_files`.
 const SHAPES: [(u8, &str, &str); 25] = [
     (2, "a.svg", "kind = \"svg\", spacing = 0.2, size = 1.0, filling = \"triangles\""),
     (2, "a.svg", "kind = \"svg\", spacing = 0.1, size = 1.0, overlap = \"union\""),
@@ -29,6 +29,6 @@ const SHAPES: [(u8, &str, &str); 25] = [
     (3, "a.msh", "kind = \"surface\""),
 ];
 
-/// The two files of a mesh of TetGen, of which one is made of any bytes.
+/// The two files of a TetGen mesh; any bytes replace one of them.
 const NODES: &[u8] = b"4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n";
 const CELLS: &[u8] = b"1 4 0\n1 1 2 3 4\n";

@@ -1,22 +1,22 @@
-//! Unpacks the program of the studio's page. Browsers unpack gzip by themselves, but LZMA takes three tenths less on the way.
-//! This is a module of its own, because it must run before the studio arrives.
+//! Unpacks the program of the studio's web page. Browsers unpack gzip by themselves, but LZMA is three tenths smaller to transfer. This is a separate
+//! module because it must run before the studio has been loaded.
 
 use lzma_rust2::LzmaReader;
 use std::io::Read;
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::wasm_bindgen;
 
-/// The most memory that a file may ask for [KiB]: four times what `cargo xtask web` asks for.
+/// The largest memory that a file may ask for [KiB]: four times what `cargo xtask web` uses.
 const MOST_MEMORY: u32 = 64 << 10;
 
 /// Returns the content of a file in the format of `lzma_alone` that states its length.
 ///
 /// # Errors
-/// The file is damaged, is cut short, or asks for more than 64 MiB.
+/// The file is damaged, is truncated, or asks for more than 64 MiB.
 #[cfg_attr(target_arch = "wasm32", wasm_bindgen)]
 pub fn unpack(packed: &[u8]) -> Result<Vec<u8>, String> {
     let failed = |error: std::io::Error| format!("the packed program is damaged: {error}");
-    // The length is stated behind the byte of the properties and the size of the dictionary.
+    // The length follows the byte of the properties and the size of the dictionary.
     let stated = packed.get(5..13).and_then(|bytes| bytes.try_into().ok()).map(u64::from_le_bytes);
     let mut reader = LzmaReader::new_mem_limit(packed, MOST_MEMORY, None).map_err(failed)?;
     let mut content = Vec::new();

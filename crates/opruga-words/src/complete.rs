@@ -1,4 +1,4 @@
-//! What a translation lacks: for tests.
+//! Gaps in a translation, for tests.
 
 use crate::{Translation, entry_name};
 use fluent_syntax::ast::{Expression, InlineExpression, Pattern, PatternElement};
@@ -6,7 +6,7 @@ use opruga_math::message::Variant;
 use std::collections::BTreeSet;
 
 impl Translation {
-    /// What is missing or too much for these variants: entries, attributes, fields.
+    /// Entries, attributes and fields that are missing or superfluous for these variants.
     pub fn gaps<'v>(&self, variants: impl Iterator<Item = &'v Variant>) -> Vec<String> {
         let (mut problems, mut names) = (Vec::new(), BTreeSet::new());
         for variant in variants {
@@ -41,10 +41,10 @@ impl Translation {
     }
 }
 
-/// Whether the source of a text has a field: within braces, or outside of its quotes.
+/// Whether the source of a text contains a field: within braces, or outside quotes.
 fn names_field(source: &str, field: &str) -> bool {
     let word = |text: &str| text.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == field);
-    // Every other piece stands in quotes; escaped quotes change nothing in texts without braces around them.
+    // Every other piece is in quotes; escaped quotes do not matter in texts without braces around them.
     let plain = source.replace("\\\"", "");
     plain.split('"').enumerate().any(|(index, piece)| match index % 2 {
         1 => piece.split('{').skip(1).any(|gap| word(gap.split('}').next().unwrap_or_default())),

@@ -1,12 +1,12 @@
-//! Errors, warnings and names of kinds in other languages: translations in Fluent syntax, read by code, variant and fields of a message,
-//! and by the path of what is named.
+//! Errors, warnings and names of kinds in other languages: translations in Fluent syntax, looked up by code, variant and fields of a message, and by
+//! the path of a name.
 //!
-//! An entry is called after the code and the variant, with `-` for the point: `msh-version-Unknown`. Its attributes `.allowed` and
-//! `.hint` are the texts of these names. A field is a variable; where it is a message itself, its own entry is taken. A selector
-//! compares a count with numbers and with plural categories of the language, a text with itself, a message with its variant, and
-//! `none` with a field that is not there. `NUMBER` knows `maximumSignificantDigits`, which is 6 without it. `ALLOWED` is what a field
-//! that is a message says is allowed, `HINT` what it says would help, and where it says nothing the text of the next field. `ABOUT` is
-//! the line about the parameter whose path a field has. An entry that comes out empty is no translation: English takes its place.
+//! An entry is named after the code and the variant, with `-` instead of the point: `msh-version-Unknown`. Its attributes `.allowed` and `.hint` are
+//! the texts of the same name. A field is a variable; if it is a message itself, its own entry is used. A selector compares a count with numbers and
+//! with plural categories of the language, a text with itself, a message with its variant, and `none` with a missing field. `NUMBER` supports
+//! `maximumSignificantDigits`, which is 6 by default. `ALLOWED` gives what a field that is a message says is allowed, and `HINT` what it says would
+//! help; if it says nothing, the text of the next field is used. `ABOUT` is the line about the parameter whose path is in a field. An entry that
+//! becomes empty is not a translation, and English is used instead.
 //!
 //! # Source
 //! Project Fluent, "Fluent Syntax Guide", <https://projectfluent.org/fluent/guide/>; Unicode CLDR, "Language Plural Rules".
@@ -26,7 +26,7 @@ pub use names::Named;
 
 static CROATIAN: LazyLock<Translation> = LazyLock::new(|| {
     let translation = Translation::new(&CROATIAN_FILES).0;
-    // A test looks for problems.
+    // A test checks for problems.
     let _ = translation.add_names(CROATIAN_NAMES);
     translation
 });
@@ -34,7 +34,7 @@ static CROATIAN: LazyLock<Translation> = LazyLock::new(|| {
 /// The Croatian names of kinds and parameters.
 const CROATIAN_NAMES: &str = include_str!("../hr/kinds.ftl");
 
-/// The Croatian texts, by what writes them.
+/// The Croatian texts, by their origin.
 const CROATIAN_FILES: [&str; 11] = [
     include_str!("../hr/problems.ftl"),
     include_str!("../hr/limits.ftl"),
@@ -62,7 +62,7 @@ impl Translation {
         &CROATIAN
     }
 
-    /// The texts of files, and what is wrong with them. Of two entries of one name the later one counts.
+    /// Parses the texts of files; also returns their errors. If two entries have the same name, the later one is used.
     fn new(files: &[&'static str]) -> (Translation, Vec<String>) {
         let (mut translation, mut problems) = (Translation::default(), Vec::new());
         for file in files {
@@ -81,13 +81,13 @@ impl Translation {
         (translation, problems)
     }
 
-    /// What a message says; none where the translation does not know it.
+    /// The text of a message; none if the translation does not contain it.
     pub fn text(&self, message: &dyn Message) -> Option<String> {
         let pattern = self.entry(message)?.value.as_ref()?;
         Some(self.resolved(pattern, &message.fields())).filter(|text| !text.is_empty())
     }
 
-    /// What a message says, in English where the translation does not know it.
+    /// The text of a message, in English if the translation does not contain it.
     pub fn text_or_english(&self, message: &dyn Message) -> String {
         self.text(message).unwrap_or_else(|| message.to_string())
     }
@@ -102,7 +102,7 @@ impl Translation {
         self.beside(message, "hint").or_else(|| message.hint())
     }
 
-    /// What a message says, what is allowed and what would help, as [`Message::in_full`] has it in English.
+    /// The text of a message, with what is allowed and what would help, corresponding to [`Message::in_full`] in English.
     pub fn in_full(&self, message: &dyn Message) -> Option<String> {
         let beside = [("dopušteno", self.allowed(message)), ("savjet", self.hint(message))];
         let beside = beside.into_iter().filter_map(|(label, text)| text.map(|text| format!("; {label}: {text}")));
@@ -114,7 +114,7 @@ impl Translation {
         Some(self.resolved(&pattern.value, &message.fields())).filter(|text| !text.is_empty())
     }
 
-    /// What the first field says beside its text, or the text of the first of the others that is there.
+    /// The secondary text of the first field, or the text of the first of the others that exists.
     fn beside_of(
         &self,
         name: &str,
@@ -136,7 +136,7 @@ impl Translation {
         texts.flatten().next().unwrap_or_default()
     }
 
-    /// The line about the parameter whose path a field has; empty where the language has none.
+    /// The line about the parameter whose path is in a field; empty if the language has none.
     fn about(&self, arguments: &CallArguments<&'static str>, fields: &[(&'static str, Field)]) -> String {
         let Some(InlineExpression::VariableReference { id }) = arguments.positional.first() else {
             return String::new();
@@ -187,7 +187,7 @@ impl Translation {
                 let chosen = chosen.or_else(|| variants.iter().find(|variant| variant.default));
                 chosen.map_or_else(String::new, |variant| self.resolved(&variant.value, fields))
             }
-            // Terms have no use here.
+            // Terms are not supported here.
             _ => String::new(),
         }
     }
@@ -200,7 +200,7 @@ fn entry_name(code: &str, variant: &str) -> String {
     format!("{}-{variant}", code.replace('.', "-"))
 }
 
-/// A number with so many significant digits, as `NUMBER($x, maximumSignificantDigits: 3)` asks for.
+/// A number with a given number of significant digits, as requested by `NUMBER($x, maximumSignificantDigits: 3)`.
 fn number_of(arguments: &CallArguments<&'static str>, fields: &[(&'static str, Field)]) -> String {
     let digits = arguments.named.iter().find_map(|argument| match &argument.value {
         InlineExpression::NumberLiteral { value } => value.parse().ok(),
@@ -219,7 +219,7 @@ fn field<'f>(fields: &'f [(&'static str, Field)], name: &str) -> Option<&'f Fiel
     fields.iter().find(|(known, _)| *known == name).map(|(_, value)| value)
 }
 
-/// Whether a case of a selector is that of a value.
+/// Whether a case of a selector matches a value.
 fn fits(key: &VariantKey<&str>, value: &Field) -> bool {
     match (key, value) {
         (VariantKey::NumberLiteral { value }, Field::Count(count)) => value.parse() == Ok(*count),

@@ -1,7 +1,7 @@
-//! Names of kinds, of their parameters and of the words that these take.
+//! Names of kinds, of their parameters and of the values of these.
 //!
-//! An entry is called after what it names: `model-fem` a kind, `model-fem-plane` a parameter of it, `model-every-plane` this parameter of
-//! all kinds without a line of their own. Its attribute `.about` is a line about it.
+//! An entry is named after its subject: `model-fem` is a kind, `model-fem-plane` is a parameter of it, `model-every-plane` is this parameter of all
+//! kinds without their own line. Its attribute `.about` is a description.
 
 use crate::Translation;
 use fluent_syntax::ast::{Entry, Pattern, PatternElement};
@@ -9,12 +9,12 @@ use fluent_syntax::parser::parse_runtime;
 use std::collections::HashMap;
 use std::sync::PoisonError;
 
-/// A name with a line about what it names; that is empty where nothing is to be said.
+/// A name with a description, which may be empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Named {
     /// The name.
     pub name: &'static str,
-    /// One line.
+    /// The description in one line.
     pub about: &'static str,
 }
 
@@ -22,12 +22,12 @@ pub struct Named {
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     lines: HashMap<&'static str, Named>,
-    /// Of every parameter the first line, whatever its kind.
+    /// The first line for every parameter, whatever its kind.
     parameters: HashMap<&'static str, Named>,
 }
 
 impl Names {
-    /// Adds the names of a text in Fluent syntax; returns what is wrong with it, which is left out.
+    /// Adds the names of a text in Fluent syntax; returns its errors. Entries with errors are skipped.
     pub(crate) fn add(&mut self, text: &'static str) -> Vec<String> {
         let mut problems = Vec::new();
         let resource = parse_runtime(text).unwrap_or_else(|(resource, errors)| {
@@ -57,7 +57,7 @@ impl Names {
     }
 }
 
-/// The text of a pattern of one line without variables.
+/// The text of a single-line pattern without variables.
 fn plain(pattern: &Pattern<&'static str>) -> Option<&'static str> {
     match pattern.elements.as_slice() {
         [PatternElement::TextElement { value }] => Some(*value),
@@ -66,19 +66,18 @@ fn plain(pattern: &Pattern<&'static str>) -> Option<&'static str> {
 }
 
 impl Translation {
-    /// What a path names, such as `["model", "fem"]`, `["model", "fem", "plane"]` or `["choice", "stress"]`; none where the
-    /// language has no name for it.
+    /// The name for a path such as `["model", "fem"]`, `["model", "fem", "plane"]` or `["choice", "stress"]`; none if the language does not have it.
     pub fn named(&self, path: &[&str]) -> Option<Named> {
         let names = self.names.read().unwrap_or_else(PoisonError::into_inner);
         names.lines.get(&*path.join("-")).copied()
     }
 
-    /// A parameter of a kind: by its own line, or by that of all kinds which have a parameter of this name.
+    /// The name of a parameter of a kind: from its own line, or from that of all kinds with a parameter of this name.
     pub fn named_parameter(&self, part: &str, kind: &str, parameter: &str) -> Option<Named> {
         self.named(&[part, kind, parameter]).or_else(|| self.named(&[part, "every", parameter]))
     }
 
-    /// A parameter of which nobody says whose it is.
+    /// The name of a parameter whose kind is unknown.
     pub fn any_parameter(&self, parameter: &str) -> Option<Named> {
         let names = self.names.read().unwrap_or_else(PoisonError::into_inner);
         names.parameters.get(parameter).copied()
@@ -87,13 +86,13 @@ impl Translation {
     /// Adds the names of kinds that a program registers, in Fluent syntax.
     ///
     /// # Errors
-    /// What is wrong with the text: its syntax, names that are there already, names with variables. All others are added.
+    /// The errors of the text: its syntax, existing names, names with variables. All other entries are added.
     pub fn add_names(&self, text: &'static str) -> Result<(), Vec<String>> {
         let problems = self.names.write().unwrap_or_else(PoisonError::into_inner).add(text);
         if problems.is_empty() { Ok(()) } else { Err(problems) }
     }
 
-    /// The paths of all names, joined by `-`, in the order of the alphabet.
+    /// The paths of all names, joined by `-`, in alphabetical order.
     pub fn paths(&self) -> Vec<&'static str> {
         let names = self.names.read().unwrap_or_else(PoisonError::into_inner);
         let mut paths: Vec<&str> = names.lines.keys().copied().collect();

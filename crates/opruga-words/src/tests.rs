@@ -100,7 +100,7 @@ fn names_are_found_by_their_path_and_those_of_a_program_beside_them() {
     let parameter = |kind| translation.named_parameter("model", kind, "size").map(|known| known.name);
     assert_eq!((parameter("bed"), parameter("sofa")), (Some("širina"), Some("veličina")));
     assert_eq!(translation.any_parameter("size").map(|known| known.name), Some("širina"), "the first line");
-    // What is wrong is left out, what is right beside it is there.
+    // Entries with errors are skipped, and valid ones next to them are added.
     let problems = translation.add_names("model-bed = ležaj\nmodel-sofa = { $x }\nmodel-chair = stolac\n").unwrap_err();
     assert_eq!(problems, ["`model-bed` is named already", "`model-sofa` is not one plain line"]);
     assert_eq!(name(&["model", "chair"]), Some(("stolac", "")));

@@ -1,4 +1,4 @@
-//! The Croatian texts are those of the messages that the crates have, no more and no fewer.
+//! The Croatian texts match the messages of the crates exactly.
 
 use opruga_core::error::StepError;
 use opruga_core::spec::{Default, Spec};
@@ -46,8 +46,8 @@ fn every_message_has_a_croatian_text_with_its_fields() {
     assert!(gaps.is_empty(), "{gaps:#?}");
 }
 
-/// `tests/texts.txt` holds the text of every variant of every code once in each language. `OPRUGA_TABLES=write` writes it anew: a change of
-/// a text is seen there.
+/// `tests/texts.txt` contains the text of every variant of every code, once in each language. `OPRUGA_TABLES=write` writes it again, which shows
+/// every change of a text.
 #[test]
 fn the_text_of_every_code_is_pinned_in_both_languages() {
     let own = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -57,7 +57,7 @@ fn the_text_of_every_code_is_pinned_in_both_languages() {
         let name = format!("{}-{}", variant.code.replace('.', "-"), variant.name);
         let mut text = format!("{name}\n");
         for (label, english) in ["en", "en allowed", "en hint"].iter().zip(variant.english) {
-            // The compiler breaks long ones where it likes.
+            // The compiler may break long ones anywhere.
             let words: Vec<&str> = english.split_whitespace().collect();
             if !words.is_empty() {
                 text += &format!("  {label}: {}\n", words.join(" "));
@@ -77,7 +77,7 @@ fn the_text_of_every_code_is_pinned_in_both_languages() {
     assert!(pinned == all, "texts have changed, first {other:?}: run this test with OPRUGA_TABLES=write");
 }
 
-/// The entries of the catalogues as they are written, by their names.
+/// The source of the entries of the catalogues, by name.
 fn croatian_entries(folder: &Path) -> BTreeMap<String, String> {
     let mut entries: BTreeMap<String, String> = BTreeMap::new();
     for file in std::fs::read_dir(folder).expect("the catalogues").flatten() {
@@ -112,8 +112,8 @@ fn what_a_model_refuses_in_a_step_comes_with_what_helps_under_the_settings_of_th
     );
 }
 
-/// A field that a scene leaves out is explained by its documentation. Croatian has a line about it; for a kind that a program adds and
-/// does not name, English takes its place.
+/// A missing field of a scene is explained by its documentation. Croatian has a line about it; for a kind that a program adds without names, English
+/// is used.
 #[test]
 fn a_missing_field_is_explained_in_both_languages() {
     let hints = |text: &str| {
@@ -149,7 +149,7 @@ opruga_math::messages! {
     }
 }
 
-/// Of the sections of a scene, every field that has no default has a line in Croatian, and no other field has one.
+/// Every field without a default in the sections of a scene has a line in Croatian, and no other field has one.
 #[test]
 fn what_a_scene_cannot_leave_out_has_a_croatian_line() {
     let mut named = BTreeSet::new();
@@ -172,7 +172,7 @@ fn what_a_scene_cannot_leave_out_has_a_croatian_line() {
     assert!(stale.is_empty(), "{stale:?}");
 }
 
-/// A section and all within it.
+/// A section and its subsections.
 fn of_section(section: &'static Section, check: &mut impl FnMut(&Spec)) {
     check(section.spec);
     for child in section.children {
@@ -212,7 +212,7 @@ fn every_enum_of_messages_is_listed() {
     assert!(missing.is_empty(), "{missing:?}");
 }
 
-/// The texts of all sources of a folder, without their tests.
+/// The texts of all source files in a folder, without their tests.
 fn sources(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).expect("a folder").flatten().map(|entry| entry.path());
     entries

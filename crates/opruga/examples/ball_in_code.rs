@@ -1,4 +1,4 @@
-//! A pressurised ball in code, without a scene file: it falls on a floor and bounces.
+//! A pressurised ball made in code, without a scene file, falls on a floor and bounces.
 
 use opruga::blueprint::{Blueprint, BodyBlueprint, ColliderBlueprint, Mass};
 use opruga::{Options, Registry, World, WorldError, mesh::Mesh};
@@ -34,7 +34,7 @@ pub(crate) fn heights(world: &mut World<2>) -> Result<Vec<f64>, WorldError> {
         .collect()
 }
 
-/// Returns when the ball meets the floor [s], and how far it rises again [m].
+/// Returns when the ball reaches the floor [s], and how far it rises again [m].
 pub(crate) fn run() -> Result<(f64, f64), Box<dyn std::error::Error>> {
     let mut world = World::new(scene()?, Options::default())?;
     let heights = heights(&mut world)?;

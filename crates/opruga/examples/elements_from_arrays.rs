@@ -1,4 +1,4 @@
-//! A body of finite elements from arrays of nodes and cells: a bar of six tetrahedra is held at one end and pulled at the other.
+//! A body of finite elements from arrays of nodes and cells: a bar of six tetrahedra is pinned at one end and pulled at the other.
 
 use opruga::blueprint::{Blueprint, BodyBlueprint, LoadBlueprint, LoadKind, Mass, PinBlueprint, Selector};
 use opruga::mesh::{Cells, Mesh};
@@ -19,7 +19,7 @@ const NODES: [[f64; 3]; 8] = [
 /// Six tetrahedra around the diagonal from node 0 to node 6; (X₁ − X₀) · ((X₂ − X₀) × (X₃ − X₀)) > 0.
 const TETRAHEDRA: [[u32; 4]; 6] = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
 
-/// A pull of 1 kPa along the bar; returns how much longer it gets [m], and σ L / E [m].
+/// Pulls along the bar with 1 kPa; returns its elongation [m], and σ L / E [m].
 pub(crate) fn run() -> Result<[f64; 2], Box<dyn std::error::Error>> {
     let cells = Cells { tetrahedra: TETRAHEDRA.to_vec(), ..Cells::default() };
     let mut mesh = Mesh::<3> { positions: NODES.to_vec(), cells, ..Mesh::default() };

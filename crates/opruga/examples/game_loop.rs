@@ -1,4 +1,4 @@
-//! A game loop: the player pulls a ball by its top, a second ball comes, and the first one goes.
+//! A game loop: the player pulls a ball by its top, a second ball is added, and the first one is removed.
 
 use opruga::blueprint::{Action, CommandBlueprint};
 use opruga::{Options, World};
@@ -7,7 +7,7 @@ use opruga::{Options, World};
 #[allow(dead_code)]
 mod ball_in_code;
 
-/// Returns how high the pull lifts the ball [m], how many bodies there are at the end, and the code of the old handle's error.
+/// Returns how far the pull lifts the ball [m], the number of bodies at the end, and the code of the error for the old handle.
 pub(crate) fn run() -> Result<(f64, usize, &'static str), Box<dyn std::error::Error>> {
     let mut world = World::new(ball_in_code::scene()?, Options::default())?;
     for _ in 0..60 {
@@ -15,7 +15,7 @@ pub(crate) fn run() -> Result<(f64, usize, &'static str), Box<dyn std::error::Er
     }
     let ball = world.body("ball").and_then(|body| world.handle(body)).ok_or("there is no ball")?;
 
-    // The pointer takes node 9, the top, and rises by 2 m/s for one second. Its path is one point now; each turn adds one.
+    // The pointer grabs node 9, the top, and rises by 2 m/s for one second. Its path is one point now; each iteration adds another.
     let body = world.resolve(ball)?;
     let (at, top) = (world.time(), world.position(body, 9));
     let pull = Action::Drag {
@@ -34,7 +34,7 @@ pub(crate) fn run() -> Result<(f64, usize, &'static str), Box<dyn std::error::Er
     }
     let lifted = ball_in_code::lowest(&world);
 
-    // A second ball comes beside the first one, with its shape and models.
+    // A second ball with the shape and models of the first one is added next to it.
     let mut second = world.view(ball)?.blueprint().clone();
     (second.name, second.translation) = ("second".into(), [3.0, 0.0]);
     world.add_body(second)?;
@@ -42,7 +42,7 @@ pub(crate) fn run() -> Result<(f64, usize, &'static str), Box<dyn std::error::Er
         world.frame()?;
     }
 
-    // The first one goes; its handle never means another body.
+    // The first one is removed; its handle never means another body.
     world.remove_body("ball")?;
     world.frame()?;
     let error = world.view(ball).err().ok_or("the handle outlives its body")?;

@@ -1,4 +1,4 @@
-//! An integrator of your own: x₁ = x₀ + h v₀ + ½ h² a₀, v₁ = v₀ + h a₀. It is exact in free fall.
+//! A custom integrator: x₁ = x₀ + h v₀ + ½ h² a₀, v₁ = v₀ + h a₀. It is exact in free fall.
 
 use opruga::extend::*;
 use opruga::{Options, Registry, World};
@@ -35,7 +35,7 @@ impl Integrator<2> for Taylor {
         Ok(())
     }
 }
-/// How far a ring of springs falls in half a second under an integrator [m].
+/// How far a ring of springs falls in half a second with an integrator [m].
 pub(crate) fn run(integrator: &str) -> Result<f64, Box<dyn std::error::Error>> {
     let mut registry = Registry::<2>::default();
     registry.add_integrator(Box::new(Taylor));

@@ -1,4 +1,4 @@
-//! A model of your own: a springy bed that ties every node to its rest position, U = ½ k |x − X|².
+//! A custom model: an elastic bed that attaches every node to its rest position, U = ½ k |x − X|².
 
 use opruga::blueprint::{Blueprint, BodyBlueprint, Mass};
 use opruga::extend::*;
@@ -23,7 +23,7 @@ impl Model<2> for BedModel {
 struct Bed(f64, Vec<[f64; 2]>);
 impl Potential<2> for Bed {
     fn properties(&self) -> Properties {
-        // Forces alone: implicit integrators need the Hessian, the ledger needs the energy.
+        // Only forces: implicit integrators would need the Hessian, and the ledger would need the energy.
         Properties::new(SPEC.kind, Views::default())
     }
     fn add_force(&self, _: Simd, view: &View<2>, _: &[f64], tile: &mut Tile<2>) {
@@ -37,7 +37,7 @@ impl Potential<2> for Bed {
 
 impl Observe<2> for Bed {}
 
-/// A ring sags on the bed for half a swing; returns how far [m], and the closed form 2 m g / k [m].
+/// A ring sinks into the bed for half a period; returns how far [m], and the closed form 2 m g / k [m].
 pub(crate) fn run() -> Result<[f64; 2], Box<dyn std::error::Error>> {
     let mut registry = Registry::<2>::default();
     registry.add_model(Box::new(BedModel));

@@ -2,10 +2,10 @@
 
 use opruga::sweep::{Status, Sweep, number};
 
-/// Returns (nRT [J], bounce height [m]) of every run.
+/// Returns nRT [J] and the bounce height [m] of every run.
 pub(crate) fn run() -> Result<Vec<(f64, f64)>, Box<dyn std::error::Error>> {
     let text = opruga::scenes::find("ball").ok_or("there is no such scene")?;
-    // One value holds for every run, several make an axis, as on the command line.
+    // A single value applies to every run, several values form an axis, as on the command line.
     let axes = ["time.seconds=2", "body.ball.models.pressure.nRT=20,40,80,160"];
     let sweep = Sweep::new("ball", text, &axes, &["bounce_height.ball"])?;
     let rows = sweep.run().map_err(|errors| errors[0].to_string())?;

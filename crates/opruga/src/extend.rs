@@ -1,4 +1,4 @@
-//! What a model or an integrator of your own is made of.
+//! The parts of a custom model or integrator.
 
 pub use opruga_core::error::{BuildError, StepError};
 pub use opruga_core::history::{Channel, History, PerBody, PerNode};
@@ -14,13 +14,13 @@ pub use opruga_math::{Pack, Simd};
 
 use std::ops::Range;
 
-/// A rule that moves every coordinate by itself to the end of the step, one after the other: short to write. The rules of this
-/// library work on eight numbers at a time instead.
+/// An integrator that moves every coordinate independently to the end of the step, one after the other. It is short to write; the integrators of this
+/// library process eight numbers at a time instead.
 #[derive(Clone, Copy, Debug)]
 pub struct ByCoordinate<F> {
     /// The substep [s].
     pub h: f64,
-    /// From the position x [m], the velocity v [m/s] and the acceleration a [m/s²] at the start of the step to x and v at its end.
+    /// The map from the position x [m], the velocity v [m/s] and the acceleration a [m/s²] at the start of the step to x and v at its end.
     pub rule: F,
 }
 

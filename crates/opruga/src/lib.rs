@@ -44,12 +44,12 @@ pub use opruga_world::{
     Registry, Warning, World, WorldError, blueprint,
 };
 
-/// What scenes can name: the models, integrators and colliders of this library.
+/// The models, integrators and colliders of this library, which scenes can name.
 pub fn catalogue() -> io::Catalogue {
     catalogue_of(&Registries::default())
 }
 
-/// What scenes can name where a program has added models or integrators of its own: those of the plane, then those that only space has.
+/// Everything that scenes can name in a program with its own models or integrators: the kinds for the plane, then those that exist only in space.
 pub fn catalogue_of(registries: &Registries) -> io::Catalogue {
     let both = |plane: Vec<&'static Spec>, space: Vec<&'static Spec>| {
         let same = |a: &Spec, b: &Spec| (a.kind, a.dimensions) == (b.kind, b.dimensions);
@@ -64,12 +64,12 @@ pub fn catalogue_of(registries: &Registries) -> io::Catalogue {
     }
 }
 
-/// The program of docs/library.md, for the tests.
+/// The program in docs/library.md, for the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/library.md")]
 struct Library;
 
-/// README.md may get a program too.
+/// README.md may contain a program, too.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 struct Readme;

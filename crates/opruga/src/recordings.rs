@@ -43,25 +43,25 @@ use opruga_world::{AnyBody, AnyWorld};
 use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
 
-/// What it takes to write a byte of a state, with its coding [ns].
+/// The time to encode and write one byte of a state [ns].
 const BYTE: f64 = 2.1;
-/// What it takes to keep a state, however small [ns].
+/// The fixed time to keep a state [ns].
 const STATE: f64 = 3_000.0;
-/// What a frame takes, however small [ns].
+/// The fixed time of a frame [ns].
 const FRAME: f64 = 4_000.0;
-/// What a node, a cell and a facet of space add to a step of an explicit rule, at least [ns].
+/// A lower bound of the time that a node, a cell and a facet in space add to a step of an explicit integrator [ns].
 const WORK: [f64; 3] = [1.0, 3.0, 4.0];
-/// How much more a step of an implicit rule takes, at least.
+/// A lower bound of the factor by which a step of an implicit integrator takes longer.
 const IMPLICIT: f64 = 500.0;
-/// The part of a run that keeping its states may take; the hashes of all frames take another.
+/// The fraction of a run that keeping its states may take; the hashes of all frames take the same again.
 const SHARE: f64 = 0.05;
-/// The work that a kill may cost [ns]: to give each of many small frames to the system would take as long as to compute it.
+/// The work that a kill may cost [ns]: giving each of many small frames to the system separately would take as long as computing it.
 const TOGETHER: f64 = 100_000.0;
-/// The most frames from one state to the next: what the head of a recording can say.
+/// The largest number of frames from one state to the next: the limit of the header of a recording.
 const FARTHEST: f64 = u32::MAX as f64;
 
-/// What a frame of a world takes on a common machine, at least [ns]. It follows from the scene alone: the same run gives the
-/// same recording everywhere.
+/// A lower bound of the time of a frame of a world on a common machine [ns]. It depends only on the scene, so that the same run gives the same
+/// recording everywhere.
 fn work(world: &dyn AnyWorld) -> f64 {
     let scene = world.scene();
     let dimension = scene.dimension();
@@ -75,9 +75,9 @@ fn work(world: &dyn AnyWorld) -> f64 {
     FRAME + f64::from(scene.time().substeps) * scene.bodies().map(step).sum::<f64>()
 }
 
-/// How many frames a state is to be kept, where nobody says it: so many that a run is less than a tenth slower by it and
-/// by the hashes of all frames. To see a frame that is not kept takes as many frames at most, which is some twenty times
-/// what it took to keep a state, whatever the scene: a twentieth of a second for a hundred thousand numbers.
+/// The default number of frames from one kept state to the next, chosen so that keeping states and the hashes of all frames slow the run down by less
+/// than a tenth. To show a frame that is not kept, at most this number of frames must be computed, which takes about twenty times as long as keeping
+/// a state, whatever the scene: a twentieth of a second for a hundred thousand numbers.
 pub fn states_apart(world: &dyn AnyWorld) -> u64 {
     let scene = world.scene();
     let nodes: usize = scene.bodies().map(|body| body.nodes()).sum();
@@ -87,20 +87,21 @@ pub fn states_apart(world: &dyn AnyWorld) -> u64 {
     if apart < FARTHEST { apart as u64 } else { FARTHEST as u64 }
 }
 
-/// How many frames go to the system together at most: what a kill costs. One, but of small scenes a tenth of a millisecond.
+/// The largest number of frames that go to the system together, and that a kill may cost: one, but for small scenes a tenth of a millisecond of
+/// frames.
 pub fn frames_together(world: &dyn AnyWorld) -> u64 {
     let together = TOGETHER / work(world);
     if together > 1.0 { together as u64 } else { 1 }
 }
 
-/// A recording that is being written: states of a world, and what the program does to it.
+/// A recording that is being written: the states of a world, and the actions of the program on it.
 #[derive(Debug)]
 pub struct Tape {
     file: RecordingFile,
     path: PathBuf,
-    /// From one frame whose state is kept to the next.
+    /// The number of frames from one kept state to the next.
     every: u64,
-    /// Frames that go to the system together.
+    /// The number of frames that go to the system together.
     together: u64,
     /// The first frame.
     first: u64,
@@ -118,7 +119,7 @@ opruga_math::messages! {
 }
 
 opruga_math::terms! {
-    /// What helps where a recording can go no further.
+    /// What helps if a recording cannot continue.
     pub enum TapeHint = "part.tape_hint" {
         RunEnded = "the run has ended here; --resume goes on from its checkpoint, with --record to another file",
     }
@@ -137,14 +138,14 @@ pub enum TapeError {
     /// The file could not be read.
     #[error(transparent)]
     Read(#[from] RecordingError),
-    /// The world refuses.
+    /// The world refused something.
     #[error(transparent)]
     World(#[from] WorldError),
 }
 
 impl Tape {
-    /// Makes the file with its header; the world writes down from now on what the program does to it. The present frame
-    /// is the first; what the program has done before is not in the recording.
+    /// Makes the file with its header. From now on the world logs the actions of the program. The present frame is the first; earlier actions of the
+    /// program are not in the recording.
     ///
     /// # Errors
     /// Those of [`RecordingFile::create`].
@@ -158,7 +159,7 @@ impl Tape {
         Ok(tape)
     }
 
-    /// Steps the world through a frame and adds that.
+    /// Steps the world through a frame and adds the frame.
     ///
     /// # Errors
     /// Those of [`AnyWorld::frame`] and [`Tape::push`].
@@ -167,12 +168,12 @@ impl Tape {
         Ok(self.push(world)?)
     }
 
-    /// Adds the present frame of the world, which is the one behind the last, and before it what the program has done since
-    /// then. Its state is kept where its turn has come, its hash in any case.
+    /// Adds the present frame of the world, which follows the last one, and before it the actions of the program since then. Its hash is always kept,
+    /// its state only if it is due.
     ///
     /// # Errors
-    /// [`WriteError`] where the file cannot be written, or for what cannot be recorded: bodies and forces that the program
-    /// has made itself (`recording.input`), and for a frame that is not the next one. The frames before are whole.
+    /// [`WriteError`] if the file cannot be written, or for actions that cannot be recorded: bodies and forces that the program has made itself
+    /// (`recording.input`); also for a frame that is not the next one. The earlier frames are intact.
     pub fn push(&mut self, world: &mut dyn AnyWorld) -> Result<(), WriteError> {
         let frame = world.frames();
         self.inputs(world, frame)?;
@@ -189,7 +190,7 @@ impl Tape {
         self.file.keep(world.frames(), world.frame_hash(), |out| world.snapshot_into(out))
     }
 
-    /// Adds what the program has done before a frame.
+    /// Adds the actions of the program before a frame.
     fn inputs(&mut self, world: &mut dyn AnyWorld, frame: u64) -> Result<(), WriteError> {
         for input in world.take_inputs() {
             let bytes = input.map_err(|error| WriteError::of(&self.path, TapeFault::Input { error }))?;
@@ -198,10 +199,10 @@ impl Tape {
         Ok(())
     }
 
-    /// Writes the state of the last frame and the end; what the program did after that frame is in it.
+    /// Writes the state of the last frame and the end; the state includes the actions of the program after that frame.
     ///
     /// # Errors
-    /// As [`Tape::push`].
+    /// Those of [`Tape::push`].
     pub fn finish(mut self, world: &mut dyn AnyWorld) -> Result<u64, WriteError> {
         if world.frames() > self.kept {
             self.keep(world)?;
@@ -216,17 +217,17 @@ impl Tape {
 #[derive(Debug)]
 pub struct Playback<R> {
     recording: Recording<R>,
-    /// What the program did, each with the frame that followed.
+    /// The actions of the program, each with the frame that followed.
     inputs: Vec<(u64, Vec<u8>)>,
-    /// The frame that was shown last, and the hash of its state, where the next one may be computed from it.
+    /// The frame that was shown last, and the hash of its state, if the next frame can be computed from it.
     shown: Option<(u64, u64)>,
 }
 
 impl<R: Read + Seek> Playback<R> {
-    /// Reads what the program did up to a frame.
+    /// Reads the actions of the program up to a frame.
     ///
     /// # Errors
-    /// [`TapeError`] where that part of the recording is damaged.
+    /// [`TapeError`] if that part of the recording is damaged.
     pub fn of(mut recording: Recording<R>, last: u64) -> Result<Playback<R>, TapeError> {
         let frames: Vec<u64> = recording.inputs().take_while(|frame| *frame <= last).collect();
         let mut inputs = Vec::with_capacity(frames.len());
@@ -236,31 +237,31 @@ impl<R: Read + Seek> Playback<R> {
         Ok(Playback { recording, inputs, shown: None })
     }
 
-    /// Whether the state of a frame is in the recording, and not only what it is computed from.
+    /// Whether the recording contains the state of a frame, so that it need not be computed.
     pub fn keeps(&self, frame: u64) -> bool {
         self.recording.kept(frame) == Ok(frame)
     }
 
-    /// The bytes of a frame whose state is kept, as [`AnyWorld::snapshot`] gives them.
+    /// The bytes of a frame whose state is kept, as returned by [`AnyWorld::snapshot`].
     ///
     /// # Errors
-    /// [`RecordingError`] where there is no such state, or it is damaged.
+    /// [`RecordingError`] if there is no such state, or it is damaged.
     pub fn state(&mut self, frame: u64) -> Result<&[u8], RecordingError> {
         self.recording.read(frame)
     }
 
-    /// The hash of a frame, as [`AnyWorld::frame_hash`] gives it: every frame has one.
+    /// The hash of a frame, as returned by [`AnyWorld::frame_hash`]; every frame has one.
     ///
     /// # Errors
-    /// [`RecordingError`] where there is no such frame, or it is damaged.
+    /// [`RecordingError`] if there is no such frame, or it is damaged.
     pub fn hash(&mut self, frame: u64) -> Result<u64, RecordingError> {
         self.recording.hash(frame)
     }
 
-    /// Brings a world to a frame: without a step where its state is kept, else by steps from the last one that is.
+    /// Brings a world to a frame: without a step if its state is kept, otherwise by steps from the last kept state.
     ///
     /// # Errors
-    /// [`TapeError`]; if that is not a refused step, the world stays as it was.
+    /// [`TapeError`]; unless a step was refused, the world stays as it was.
     pub fn show(&mut self, world: &mut dyn AnyWorld, frame: u64) -> Result<(), TapeError> {
         let kept = self.recording.kept(frame)?;
         let here = self.shown.filter(|(at, hash)| {
@@ -285,10 +286,10 @@ impl<R: Read + Seek> Playback<R> {
         Ok(world.restore(self.recording.read(frame)?)?)
     }
 
-    /// Computes a frame from the one before, in which the world is.
+    /// Computes a frame from the previous one, which is the present state of the world.
     ///
     /// # Errors
-    /// [`WorldError`] where the world refuses what the program did, or the step.
+    /// [`WorldError`] if the world refuses an action of the program, or the step.
     pub fn step(&self, world: &mut dyn AnyWorld, frame: u64) -> Result<(), WorldError> {
         let before = self.inputs.iter().filter(|(before, _)| *before == frame);
         before.into_iter().try_for_each(|(_, input)| world.repeat(input))?;

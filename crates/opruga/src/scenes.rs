@@ -1,4 +1,4 @@
-//! The scenes that come with the library, and the shapes in them.
+//! The scenes that come with the library, and their shapes.
 
 use crate::io::problem::visible;
 use crate::io::{Files, SceneError};
@@ -106,28 +106,28 @@ pub fn title(text: &str) -> &str {
     line(text, "title")
 }
 
-/// Whose drawings, maps or surfaces a scene shows, and under which licence: the line `credit = "…"` of its text.
+/// The authors of the drawings, maps or surfaces in a scene, and their licence: the line `credit = "…"` of its text.
 pub fn credit(text: &str) -> &str {
     line(text, "credit")
 }
 
-/// The text of a line `name = "…"`; empty where there is none.
+/// The text of a line `name = "…"`; empty if there is none.
 fn line<'t>(text: &'t str, name: &str) -> &'t str {
     let value = |l: &'t str| l.strip_prefix(name)?.strip_prefix(" = \"")?.strip_suffix('"');
     text.lines().find_map(value).unwrap_or("")
 }
 
 opruga_math::messages! {
-    /// Why a name leads to no scene.
+    /// Why a name does not belong to a scene.
     #[derive(Clone, Debug, PartialEq)]
     pub enum NoSuchScene {
-        /// Nothing has a name like it.
+        /// No similar name exists.
         "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("scenes that come with the program: {scenes}")]
         NoScene { scenes: String },
-        /// One scene or file has.
+        /// One scene or file has a similar name.
         "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("did you mean {closest}?")]
         NoSceneNear { closest: String },
-        /// Several have.
+        /// Several have similar names.
         "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("did you mean {closest} or {last}?")]
         NoSceneNearOf { closest: String, last: String },
     }
@@ -136,8 +136,8 @@ opruga_math::messages! {
 /// All messages of scenes by name, for catalogues.
 pub const MESSAGES: &[&[Variant]] = &[NoSuchScene::VARIANTS];
 
-/// What is wrong with a name that is neither that of a file nor that of a scene of the library, and which scenes and which
-/// files of its folder have a name like it.
+/// The error for a name that is neither that of a file nor that of a scene of the library, with the scenes and the files of its folder that have
+/// similar names.
 pub fn missing(name: &str) -> SceneError {
     let path = Path::new(name);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());

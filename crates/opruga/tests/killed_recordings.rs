@@ -1,5 +1,5 @@
-//! What a kill costs a recording, measured: a process that records tells through a pipe when each frame was finished, and is
-//! killed at any moment.
+//! Measures the cost of a kill for a recording: a process that records reports through a pipe when each frame was finished, and is killed at any
+//! moment.
 #![cfg(unix)]
 #![allow(clippy::disallowed_methods)] // no physics here
 
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// The word that makes this test record instead, with what it needs to know.
+/// The environment variable that makes this test record instead, with its arguments.
 const CHILD: &str = "OPRUGA_TEST_RECORDS";
 
 fn blueprint() -> Blueprint<2> {
@@ -24,7 +24,7 @@ fn blueprint() -> Blueprint<2> {
     }
 }
 
-/// Records until it is killed. The number of each frame that was added goes through the pipe. Every hundredth takes long.
+/// Records until it is killed. The number of each added frame is written to the pipe. Every hundredth frame takes long.
 fn record(path: &Path, every: u64, pause: Duration) -> ! {
     let mut world = World::new(blueprint(), Options::default()).expect("a world");
     let header = Header { name: "pressures".into(), frame: world.blueprint().time.frame, every, ..Header::default() };
@@ -38,7 +38,7 @@ fn record(path: &Path, every: u64, pause: Duration) -> ! {
     }
 }
 
-/// The last frame that was told as finished.
+/// The last frame that was reported as finished.
 fn last_told(bytes: &[u8]) -> Option<u64> {
     bytes.as_chunks::<8>().0.last().map(|number| u64::from_le_bytes(*number))
 }
@@ -55,7 +55,7 @@ fn a_kill_costs_no_more_frames_than_go_to_the_system_together() {
     std::fs::create_dir_all(&folder).expect("a folder");
     let together = frames_together(&World::new(blueprint(), Options::default()).expect("a world"));
     let mut most = 0;
-    // States of every frame, far apart, and none but the first; quick frames and slow ones.
+    // States of every frame, far apart, and only the first; fast frames and slow ones.
     let ways = [(1, 0), (32, 0), (1_000_000, 0), (1_000_000, 7_000), (4, 20_000)];
     for round in 0..20u64 {
         let (every, pause) = ways[round as usize % ways.len()];
@@ -68,7 +68,7 @@ fn a_kill_costs_no_more_frames_than_go_to_the_system_together() {
             .spawn()
             .expect("this test runs again");
         let mut pipe = child.stderr.take().expect("a pipe");
-        // A pipe that is full would hold the run up.
+        // A full pipe would block the run.
         let reader = std::thread::spawn(move || {
             let mut bytes = Vec::new();
             pipe.read_to_end(&mut bytes).map(|_| bytes)
@@ -90,7 +90,7 @@ fn a_kill_costs_no_more_frames_than_go_to_the_system_together() {
             "round {round}: {finished} frames were finished, {last} are there; {together} go to the system together"
         );
         most = most.max(last);
-        // All that is there is right.
+        // Everything that is there is right.
         let mut world = World::new(blueprint(), Options::default()).expect("a world");
         let mut playback = Playback::of(recording, last).expect("whole");
         for frame in 1..=last.min(60) {

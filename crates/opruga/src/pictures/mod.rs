@@ -1,5 +1,5 @@
-//! From a world to what the renderer sees.
-// Pictures are no physics: a last bit may differ.
+//! Converts a world to a picture for the renderer.
+// Pictures are not physics: the last bit may differ.
 #![allow(clippy::disallowed_methods)]
 
 mod quantity;
@@ -19,12 +19,12 @@ use quantity::{push_quantity, strain};
 pub use rest::rest_of;
 use rest::{is_shown, rest_lines};
 
-/// The most arrows of a body in a plane and in space, where those at the back are hidden.
+/// The largest number of arrows of a body in the plane, and in space, where those at the back are hidden.
 const MOST_ARROWS: [usize; 2] = [40, 130];
-/// Bodies up to which arrows are drawn: those of more could not be told apart.
+/// The largest number of bodies for which arrows are drawn; with more, the arrows could not be distinguished.
 const MOST_BODIES: usize = 64;
 
-/// What stays the same from picture to picture: outlines, springs, rest lengths.
+/// The data that stay the same from picture to picture: outlines, springs, rest lengths.
 #[derive(Clone, Debug)]
 pub struct Scenery {
     dimension: u8,
@@ -34,20 +34,20 @@ pub struct Scenery {
     credit: String,
     sight: Sight,
     panels: Option<u32>,
-    /// What the colours tell where nobody asks for something else.
+    /// The quantity that the colours show by default.
     quantity: Quantity,
     bodies: Vec<Fixed>,
 }
 
 #[derive(Clone, Debug)]
 struct Fixed {
-    /// Which of the bodies in its place it is; none where it is still to come.
+    /// The generation of the body with this index; none if it is added later.
     generation: Option<u64>,
     nodes: usize,
     facets: Facets,
     cells: Vec<[u32; 3]>,
     segments: Vec<[u32; 2]>,
-    /// Edges and their rest lengths, for colouring by strain.
+    /// Edges and their rest lengths, for colours of the strain.
     edges: Vec<([u32; 2], f64)>,
     pinned: Vec<u32>,
     nodes_drawn: bool,
@@ -55,31 +55,31 @@ struct Fixed {
     node_spacing: f64,
     /// Its larger side at rest [m].
     extent: f64,
-    /// Where it lay at the start, where that is shown.
+    /// Its initial position, if that is shown.
     rest: RestPicture,
     label: String,
     /// The depth of a body in the plane [m].
     thickness: f64,
-    /// The nodes at which arrows start, evenly spread.
+    /// The nodes at which arrows start, uniformly distributed.
     arrow_nodes: Vec<u32>,
-    /// What is drawn instead of the facets.
+    /// The skin that is drawn instead of the facets.
     skin: Option<Skin>,
-    /// The springs, where they are drawn whatever else is to be seen.
+    /// The springs, if they are drawn independently of other options.
     springs: Option<Vec<[u32; 2]>>,
 }
 
-/// What changes from picture to picture, kept small.
+/// The data that change from picture to picture, in compact form.
 #[derive(Clone, Debug)]
 pub struct Moment {
     /// Time [s].
     pub time: f64,
     /// Coordinates of all nodes of all bodies, body by body [m].
     coordinates: Vec<f32>,
-    /// What the colours tell.
+    /// The quantity that the colours show.
     quantity: Quantity,
-    /// That quantity at every node; for strains the coordinates are too coarse. Empty where bodies are plain.
+    /// That quantity at every node; for strains, the coordinates are not precise enough. Empty if bodies have plain colours.
     scalars: Vec<f32>,
-    /// Bodies that are there.
+    /// The existing bodies.
     bodies: Vec<usize>,
     pulls: Vec<PullPicture>,
     colliders: Vec<ColliderPicture>,
@@ -87,12 +87,12 @@ pub struct Moment {
 }
 
 impl Scenery {
-    /// Looks at the bodies of a world, and at those that its commands will add.
+    /// Prepares the bodies of a world, including those that its commands will add.
     pub fn new(world: &dyn AnyWorld) -> Scenery {
         let (scene, pictured) = (world.scene(), world.scene().pictured());
         let (present, flat) = (scene.body_count(), scene.dimension() == 2);
         let many = present > 64;
-        // A body alone is told by the title, and copies have no names that say anything.
+        // A single body is named by the title, and the names of copies carry no information.
         let named = (2..=8).contains(&present) && scene.bodies().all(|body| !body.name().contains('['));
         let fixed = |(number, body): (usize, &dyn AnyBody)| {
             let positions = body.rest_positions();
@@ -101,7 +101,7 @@ impl Scenery {
                 let (a, b) = (positions[e[0] as usize], positions[e[1] as usize]);
                 a.iter().zip(&b).map(|(p, q)| (p - q) * (p - q)).sum::<f64>().sqrt()
             };
-            // In a crowd the marks of pins would hide the bodies.
+            // In a crowd, the marks of pins would hide the bodies.
             let pinned = if many { Vec::new() } else { body.pinned_nodes() };
             let edges_length: f64 = edges.iter().map(length).sum();
             let side = |axis: usize| {
@@ -157,34 +157,34 @@ impl Scenery {
         }
     }
 
-    /// Draws every spring and every node that it holds, and the body itself instead of a skin.
+    /// Draws every spring and every node that it connects, and the body itself instead of a skin.
     pub fn show_springs(&mut self, world: &dyn AnyWorld) {
         for (number, fixed) in self.bodies.iter_mut().enumerate() {
-            // A body that no model can carry is told when it comes.
+            // A body that none of its models accepts is reported when it is added.
             fixed.springs = world.springs_of(number);
         }
     }
 
-    /// How many moments a film strip shows, where the scene says so.
+    /// The number of moments on a film strip, if the scene gives it.
     pub fn panels(&self) -> Option<usize> {
         self.panels.map(|panels| panels as usize)
     }
 
-    /// Whether y counts downwards.
+    /// Whether y points downwards.
     pub fn y_down(&self) -> bool {
         self.y_down
     }
 
-    /// Keeps what a world looks like now; with arrows also pulls, and the pressure on the bodies with gas [Pa] or the
-    /// force on the nodes of the others [N].
+    /// Captures the present picture of a world. With arrows, it also includes pulls and, at the nodes, the pressure on bodies with gas [Pa] or the
+    /// force on other bodies [N].
     pub fn capture(&self, world: &mut dyn AnyWorld, arrows: bool) -> Moment {
         self.capture_quantity(world, arrows, self.quantity)
     }
 
-    /// As [`Scenery::capture`], with another quantity for the colours.
+    /// Does the same as [`Scenery::capture`] with another quantity for the colours.
     pub fn capture_quantity(&self, world: &mut dyn AnyWorld, arrows: bool, quantity: Quantity) -> Moment {
         let (mut coordinates, mut scalars) = (Vec::new(), Vec::new());
-        // A body that has taken the place of one of these since is unknown here.
+        // A body that has replaced one of these since then is unknown here.
         let known = |body: &usize| {
             let fixed = self.bodies.get(*body);
             fixed.is_some_and(|fixed| match (fixed.generation, world.handle(*body)) {
@@ -218,14 +218,14 @@ impl Scenery {
         Moment { time: world.time(), coordinates, quantity, scalars, bodies, pulls, colliders, arrows: drawn }
     }
 
-    /// Adds the arrows of a body: the pressure of its gas at some of its nodes, or without gas the force on them.
+    /// Adds the arrows of a body: the pressure of its gas at some of its nodes or, without gas, the force on them.
     fn push_arrows(&self, world: &mut dyn AnyWorld, body: usize, arrows: &mut Vec<ArrowPicture>) {
         let fixed = &self.bodies[body];
         let gas = world.scene().body(body).is_some_and(|body| body.has_role(Role::Gas));
         let mut forces = world.forces(body, gas.then_some(Account::Gas));
         let positions: Vec<[f64; 3]> = world.positions(body).iter().collect();
         let kind = if gas {
-            // The force on a node over the surface that belongs to it.
+            // The force on a node divided by the surface that belongs to it.
             for (force, surface) in forces.iter_mut().zip(surfaces(fixed, &positions)) {
                 *force = if surface > 0.0 { force.map(|f| f / surface) } else { [0.0; 3] };
             }
@@ -304,7 +304,7 @@ fn triangles(body: &dyn AnyBody) -> Vec<[u32; 3]> {
     triangles
 }
 
-/// The skin that a body carries, coloured as the nodes that carry it.
+/// The skin that a body carries, with the colours of the nodes that carry it.
 fn skinned(skin: &Skin, positions: &[[f64; 3]], scalar: &[f64], label: &str) -> BodyPicture {
     BodyPicture {
         scalar: if scalar.is_empty() { Vec::new() } else { skin.values(scalar) },
@@ -317,8 +317,7 @@ fn skinned(skin: &Skin, positions: &[[f64; 3]], scalar: &[f64], label: &str) -> 
     }
 }
 
-/// The areas of a drawing that a flat body carries: those with colours of their own where the colours of the body tell
-/// nothing, else its silhouette.
+/// The areas of a drawing that a flat body carries: coloured areas if the colours of the body show nothing, otherwise its silhouette.
 fn areas(skin: &Skin, positions: &[[f64; 3]], quantity: Quantity) -> Vec<AreaPicture> {
     let painted = quantity == Quantity::Plain && skin.areas.iter().any(|area| area.colour.is_some());
     let seen = skin.areas.iter().filter(|area| area.colour.is_some() == painted);
@@ -329,7 +328,7 @@ fn areas(skin: &Skin, positions: &[[f64; 3]], quantity: Quantity) -> Vec<AreaPic
             picture.positions.extend(ring.iter().map(|point| points[*point as usize]));
             picture.ends.push(picture.positions.len());
         }
-        // Its points were counted ring by ring.
+        // Its points are numbered ring by ring.
         let first = area.rings.first().and_then(|ring| ring.first()).copied().unwrap_or(0);
         picture.triangles = area.triangles.iter().map(|t| t.map(|point| point - first)).collect();
         picture
@@ -337,7 +336,7 @@ fn areas(skin: &Skin, positions: &[[f64; 3]], quantity: Quantity) -> Vec<AreaPic
     drawn.collect()
 }
 
-/// Whether y counts downwards in a plane: gravity says so, or where there is none, the floor.
+/// Whether y points downwards in the plane, according to gravity or, if there is none, to the floor.
 fn y_down(world: &dyn AnyWorld) -> bool {
     let &[_, gravity] = world.scene().gravity() else { return false };
     if gravity != 0.0 {
@@ -351,7 +350,7 @@ fn y_down(world: &dyn AnyWorld) -> bool {
     floors.next() == Some(true) && floors.all(|down| down)
 }
 
-/// An obstacle as the renderer knows it. A box that is turned is drawn by its outline or faces.
+/// An obstacle in the form for the renderer. A rotated box is drawn by its outline or its faces.
 fn collider(placed: Placed<3>) -> ColliderPicture {
     match placed {
         Placed::HalfSpace { point, normal } => ColliderPicture::HalfSpace { point, normal },
@@ -380,7 +379,7 @@ fn collider(placed: Placed<3>) -> ColliderPicture {
             if let [a, b, c, d] = corners[..] {
                 return ColliderPicture::Polygon(vec![a, b, d, c]);
             }
-            // Corner k lies on the upper side of axis d where bit d of k is set.
+            // Corner k is on the upper side of axis d if bit d of k is set.
             let mut triangles = Vec::new();
             for axis in 0..3u32 {
                 let (u, v) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
@@ -393,7 +392,7 @@ fn collider(placed: Placed<3>) -> ColliderPicture {
     }
 }
 
-/// Up to so many nodes of a body, each as far as possible from those before it.
+/// Up to `most` nodes of a body, each as far as possible from the previous ones.
 fn spread(positions: &[[f64; 3]], most: usize) -> Vec<u32> {
     if positions.len() <= most {
         return (0..positions.len() as u32).collect();

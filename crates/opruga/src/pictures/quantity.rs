@@ -1,4 +1,4 @@
-//! What the colours of bodies tell, and its value at every node.
+//! The quantity that the colours of bodies show, and its value at every node.
 
 use super::Fixed;
 use crate::core::potential::{Account, CellState};
@@ -6,24 +6,23 @@ use crate::draw::{ColourMap, Legend};
 use crate::{AnyBody, AnyScene, AnyWorld};
 use opruga_core::spec::Role;
 
-/// What the colours of the bodies tell.
+/// The quantity that the colours of bodies show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quantity {
     /// The mean elongation of the edges at each node [%].
     #[default]
     Strain,
-    /// The force of the models that store energy, without gas, on each node [N].
+    /// The force on each node of the models that store energy, without gas [N].
     ElasticForce,
-    /// The pressure of the gas [Pa]: that of the chamber which a node bounds, or of the only one; bodies without gas have
-    /// no colour.
+    /// The pressure of the gas [Pa]: that of the chamber that a node bounds, or of the only one; bodies without gas have no colour.
     Pressure,
     /// The speed of each node [m/s].
     Speed,
-    /// The von Mises stress of finite elements, the mean of the cells at each node [Pa]; bodies without have no colour.
+    /// The von Mises stress of finite elements, averaged over the cells at each node [Pa]; bodies without finite elements have no colour.
     VonMises,
-    /// The volume of finite elements over that at rest, the mean of the cells at each node.
+    /// The volume of finite elements divided by that at rest, averaged over the cells at each node.
     VolumeRatio,
-    /// Nothing: bodies have a colour each, drawings their own.
+    /// Nothing: each body has one colour, and drawings have their own.
     Plain,
 }
 
@@ -39,8 +38,7 @@ impl Quantity {
         Quantity::Plain,
     ];
 
-    /// What the colours of some bodies tell by themselves: nothing where one is painted in colours of its own, stress where
-    /// all are solids that know it, else strain.
+    /// The default quantity for some bodies: none if one is painted in its own colours, stress if all are solids with a stress, otherwise strain.
     pub(super) fn of(scene: &dyn AnyScene) -> Quantity {
         let mut areas = scene.bodies().filter_map(|body| body.skin()).flat_map(|skin| &skin.areas);
         if areas.any(|area| area.colour.is_some()) {
@@ -52,7 +50,7 @@ impl Quantity {
         if scene.body_count() > 0 && solids.all(|solid| solid) { Quantity::VonMises } else { Quantity::Strain }
     }
 
-    /// Name and unit for legends; none where there is nothing to tell.
+    /// Name and unit for legends; none if there is no quantity.
     pub(super) fn legend(self) -> Option<Legend> {
         let (label, unit) = match self {
             Quantity::Strain => ("strain", "%"),
@@ -63,14 +61,14 @@ impl Quantity {
             Quantity::VolumeRatio => ("volume over that at rest", ""),
             Quantity::Plain => return None,
         };
-        // Most of a body is at little stress, and a body in the light must be light for that to be seen.
+        // Most of a body has little stress, and the shading of a body is visible only if its colour is light.
         let stress = matches!(self, Quantity::VonMises | Quantity::ElasticForce);
         let map = if stress { ColourMap::Embers } else { ColourMap::default() };
         Some(Legend { label: label.into(), unit: unit.into(), range: None, map })
     }
 }
 
-/// Strains below this, and stresses of such strains, are rounding of positions, which would be seen in all colours at rest.
+/// Strains below this, and stresses of such strains, are rounding errors of positions, which otherwise would fill the whole range of colours at rest.
 const ROUNDING: f64 = 1e-11;
 
 /// Adds a quantity at every node of a body.
@@ -109,7 +107,7 @@ pub(super) fn push_quantity(
     }
 }
 
-/// Adds the mean of a number of the cells or facets at every node of a body; not a number where a node has none.
+/// Adds the mean of a quantity of the cells or facets at every node of a body; NaN if a node has none.
 fn push_means(
     world: &dyn AnyWorld,
     body: usize,

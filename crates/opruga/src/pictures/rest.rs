@@ -1,27 +1,27 @@
-//! Where bodies lay before they were deformed, as lines.
+//! The positions of bodies before their deformation, as lines.
 
 use crate::AnyBody;
 use crate::draw::{BodyPicture, Facets, RestPicture};
 use opruga_core::spec::{Role, Values};
 use std::collections::BTreeMap;
 
-/// The least angle between two facets whose common edge shows the shape of a body, as a cosine.
+/// An edge is drawn if the angle between its two facets exceeds this, given as a cosine.
 const SHARP: f64 = 0.8;
 
-/// Whether pictures of a body show where it lay at the start: it is held, and what it is made of resists being deformed, so that
-/// it bends around there; in statics, any body.
+/// Whether pictures of a body show its initial position: it is a pinned body that owns its cells, and therefore bends about that position; in
+/// statics, any body.
 pub(super) fn is_shown(body: &dyn AnyBody, of_scene: &Values) -> bool {
     let integrator = body.integrator().unwrap_or(of_scene).spec();
     let pinned_solid = body.is_pinned_at_rest() && body.has_role(Role::OwnsCells);
     body.skin().is_none() && (integrator.has_role(Role::Statics) || pinned_solid)
 }
 
-/// A body as it lies in a picture, as lines: its outline, or where its surface has edges.
+/// A body as it is in a picture, as lines: its outline, or the sharp edges of its surface.
 pub fn rest_of(body: &BodyPicture) -> RestPicture {
     rest_lines(&body.facets, body.positions.clone())
 }
 
-/// The same of facets and nodes.
+/// Does the same for facets and nodes.
 pub(super) fn rest_lines(facets: &Facets, positions: Vec<[f64; 3]>) -> RestPicture {
     let segments = match facets {
         Facets::Edges(edges) => edges.clone(),
@@ -30,7 +30,7 @@ pub(super) fn rest_lines(facets: &Facets, positions: Vec<[f64; 3]>) -> RestPictu
     RestPicture { positions, segments }
 }
 
-/// Edges of one triangle alone, and those where two meet at an angle.
+/// Edges of a single triangle, and those at which two triangles meet at an angle.
 fn sharp_edges(triangles: &[[u32; 3]], positions: &[[f64; 3]]) -> Vec<[u32; 2]> {
     let normal = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|k| positions[k as usize]);

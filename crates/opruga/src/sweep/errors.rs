@@ -1,9 +1,9 @@
-//! What is wrong with a sweep, its ranges, its metrics and its table.
+//! Errors in a sweep, its ranges, its metrics and its table.
 
 use opruga_math::{messages, terms};
 
 terms! {
-    /// What is wrong with a range.
+    /// Errors in a range.
     pub enum RangeFault = "part.range_fault" {
         Ends = "the ends of the range are not numbers",
         TwoLogs = "the range has `log` twice",
@@ -17,7 +17,7 @@ terms! {
 }
 
 terms! {
-    /// What is wrong with the table of a sweep or a row of it.
+    /// Errors in the table of a sweep or in a row of it.
     pub enum RowFault = "part.row_fault" {
         NoChecksums = "the rows have no checksums: an earlier version of the program wrote the table",
         Head = "the head of the table does not belong to this sweep",
@@ -95,7 +95,7 @@ messages! {
 }
 
 terms! {
-    /// What is allowed where a scene has nothing of a kind.
+    /// What is allowed if a scene has nothing of some type.
     pub enum SweepAllowed = "part.sweep_allowed" { SceneHasNone = "the scene has none" }
 }
 
@@ -110,7 +110,7 @@ pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
 ];
 
 messages! {
-    /// In what an earlier question of a sweep was another one.
+    /// The difference of an earlier question of a sweep.
     #[derive(Clone, Debug, PartialEq)]
     pub enum QuestionDifference {
         "part.question" #[error("the text of the scene was another")]

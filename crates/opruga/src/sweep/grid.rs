@@ -1,4 +1,4 @@
-//! Which values a sweep takes: lists and ranges of parameters, and the points that are made of them.
+//! The values of a sweep: lists and ranges of parameters, and the points made from them.
 
 use super::errors::{RangeFault, SweepError};
 use opruga_core::check::Random;
@@ -6,13 +6,13 @@ use opruga_io::SceneError;
 use opruga_io::problem::visible;
 use opruga_math::elementary::{exponential, natural_logarithm};
 
-/// The most points of a sweep.
+/// The largest number of points of a sweep.
 pub const MOST_POINTS: usize = 1_000_000;
 
-/// A parameter and the values that it takes.
+/// A parameter and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// The path of the parameter, as `--set` takes it.
+    /// The path of the parameter, as used by `--set`.
     pub path: String,
     /// The values.
     pub values: Values,
@@ -23,7 +23,7 @@ pub struct Axis {
 pub enum Values {
     /// Each of these, as a scene file would write them.
     Listed(Vec<String>),
-    /// Numbers between two ends, both of which belong to them.
+    /// Numbers between two ends, including both ends.
     Range(Range),
 }
 
@@ -34,7 +34,7 @@ pub struct Range {
     pub low: f64,
     /// The upper end.
     pub high: f64,
-    /// How many numbers; none where a sample chooses them.
+    /// The number of values; none if a sample chooses them.
     pub count: Option<usize>,
     /// Whether neighbours have the same ratio rather than the same distance.
     pub logarithmic: bool,
@@ -42,34 +42,33 @@ pub struct Range {
     pub whole: bool,
 }
 
-/// Which points a sweep visits.
+/// The points that a sweep visits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Design {
     /// Every value of every parameter with every value of the others.
     Grid,
-    /// The values of one parameter after the other, while the others are as in the scene.
+    /// The values of one parameter after the other, with the others as in the scene.
     Each,
     /// Points chosen by a seed.
     Sample {
-        /// How many.
+        /// The number of points.
         count: usize,
         /// The seed.
         seed: u64,
-        /// Whether points know nothing of each other. Otherwise they are a Latin hypercube: if the range of a parameter is
-        /// cut into as many equal parts as there are points, each part holds one point.
+        /// Whether points are independent. Otherwise they form a Latin hypercube: if the range of a parameter is divided into as many equal parts as
+        /// there are points, each part contains one point.
         independent: bool,
     },
 }
 
-/// One point of a sweep: a value for each parameter; none where that is as in the scene.
+/// One point of a sweep: a value for each parameter; none if it is as in the scene.
 pub type Point = Vec<Option<String>>;
 
 impl Axis {
-    /// Reads `PATH=a,b,c` or `PATH=LOW..HIGH:COUNT[:log][:whole]`. A single value makes no axis: that gives `None`.
+    /// Reads `PATH=a,b,c` or `PATH=LOW..HIGH:COUNT[:log][:whole]`. A single value is not an axis and gives `None`.
     ///
     /// # Errors
-    /// `set.syntax` where there is no path, `sweep.values` where values are missing, `sweep.range` where a range makes no
-    /// sense.
+    /// `set.syntax` if there is no path, `sweep.values` if values are missing, `sweep.range` if a range is invalid.
     pub fn parse(argument: &str) -> Result<Option<Axis>, SceneError> {
         let (path, text) = opruga_io::overrides::split(argument)?;
         let refuse =
@@ -95,14 +94,14 @@ impl Axis {
                 let count = range.count.unwrap_or(1);
                 let fraction = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.0 };
                 let mut out: Vec<String> = (0..count).map(|k| range.at(fraction(k))).collect();
-                // Rounding may give neighbours the same whole number.
+                // Neighbours may be rounded to the same whole number.
                 out.dedup();
                 out
             }
         }
     }
 
-    /// The value at a fraction from 0 to 1, which is not reached.
+    /// The value at a fraction from 0 to 1 (exclusive).
     fn at(&self, fraction: f64) -> String {
         match &self.values {
             Values::Listed(values) => {
@@ -112,7 +111,7 @@ impl Axis {
         }
     }
 
-    /// The values as numbers where all of them are numbers.
+    /// The values as numbers, if all of them are numbers.
     pub fn numbers(&self) -> Option<Vec<f64>> {
         match &self.values {
             Values::Listed(values) => values.iter().map(|value| number(value)).collect(),
@@ -120,7 +119,7 @@ impl Axis {
         }
     }
 
-    /// Whether the values are best seen with equal ratios at equal distances.
+    /// Whether the values are best shown on a logarithmic axis.
     pub fn logarithmic(&self) -> bool {
         match &self.values {
             Values::Range(range) => range.logarithmic,
@@ -134,7 +133,7 @@ impl Axis {
     }
 }
 
-/// How much distances differ: the largest over the smallest.
+/// The ratio of the largest distance to the smallest.
 fn uneven(distances: &[f64]) -> f64 {
     let (low, high) = distances.iter().fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), d| {
         (if *d < low { *d } else { low }, if *d > high { *d } else { high })
@@ -192,13 +191,13 @@ impl Range {
         } else {
             self.low + fraction * (self.high - self.low)
         };
-        // Fifteen digits: what rounding has done to the last ones shall not be read, and counts of vertices are whole.
+        // Fifteen digits, without the rounding errors of the last ones; counts of vertices are whole.
         let x = number(&format!("{:.14e}", if self.whole { x.round() } else { x })).unwrap_or(x);
         format!("{x}")
     }
 }
 
-/// Splits at commas that are in no brackets and no quotes.
+/// Splits at commas outside brackets and quotes.
 fn split_list(text: &str) -> Vec<String> {
     let (mut out, mut depth, mut quote) = (vec![String::new()], 0i32, None);
     for c in text.chars() {
@@ -221,7 +220,7 @@ fn split_list(text: &str) -> Vec<String> {
 /// The points of a sweep, in the order of its table.
 ///
 /// # Errors
-/// `sweep.axes` where nothing varies, `sweep.range` where a range lacks its number of values or has one in a sample, or where a sample has no points,
+/// `sweep.axes` if nothing varies, `sweep.range` if a range lacks its number of values or has one in a sample, or if a sample has no points,
 /// `sweep.too_many` above [`MOST_POINTS`].
 pub(super) fn points(axes: &[Axis], design: Design) -> Result<Vec<Point>, SceneError> {
     if axes.is_empty() {
@@ -283,7 +282,7 @@ pub(super) fn points(axes: &[Axis], design: Design) -> Result<Vec<Point>, SceneE
             let mut random = Random::new(seed);
             let mut out = vec![Vec::with_capacity(axes.len()); count];
             for axis in axes {
-                // Each part of the range has its point; which one, the shuffle says (Fisher and Yates).
+                // Each part of the range gets one point; the shuffle (Fisher and Yates) determines which.
                 let mut parts: Vec<usize> = (0..count).collect();
                 for k in (1..count).rev() {
                     parts.swap(k, (random.bits() % (k as u64 + 1)) as usize);
@@ -366,7 +365,7 @@ mod tests {
         assert!(each.iter().all(|point| point.iter().flatten().count() == 1));
     }
 
-    /// Each of n equal parts of each range holds exactly one of n points.
+    /// Each of n equal parts of each range contains exactly one of n points.
     #[test]
     fn a_latin_hypercube_is_stratified_along_every_axis() {
         let axes = [axis("a=0..1"), axis("b=1..1000:log"), axis("c=p,q")];

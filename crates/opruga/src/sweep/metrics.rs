@@ -1,4 +1,4 @@
-//! What a sweep measures of every run.
+//! The quantities that a sweep measures in every run.
 
 use super::errors::{SweepAllowed, SweepError};
 use opruga_core::spec::{Role, nearest};
@@ -7,7 +7,7 @@ use opruga_io::problem::visible;
 use opruga_world::blueprint::Recorded;
 use opruga_world::{AnyScene, AnyWorld};
 
-/// The words for what can be measured, and what they mean.
+/// The words for quantities that can be measured, and their meanings.
 pub const WORDS: [(&str, &str); 5] = [
     ("bounce_height", "the largest rise of the lowest node of a body above the lowest place where it has been"),
     ("settling_time", "the time after which the kinetic energy stays below a hundredth of its largest value"),
@@ -19,20 +19,20 @@ pub const WORDS: [(&str, &str); 5] = [
     ("nanoseconds_per_step", "processor time of a substep of the whole world"),
 ];
 
-/// Below this part of its largest value the kinetic energy counts as settled.
+/// The kinetic energy counts as settled below this fraction of its largest value.
 const SETTLED: f64 = 0.01;
 
-/// A number that is measured of every run.
+/// A number that is measured in every run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metric {
-    /// Its name, as it was asked for and as the table calls it.
+    /// Its name, as requested and as in the table.
     pub name: String,
     quantity: Quantity,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 enum Quantity {
-    /// Of a body; none: the first one.
+    /// For a body; none: the first one.
     BounceHeight(Option<String>),
     SettlingTime,
     EquilibriumRadius(Option<String>),
@@ -51,11 +51,11 @@ enum Statistic {
 }
 
 impl Metric {
-    /// Reads a word of [`WORDS`], with `.BODY` behind it where it is that of a body, or `PROBE.COLUMN.min`, `.max`, `.mean` or
-    /// `.last` for a column of a probe, such as `top.y.max`.
+    /// Reads a word of [`WORDS`], followed by `.BODY` if it refers to a body, or `PROBE.COLUMN.min`, `.max`, `.mean` or `.last` for a column of a
+    /// probe, such as `top.y.max`.
     ///
     /// # Errors
-    /// `sweep.metric` where there is no such metric.
+    /// `sweep.metric` if the metric does not exist.
     pub fn parse(text: &str) -> Result<Metric, SceneError> {
         let (word, body) = match text.split_once('.') {
             Some((word, body)) if !body.is_empty() => (word, Some(body.to_string())),
@@ -81,10 +81,10 @@ impl Metric {
         Ok(Metric { name: text.to_string(), quantity })
     }
 
-    /// Whether a scene has what is measured.
+    /// Checks that a scene has the measured quantity.
     ///
     /// # Errors
-    /// `sweep.metric` where there is no such body or no such column of a probe.
+    /// `sweep.metric` if the body or the column of the probe does not exist.
     pub fn check(&self, scene: &dyn AnyScene) -> Result<(), SceneError> {
         let metric = || visible(&self.name);
         let missing = |about: SweepError, name: &str, known: Vec<String>| {
@@ -119,7 +119,7 @@ impl Metric {
         }
     }
 
-    /// The unit, where a scene calls its unit of length so.
+    /// The unit, given the name of the unit of length in a scene.
     pub fn unit(&self, length: &str) -> String {
         match &self.quantity {
             Quantity::BounceHeight(_) | Quantity::EquilibriumRadius(_) => length.to_string(),
@@ -128,7 +128,7 @@ impl Metric {
             Quantity::NanosecondsPerStep => "ns".into(),
             Quantity::Probe(column, _) => {
                 let word = column.rsplit('.').next().unwrap_or_default();
-                // Either of the two dimensions has a column of this word.
+                // One of the two dimensions has a column with this word.
                 let mut all = Recorded::ALL.map(|(_, what)| what).into_iter();
                 let what = all.find(|what| [2, 3].iter().any(|d| what.columns(*d).contains(&word)));
                 match (what, length) {
@@ -144,7 +144,7 @@ impl Metric {
         }
     }
 
-    /// Whether it is a time on the clock, which differs from run to run.
+    /// Whether it is a wall-clock or processor time, which differs from run to run.
     pub fn is_timing(&self) -> bool {
         self.quantity == Quantity::NanosecondsPerStep
     }
@@ -156,7 +156,7 @@ fn unknown(text: &str) -> SceneError {
         .nearest(nearest(text.split('.').next().unwrap_or(text), words.iter().copied()))
 }
 
-/// The direction of up: against gravity; without gravity that out of the first half-space.
+/// The upward direction: against gravity; without gravity, out of the first half-space.
 fn upwards(scene: &dyn AnyScene) -> Option<[f64; 3]> {
     let unit = |vector: [f64; 3]| {
         let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -169,10 +169,10 @@ fn upwards(scene: &dyn AnyScene) -> Option<[f64; 3]> {
     })
 }
 
-/// Watches a run and measures it.
+/// Measures a run while it proceeds.
 pub(crate) struct Meter {
     gauges: Vec<Gauge>,
-    /// The frames of the whole run.
+    /// The number of frames of the whole run.
     frames: u64,
 }
 
@@ -194,7 +194,7 @@ enum Gauge {
     Drift {
         drift: f64,
     },
-    /// Measured by the clock, elsewhere.
+    /// Measured elsewhere with a clock.
     Speed,
     Probe {
         number: usize,
@@ -246,12 +246,12 @@ impl Meter {
         Meter { gauges, frames }
     }
 
-    /// Whether what happens within frames matters: an impact lasts one substep.
+    /// Whether the time within frames matters, because an impact lasts only one substep.
     pub(crate) fn looks_within(&self) -> bool {
         self.gauges.iter().any(|gauge| matches!(gauge, Gauge::Bounce { .. }))
     }
 
-    /// Looks at the world within a frame.
+    /// Measures the world within a frame.
     pub(crate) fn look(&mut self, world: &dyn AnyWorld) {
         for gauge in &mut self.gauges {
             let Gauge::Bounce { body, up, lowest, rise } = gauge else { continue };
@@ -272,7 +272,7 @@ impl Meter {
         }
     }
 
-    /// Looks at the world at the start and at the end of each frame.
+    /// Measures the world at the start and at the end of each frame.
     pub(crate) fn frame(&mut self, world: &mut dyn AnyWorld) {
         self.look(world);
         let late = world.frames() * 10 >= self.frames * 9;
@@ -300,7 +300,7 @@ impl Meter {
         }
     }
 
-    /// What was measured, in the order of the metrics; none where the run has no such number, and for times on the clock.
+    /// The results in the order of the metrics; none if the run has no such number, and for times.
     pub(crate) fn finish(self) -> Vec<Option<f64>> {
         let finite = |x: f64| Some(x).filter(|x| x.is_finite());
         self.gauges
@@ -322,7 +322,7 @@ impl Meter {
     }
 }
 
-/// A body by its name; without a name the first one that is there.
+/// A body by its name; without a name, the first existing one.
 fn found(world: &dyn AnyWorld, name: Option<&str>) -> Option<usize> {
     match name {
         Some(name) => world.body(name),
@@ -330,7 +330,7 @@ fn found(world: &dyn AnyWorld, name: Option<&str>) -> Option<usize> {
     }
 }
 
-/// The mean distance of the nodes of a body from their middle.
+/// The mean distance of the nodes of a body from their centre.
 fn radius(world: &dyn AnyWorld, body: usize) -> f64 {
     let positions = world.positions(body);
     let nodes = positions.len() as f64;
@@ -340,7 +340,7 @@ fn radius(world: &dyn AnyWorld, body: usize) -> f64 {
     positions.iter().map(distance).sum::<f64>() / nodes
 }
 
-/// The first of these times from which on the kinetic energy stays below its part; none where it does not settle.
+/// The first of these times after which the kinetic energy stays below its limit; none if it does not settle.
 fn settled(kinetic: &[[f64; 2]]) -> Option<f64> {
     let largest = kinetic.iter().fold(0.0, |largest, row| if row[1] > largest { row[1] } else { largest });
     match kinetic.iter().rposition(|row| row[1] > SETTLED * largest) {

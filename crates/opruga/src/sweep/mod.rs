@@ -54,41 +54,40 @@ use opruga_world::blueprint::AnyBlueprint;
 use opruga_world::{AnyScene, AnyWorld, Registries};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Processor time after which a speed is known well enough [s].
+/// The processor time after which a speed is known precisely enough [s].
 const TIMED: f64 = 0.1;
 
-/// The question that a sweep asks; the same question has the same answer, times on the clock apart.
+/// The question of a sweep. The same question always has the same answer, except for times.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// The name of the scene.
     pub name: String,
-    /// Where the scene came from, for errors.
+    /// The origin of the scene, for errors.
     pub file: String,
     /// The text of the scene.
     pub text: String,
-    /// Where the files are that it names.
+    /// Where the files that it names are.
     pub files: Files,
-    /// Parameters that are changed for all points, each a path and a value.
+    /// Parameters that are changed for all points, each with a path and a value.
     pub fixed: Vec<(String, String)>,
     /// The parameters that vary.
     pub axes: Vec<Axis>,
-    /// Which points are visited.
+    /// The design of the points.
     pub design: Design,
-    /// What is measured.
+    /// The quantities that are measured.
     pub metrics: Vec<Metric>,
-    /// Steps above the stable limit are run all the same.
+    /// Whether steps above the stable limit are allowed.
     pub allow_unstable: bool,
-    /// Unknown fields are overlooked.
+    /// Whether unknown fields are ignored.
     pub lenient: bool,
     /// The models and integrators that the scene can name.
     pub registries: Registries,
 }
 
 impl Sweep {
-    /// The points, after the question was checked: whether the scene can be read, has every parameter that varies, and has
-    /// what is measured.
+    /// Checks the question and returns the points: the scene must be readable, and must have every parameter that varies and every measured quantity.
     ///
-    /// A point that the scene refuses for its value alone is no error: its row says so.
+    /// If the scene refuses a point only because of its value, this is not an error; its row reports it.
     ///
     /// # Errors
     /// Those of the scene, of [`Axis`] and of [`Metric`].
@@ -114,7 +113,7 @@ impl Sweep {
     fn check(&self, scene: &dyn AnyScene, points: &[Point], errors: &mut Vec<SceneError>) {
         errors.extend(self.metrics.iter().filter_map(|metric| metric.check(scene).err()));
         for index in 0..self.axes.len() {
-            // The first value of each parameter by itself: a path that leads nowhere does so for all of them.
+            // Checks the first value of each parameter separately: a path that names nothing is wrong for all values.
             let Some(value) = points.iter().find_map(|point| point[index].clone()) else { continue };
             let mut point = vec![None; self.axes.len()];
             point[index] = Some(value);
@@ -137,9 +136,9 @@ impl Sweep {
             .map(|(blueprint, _)| blueprint)
     }
 
-    /// Runs one point on the calling thread and measures it; none where `stop` was set meanwhile.
+    /// Runs one point on the calling thread and measures it; none if `stop` was set in the meantime.
     ///
-    /// `clock` gives processor time of this thread [s]. It is read for speeds alone; nothing else depends on it.
+    /// `clock` returns the processor time of this thread [s]. It is used only for speeds.
     pub fn measure(
         &self,
         number: usize,
@@ -181,7 +180,7 @@ impl Failed {
     }
 }
 
-/// In one sentence, as errors of worlds have it: a row of a table has no lines for what is allowed and what helps.
+/// One sentence, as for errors of worlds: a row of a table has no lines for what is allowed and what helps.
 impl From<SceneError> for Failed {
     fn from(error: SceneError) -> Failed {
         let mut message = error.message;
@@ -238,12 +237,12 @@ impl Run<'_> {
         Ok(world.frame()?)
     }
 
-    /// Processor time of a substep [ns]: that of the fastest of as many runs as fit a tenth of a second, at least of one.
-    /// They are runs of their own, which nobody looks at.
+    /// Processor time of a substep [ns] in the fastest of as many runs as fit into a tenth of a second, but at least one. These are separate runs
+    /// without other measurements.
     fn speed(&self, blueprint: &AnyBlueprint, frames: u64) -> Result<Option<f64>, Failed> {
         let steps = frames as f64 * f64::from(blueprint.scene().time().substeps);
         let (mut fastest, mut spent) = (f64::INFINITY, 0.0);
-        // A clock that stands still is read a few times only.
+        // If a clock does not advance, it is read only this often.
         for _ in 0..50 {
             let mut world = blueprint.clone().build_with(self.options.clone(), &self.sweep.registries)?;
             let start = (self.clock)();

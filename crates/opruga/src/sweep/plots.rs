@@ -6,11 +6,11 @@ use opruga_draw::{Chart, DrawError, HeatMap, HeatPanel, Line, Marker, Nothing, P
 
 /// The names and texts (SVG) of all plots.
 ///
-/// One parameter, or one after the other: each metric over it. Two of a grid: a map for each metric, with marks where a run has
-/// failed. More, or a sample: each metric over each parameter, as points. A credit stands below each of them.
+/// With one parameter, or one after the other: each metric over it. With two parameters of a grid: a map for each metric, with marks where a run has
+/// failed. With more, or a sample: each metric over each parameter, as points. Each plot has the credit below it.
 ///
 /// # Errors
-/// [`DrawError`] where nothing can be drawn.
+/// [`DrawError`] if nothing can be drawn.
 pub fn plots(sweep: &Sweep, rows: &[Row], length_unit: &str, credit: &str) -> Result<Vec<(String, String)>, DrawError> {
     let sweep_plots = Plots { sweep, rows, length_unit, credit };
     match (sweep.design, sweep.axes.as_slice()) {
@@ -26,7 +26,7 @@ pub fn plots(sweep: &Sweep, rows: &[Row], length_unit: &str, credit: &str) -> Re
     }
 }
 
-/// The last word of a path where that is enough to tell the parameters apart, else the whole path.
+/// The last word of a path if that is sufficient to distinguish the parameters, otherwise the whole path.
 fn file_name(axes: &[Axis], index: usize) -> String {
     let last = |axis: &Axis| axis.path.rsplit('.').next().unwrap_or_default().to_string();
     let word = last(&axes[index]);
@@ -52,7 +52,7 @@ impl Plots<'_> {
         let words = axis.numbers().is_none().then_some(listed).flatten();
         let lines = !matches!(self.sweep.design, Design::Sample { .. })
             && (self.sweep.axes.len() == 1 || self.sweep.design == Design::Each);
-        // Words stand at 1, 2, 3, ….
+        // Words are placed at 1, 2, 3, ….
         let at = |value: &str| match &words {
             Some(words) => words.iter().position(|word| word == value).map(|k| k as f64 + 1.0),
             None => number(value),
@@ -64,7 +64,7 @@ impl Plots<'_> {
                 let Some(x) = row.values[index].as_deref().and_then(at) else { continue };
                 points.push([x, row.numbers[column].unwrap_or(f64::NAN)]);
                 if !lines {
-                    // A gap: points that are no neighbours are not joined.
+                    // A gap: points that are not neighbours are not connected.
                     points.push([f64::NAN; 2]);
                 }
             }
@@ -75,7 +75,7 @@ impl Plots<'_> {
             let mut y = axis_of(&metric.name, &metric.unit(self.length_unit));
             let (low, high) = values().fold((f64::INFINITY, 0.0), wider);
             y.logarithmic = low > 0.0 && high > 100.0 * low;
-            // What hardly changes shall look so.
+            // Small variations are shown as small.
             if metric.is_timing() && !y.logarithmic {
                 y.range = Some([0.0, 1.15 * high]);
             }
@@ -135,7 +135,7 @@ impl Plots<'_> {
     }
 }
 
-/// The last two words of a path, and those before a number; the whole path where the other one ends in the same words.
+/// The last two words of a path, and those before a number; the whole path if the other one ends in the same words.
 fn short_path(path: &str, other: &str) -> String {
     let words: Vec<&str> = path.split('.').collect();
     let mut kept = words.len().min(2);
@@ -147,19 +147,19 @@ fn short_path(path: &str, other: &str) -> String {
     if alike { path.to_string() } else { short }
 }
 
-/// Values with three digits, unless two of them would look the same.
+/// Values with three digits, unless two of them would then be equal.
 fn short_values(values: Vec<String>) -> Vec<String> {
     let short: Vec<String> = values.iter().map(|v| number(v).map_or(v.clone(), format_value)).collect();
     let distinct = short.iter().collect::<std::collections::BTreeSet<_>>().len() == short.len();
     if distinct { short } else { values }
 }
 
-/// A range of numbers that holds one more.
+/// A range extended to contain another number.
 fn wider((low, high): (f64, f64), x: f64) -> (f64, f64) {
     (if x < low { x } else { low }, if x > high { x } else { high })
 }
 
-/// A linear axis; the words of a name are told apart by spaces.
+/// A linear axis; the words of its name are separated by spaces.
 fn axis_of(name: &str, unit: &str) -> opruga_draw::Axis {
     opruga_draw::Axis::linear(name.replace('_', " "), unit)
 }

@@ -1,4 +1,4 @@
-//! Sweeps that a program asks for: the usual question in one call, and all of its rows in another.
+//! Sweeps for programs: one call for the usual question, and another one for all of its rows.
 
 use super::{Axis, Design, Metric, Row, Sweep};
 use opruga_io::{Files, SceneError};
@@ -6,11 +6,11 @@ use opruga_world::Registries;
 use std::sync::atomic::AtomicBool;
 
 impl Sweep {
-    /// A sweep over every combination of the values of `axes` (`"body.ball.mass=1,2"`), in a scene that names no files and knows the models and integrators of this
-    /// library: [`Sweep::registries`] can be replaced.
+    /// A sweep over every combination of the values of `axes` (`"body.ball.mass=1,2"`), in a scene that names no files and uses the models and
+    /// integrators of this library; [`Sweep::registries`] can be replaced.
     ///
     /// # Errors
-    /// [`SceneError`] of an axis that varies nothing or cannot be read, or of a metric that does not exist.
+    /// [`SceneError`] about an axis that does not vary or cannot be read, or about a metric that does not exist.
     pub fn new(name: &str, text: &str, axes: &[&str], metrics: &[&str]) -> Result<Sweep, SceneError> {
         let mut sweep = Sweep {
             name: name.into(),
@@ -28,7 +28,7 @@ impl Sweep {
         for argument in axes {
             match Axis::parse(argument)? {
                 Some(axis) => sweep.axes.push(axis),
-                // One value varies nothing: it holds for all points, as on the command line.
+                // A single value does not vary: it applies to all points, as on the command line.
                 None => sweep.fixed.push(opruga_io::overrides::split(argument)?),
             }
         }
@@ -38,7 +38,7 @@ impl Sweep {
     /// Runs all points on the calling thread. Speeds (`nanoseconds_per_step`) need a clock: see [`Sweep::measure`].
     ///
     /// # Errors
-    /// Those of [`Sweep::points`]. A point that fails is a row that says so.
+    /// Those of [`Sweep::points`]. If a point fails, its row reports it.
     pub fn run(&self) -> Result<Vec<Row>, Vec<SceneError>> {
         let never = AtomicBool::new(false);
         let points = self.points()?;

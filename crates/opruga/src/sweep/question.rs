@@ -1,4 +1,4 @@
-//! What was asked of a sweep, as it lies in the sweep's folder, so that it can go on.
+//! The question of a sweep as a file in its folder, from which it can be resumed.
 
 use super::errors::{QuestionDifference, SweepError};
 use super::{Axis, Design, Metric, Sweep};
@@ -8,40 +8,40 @@ use opruga_world::Registries;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// All that decides about the numbers of a sweep's table.
+/// Everything that determines the numbers in a sweep's table.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Question {
-    /// The version of this form: 1.
+    /// The version of this format: 1.
     pub schema: u32,
     /// The name of the scene.
     pub name: String,
-    /// Where the scene came from; the same text from elsewhere is the same question.
+    /// The origin of the scene; the same text from elsewhere is the same question.
     pub file: String,
-    /// What varies and what is changed for all points, as `PATH=VALUES`.
+    /// The parameters that vary or are changed for all points, as `PATH=VALUES`.
     pub set: Vec<String>,
-    /// What is measured, each by its word.
+    /// The names of the measured quantities.
     pub metrics: Vec<String>,
     /// Whether one parameter varies after the other.
     pub each: bool,
-    /// How many random points are visited; none: a grid.
+    /// The number of random points; none: a grid.
     pub sample: Option<usize>,
-    /// Whether random points know nothing of each other.
+    /// Whether random points are independent.
     pub independent: bool,
     /// The seed of random points.
     pub seed: u64,
-    /// Whether a step above the stable limit is run.
+    /// Whether steps above the stable limit are allowed.
     pub allow_unstable: bool,
-    /// Whether unknown fields of the scene are overlooked.
+    /// Whether unknown fields of the scene are ignored.
     pub lenient: bool,
     /// The text of the scene.
     pub scene: String,
-    /// The files that the scene names, their bytes written as pairs of hexadecimal digits.
+    /// The files that the scene names, with their bytes as pairs of hexadecimal digits.
     #[serde(default)]
     pub files: BTreeMap<String, String>,
 }
 
 impl Question {
-    /// The version of this form.
+    /// The version of this format.
     pub const SCHEMA: u32 = 1;
 
     /// Bytes of a file as pairs of hexadecimal digits.
@@ -52,7 +52,7 @@ impl Question {
     /// Reads the JSON of a question.
     ///
     /// # Errors
-    /// `sweep.damaged` where it is none, or one of another version.
+    /// `sweep.damaged` if it is not one, or one of another version.
     pub fn read(bytes: &[u8]) -> Result<Question, SceneError> {
         let damaged = |reason: &serde_json::Error| SweepError::Question { reason: visible(&reason.to_string()) };
         let question: Question = serde_json::from_slice(bytes).map_err(|e| SceneError::of(damaged(&e)))?;
@@ -67,10 +67,10 @@ impl Question {
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
 
-    /// The sweep that is asked for, with the models and integrators that its scene can name.
+    /// Makes the sweep, with the models and integrators that its scene can name.
     ///
     /// # Errors
-    /// All that is wrong with the parameters, the metrics and the files.
+    /// All errors in the parameters, the metrics and the files.
     pub fn sweep(&self, registries: &Registries) -> Result<Sweep, Vec<SceneError>> {
         let (mut errors, mut axes, mut fixed) = (Vec::new(), Vec::new(), Vec::new());
         for set in &self.set {
@@ -115,7 +115,7 @@ impl Question {
         *self == Question { file: self.file.clone(), ..other.clone() }
     }
 
-    /// In what an earlier question was another one.
+    /// The difference of an earlier question.
     pub fn difference(&self, before: &Question) -> QuestionDifference {
         let listed = |list: &[String]| visible(&list.join(" "));
         if self.scene != before.scene {

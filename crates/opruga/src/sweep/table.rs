@@ -1,8 +1,8 @@
-//! The table of a sweep: one row for each point, written when the point is done and read again when a sweep goes on.
+//! The table of a sweep: one row for each point, written when the point is done and read again when the sweep is resumed.
 //!
-//! Each row ends with a checksum of its cells. A sweep that goes on takes rows as its own results: one that was changed since,
-//! by hand or by a program that wrote its numbers anew, is refused with its line. It is not computed anew unasked, since that would
-//! replace what somebody has written there; who deletes the line asks for that.
+//! Each row ends with a checksum of its cells. A resumed sweep uses existing rows as its own results. A row that was changed in the meantime, by hand
+//! or by a program that reformatted its numbers, is refused with its line. It is not computed again automatically, because that would replace what
+//! somebody has written there; a user who wants that deletes the line.
 
 use super::Sweep;
 use super::errors::{RowFault, SweepError};
@@ -20,9 +20,9 @@ pub struct Row {
     pub values: Point,
     /// How the run ended.
     pub status: Status,
-    /// What went wrong, in a sentence; empty where nothing did.
+    /// The error in one sentence; empty if there is none.
     pub message: String,
-    /// What was measured, in the order of the metrics; none where the run has no such number.
+    /// The results in the order of the metrics; none if the run has no such number.
     pub numbers: Vec<Option<f64>>,
 }
 
@@ -48,7 +48,7 @@ impl Status {
 /// The name of the last column.
 const CHECKSUM: &str = "checksum";
 
-/// The head of the table: `point`, the paths, `status`, the metrics, `message`, `checksum`.
+/// The header of the table: `point`, the paths, `status`, the metrics, `message`, `checksum`.
 pub fn head(sweep: &Sweep) -> String {
     let paths = sweep.axes.iter().map(|axis| cell(&axis.path));
     let metrics = sweep.metrics.iter().map(|metric| cell(&metric.name));
@@ -58,8 +58,8 @@ pub fn head(sweep: &Sweep) -> String {
     cells.join(",") + "\n"
 }
 
-/// The checksum of a row: FNV-1a of 64 bits over the head of its table, the end of that line, and the row up to the comma before the
-/// checksum; 16 hexadecimal digits.
+/// The checksum of a row: FNV-1a of 64 bits over the header of its table, the end of that line, and the row up to the comma before the checksum; 16
+/// hexadecimal digits.
 fn checksum(head: &str, cells: &str) -> String {
     let bytes = head.trim_end().bytes().chain([b'\n']).chain(cells.bytes());
     let hash =
@@ -67,7 +67,7 @@ fn checksum(head: &str, cells: &str) -> String {
     format!("{hash:016x}")
 }
 
-/// A row as a line of the table; what is not known is empty. Numbers have 17 significant digits.
+/// A row as a line of the table; unknown values are empty. Numbers have 17 significant digits.
 pub fn line(sweep: &Sweep, row: &Row) -> String {
     let flat = |text: &str| cell(&text.split_whitespace().collect::<Vec<_>>().join(" "));
     let mut cells = vec![row.number.to_string()];
@@ -79,11 +79,11 @@ pub fn line(sweep: &Sweep, row: &Row) -> String {
     format!("{cells},{}\n", checksum(&head(sweep), &cells))
 }
 
-/// Reads the rows of a table of this sweep that was written as far as somebody or something let it; a last line without
-/// its end was being written then, and is left out. Rows are sorted by their points.
+/// Reads the rows of a table of this sweep, which may be incomplete. A last line without a line end was being written, and is ignored. Rows are
+/// sorted by their points.
 ///
 /// # Errors
-/// `sweep.damaged` where the table is not one of this sweep; `sweep.changed_row` for every row that is not as it was written.
+/// `sweep.damaged` if the table does not belong to this sweep; `sweep.changed_row` for every row that is not as it was written.
 pub fn read_rows(sweep: &Sweep, points: &[Point], text: &str, file: &str) -> Result<Vec<Row>, Vec<SceneError>> {
     let placed = |line: usize, error: SceneError| SceneError {
         file: file.to_string(),
@@ -250,7 +250,7 @@ mod tests {
         }
     }
 
-    /// Whatever character of a row is another one: the row is not taken.
+    /// If any character of a row is changed, the row is not accepted.
     #[test]
     fn a_row_that_was_changed_by_hand_is_refused_with_its_line() {
         let sweep = sweep();
@@ -268,7 +268,7 @@ mod tests {
             changed += usize::from(errors[0].code == "sweep.changed_row");
         }
         assert!(changed > 20, "numbers and checksums: {changed}");
-        // Every such row is told at once; a row that is gone is one that is computed anew.
+        // Every such row is reported at once; a row that is missing is computed again.
         let text =
             format!("{}{}{}", head(&sweep), second.replace("a \"\"b", "a \"\"c"), first.replace("done", "run.x"));
         let lines: Vec<_> = read_rows(&sweep, &points, &text, "f").expect_err(&text).iter().map(|e| e.line).collect();

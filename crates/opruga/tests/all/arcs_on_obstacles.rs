@@ -1,4 +1,4 @@
-//! The curve of equilibria where a body meets obstacles on its way.
+//! The curve of equilibria of a body that comes into contact with obstacles.
 #![allow(clippy::disallowed_methods)] // expected values of the tests' own
 
 use crate::common;
@@ -16,7 +16,7 @@ fn floor(height: f64, friction: f64) -> String {
     )
 }
 
-/// A ball whose top is at a height over some point of the x-axis.
+/// A ball with its top at some height above a point of the x-axis.
 fn ball(x: f64, top: f64, friction: f64) -> String {
     format!(
         "[[collider]]\nkind = \"ball\"\ncenter = [{x:?}, {:?}]\nradius = 0.35\nfriction = {friction:?}\n",
@@ -24,7 +24,7 @@ fn ball(x: f64, top: f64, friction: f64) -> String {
     )
 }
 
-/// The part of the load that is on.
+/// The present fraction of the load.
 fn load(world: &mut World<2>) -> f64 {
     world.readings(0).into_iter().find(|reading| reading.0 == "load_factor").expect("statics have a load factor").1
 }
@@ -33,9 +33,8 @@ fn heights(world: &World<2>) -> Vec<f64> {
     (0..world.node_count(0) as u32).map(|node| world.position(0, node)[1]).collect()
 }
 
-/// Two springs with their apex at 0.2 m, pressed onto a floor, or onto a ball, at some height: on the way down the load is that of the closed
-/// form 2 k (1 − l) y/l, also where it has to be held back; on the floor nothing moves any more, and the rest of the load goes
-/// into that.
+/// Two springs with their apex at 0.2 m, pressed onto a floor or a ball at some height. On the way down, the load is that of the closed form 2 k (1 −
+/// l) y/l, even where the apex must be held back. On the floor nothing moves any more, and the floor carries the rest of the load.
 #[test]
 fn a_truss_snaps_onto_a_floor_by_its_closed_form() {
     let (stiffness, force): (f64, f64) = (1000.0, 30.0);
@@ -76,8 +75,8 @@ fn a_truss_snaps_onto_a_floor_by_its_closed_form() {
     }
 }
 
-/// The arch of the scene `snap-through` over obstacles: it comes to lie on them with all of the load, and what the curve ends in
-/// is a balance for Newton's method without an arc too.
+/// The arch of the scene `snap-through` over obstacles: under the full load it lies on them, and the end of the curve is an equilibrium for Newton's
+/// method without arc length, too.
 #[test]
 fn an_arch_snaps_onto_obstacles_and_stays_there() {
     let arch = |fields: &str, obstacle: &str| {
@@ -103,7 +102,7 @@ fn an_arch_snaps_onto_obstacles_and_stays_there() {
             assert!(count < 300, "{obstacle}: {}", load(&mut world));
         }
         println!("{obstacle}{count} steps, {falls} of them downwards, {:?}", world.solver_work());
-        // It gives way at a height of 0.09 m.
+        // It snaps through at a height of 0.09 m.
         assert!(falls > 3 || top.is_some_and(|top| top > 0.09), "{obstacle}: {falls}");
         let end = heights(&world);
         match top {
@@ -120,9 +119,9 @@ fn an_arch_snaps_onto_obstacles_and_stays_there() {
     }
 }
 
-/// Half of a shallow arch, cut at its top, whose curve of equilibria winds: at −1 % of the load it turns within less than a
-/// step. The points on the way are those of the curve, none of them twice: each step leads on from the one before, and all
-/// ways end in the same equilibrium under the whole load.
+/// Half of a shallow arch, cut at its top, whose curve of equilibria winds: at −1 % of the load it turns within less than a step. The computed points
+/// are on the curve, none of them twice: each step continues from the previous one, and all step lengths reach the same equilibrium under the full
+/// load.
 #[test]
 fn a_winding_curve_of_equilibria_is_never_gone_back_on_however_long_the_steps() {
     let half_arch = |length: f64| {
@@ -154,7 +153,7 @@ fn a_winding_curve_of_equilibria_is_never_gone_back_on_however_long_the_steps() 
             count += 1;
             assert!(count < 400, "{length}: {}", load(&mut world));
         }
-        // The curve dips twice, and nowhere below two hundredths of the load.
+        // The curve has two minima, neither below minus two hundredths of the load.
         assert!(lowest < -0.009 && lowest > -0.02, "{length}: {lowest}");
         ends.push(world.position(0, 20)[1]);
     }
@@ -163,7 +162,7 @@ fn a_winding_curve_of_equilibria_is_never_gone_back_on_however_long_the_steps() 
     }
 }
 
-/// A run that ends on the way along the curve says so, with the part of the load that is on; one that comes to its end does not.
+/// A run that ends before the end of the curve reports the present fraction of the load; a run that reaches the end does not.
 #[test]
 fn a_run_that_ends_before_the_whole_load_is_on_is_warned_of() {
     let half = (1.0f64 - 0.04).sqrt();

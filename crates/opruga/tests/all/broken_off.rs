@@ -1,4 +1,4 @@
-//! Frames that are broken off from outside, whatever the rule: the world is at its last good frame, and goes on as if nothing had been.
+//! Frames that are interrupted from outside, with any integrator: the world returns to its last good frame, and continues as if nothing had happened.
 #![allow(missing_docs)]
 
 use crate::common;
@@ -7,7 +7,7 @@ use opruga::{BreakOff, Options, World, WorldError};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A cantilever of finite elements under its weight.
+/// A cantilever of finite elements under its own weight.
 fn scene(integrator: &str, substeps: u32) -> opruga::blueprint::Blueprint<2> {
     common::plane(&format!(
         "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1.0\nframe = 0.02\nsubsteps = {substeps}\n\
@@ -18,7 +18,7 @@ fn scene(integrator: &str, substeps: u32) -> opruga::blueprint::Blueprint<2> {
     ))
 }
 
-/// A world in which a law that does nothing counts how often it is asked; at a number of times that break the frame off.
+/// A world in which a law without effect counts its calls and interrupts the frame at call number `at`.
 fn world(integrator: &str, substeps: u32, at: u32) -> (World<2>, Arc<BreakOff>, Arc<AtomicU32>) {
     let break_off = Arc::new(BreakOff::default());
     let options = Options { break_off: Arc::clone(&break_off), ..Options::default() };
@@ -49,7 +49,7 @@ fn a_frame_that_is_broken_off_leaves_the_last_good_one_and_is_made_again_to_the_
         ("kind = \"equilibrium\"\nwhen_not_converged = \"halve\"", 1),
     ] {
         let (mut whole, _, asked) = world(rule, substeps, 0);
-        // Statics has nothing more to look for after its first frame.
+        // Statics has nothing to compute after its first frame.
         let good = u32::from(!rule.contains("equilibrium"));
         let (mut hash, mut begin) = (whole.state_hash(), 0);
         for frame in 0..=good {
@@ -66,7 +66,7 @@ fn a_frame_that_is_broken_off_leaves_the_last_good_one_and_is_made_again_to_the_
         let spent = asked.load(Ordering::Relaxed);
         assert!(spent < all, "{rule}: {spent} of {all}: the frame has ended early");
         assert_eq!((broken.frames(), broken.state_hash()), (u64::from(good), hash), "{rule}");
-        // As long as it is wanted nothing goes on.
+        // While the flag is set, no frame is computed.
         assert_eq!(broken.frame(), Err(WorldError::BrokenOff {}), "{rule}");
         flag.ask(false);
         (0..2).for_each(|_| broken.frame().expect("it goes on"));

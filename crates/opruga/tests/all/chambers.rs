@@ -1,4 +1,4 @@
-//! Bodies with more than one chamber of gas: each has readings and a colour of its own.
+//! Bodies with several chambers of gas: each chamber has its own readings and colour.
 #![allow(clippy::disallowed_methods)] // expected values of the tests' own
 
 use crate::common;
@@ -6,7 +6,7 @@ use common::*;
 use opruga::World;
 use opruga::pictures::{Quantity, Scenery};
 
-/// Two rings of different size in one body, held, with the same amount of gas in each; the larger has a hole.
+/// Two pinned rings of different size in one body, with the same amount of gas in each; the larger has a hole.
 fn two() -> World<2> {
     built(plane(&format!(
         "{}[[body]]\nname = \"two\"\nfixed = true\nmodels = [{{ kind = \"pressure\", nRT = 6.0 }}]\n\
@@ -42,7 +42,7 @@ fn every_chamber_has_volume_pressure_and_amount_of_its_own() {
     }
 }
 
-/// A body with one chamber says it once.
+/// The readings of a body with one chamber have no numbers.
 #[test]
 fn the_only_chamber_has_no_number() {
     let mut world = built(plane(&format!(
@@ -67,7 +67,7 @@ fn pressure_colours_every_chamber_by_its_own() {
     }
 }
 
-/// Springs that were asked for come with their nodes, however little room there is for dots.
+/// If springs are requested, they are drawn with their nodes, however little space there is for dots.
 #[test]
 fn springs_that_are_asked_for_bring_their_nodes() {
     let mut world = built(plane(opruga::scenes::find("ball").expect("a scene")));

@@ -1,7 +1,7 @@
-//! Closed forms and recurrences, run from the text of a scene through the frames of a world.
+//! Closed forms and recurrences, computed from the text of a scene through the frames of a world.
 //!
-//! Expected values are literals, computed apart from the engine; the comment says from which formula. What concerns one
-//! model or one integrator alone is tested in its crate.
+//! Expected values are literals, computed independently of the engine; the comments give the formulas. Tests that concern only one model or one
+//! integrator are in its crate.
 #![allow(clippy::disallowed_methods)] // sines and roots of the tests' own
 
 use crate::common;
@@ -34,8 +34,8 @@ fn radius(world: &World<2>) -> (f64, f64) {
     (r, rate)
 }
 
-/// A ring of 36 under gas: k (l − l₀) = 2 nRT/(N l), so l = (l₀ + √(l₀² + 8 nRT/(k N)))/2 and A = N l²/(4 tan(π/N)),
-/// with l₀ = 2·0.5 m·sin(π/36), k = 1600 N/m, nRT = 100 J.
+/// A ring of 36 nodes with gas: k (l − l₀) = 2 nRT/(N l), so l = (l₀ + √(l₀² + 8 nRT/(k N)))/2 and A = N l²/(4 tan(π/N)), with l₀ = 2·0.5
+/// m·sin(π/36), k = 1600 N/m, nRT = 100 J.
 #[test]
 fn a_ring_comes_to_rest_in_its_equilibrium() {
     let mut world = built(plane(&format!(
@@ -53,8 +53,8 @@ fn a_ring_comes_to_rest_in_its_equilibrium() {
     assert!((reading(&mut world, "volume") / 1.404_987_059_241_017_4 - 1.0).abs() < 1e-9);
 }
 
-/// ω² = (4 sin²(π/N)/m) [k + ((2γ − 1) P + P_a)/(2 tan(π/N))] at the equilibrium of the ring with N = 36, m = 0.1 kg,
-/// k = 900 N/m and 150 Pa in the rest shape of radius 0.5 m; P is that in the equilibrium, found by bisection.
+/// ω² = (4 sin²(π/N)/m) [k + ((2γ − 1) P + P_a)/(2 tan(π/N))] at the equilibrium of the ring with N = 36, m = 0.1 kg, k = 900 N/m and 150 Pa in the
+/// rest shape of radius 0.5 m; P is the pressure in equilibrium, found by bisection.
 #[test]
 fn a_ring_breathes_at_its_frequency() {
     let cases = [
@@ -72,13 +72,13 @@ fn a_ring_breathes_at_its_frequency() {
         )));
         frames(&mut world, 2400);
         assert!((radius(&world).0 / rest - 1.0).abs() < 1e-9, "{process} {ambient}: {} {rest}", radius(&world).0);
-        // Without drag from here on, and with a small blow from inside.
+        // From here on without drag, and with a small impulse from inside.
         world.set("world.drag", Value::Number(0.0)).expect("a parameter");
         for node in 0..36 {
             let x = world.position(0, node);
             world.set_node(0, node, x, [1e-3 * x[0], 1e-3 * x[1]]).expect("a node");
         }
-        // Times at which the radius is least: its rate rises through zero.
+        // The times at which the radius is smallest: its rate increases through zero.
         let (mut times, mut before) = (Vec::new(), radius(&world).1);
         while times.len() < 21 {
             frames(&mut world, 1);
@@ -95,8 +95,8 @@ fn a_ring_breathes_at_its_frequency() {
     }
 }
 
-/// Nodes of 1 kg on a circle of 1 m about a point that each is drawn to with m ω² r = 4π² N go around it in 1 s, as a force that kept its
-/// direction would not let them. Halving the step divides the error by four.
+/// Nodes of 1 kg on a circle of 1 m, attracted to its centre with m ω² r = 4π² N, revolve once in 1 s, which a force of constant direction would not
+/// cause. Halving the step divides the error by four.
 #[test]
 fn a_central_force_keeps_its_size_and_turns_with_its_node() {
     let error = |substeps: u32, integrator: &str| {
@@ -121,7 +121,7 @@ fn a_central_force_keeps_its_size_and_turns_with_its_node() {
     }
 }
 
-/// P V = nRT and P V^γ = P₀ V₀^γ at every frame of a ball that falls on the floor and is squeezed.
+/// P V = nRT and P V^γ = P₀ V₀^γ in every frame of a ball that falls on the floor and is compressed.
 #[test]
 fn gas_keeps_its_law_in_a_bouncing_ball() {
     for (process, gamma) in [("isothermal", 1.0), ("adiabatic", 1.4), ("adiabatic", 1.67)] {
@@ -148,9 +148,9 @@ fn gas_keeps_its_law_in_a_bouncing_ball() {
     }
 }
 
-/// Free fall from rest after n = 64 steps of h = 1/64 s, g = 9.81 m/s²: symplectic Euler −g h² n(n + 1)/2, explicit
-/// Euler −g h² n(n − 1)/2, Heun, Verlet, Runge–Kutta, midpoint and Newmark −g (n h)²/2, backward Euler as symplectic Euler,
-/// BDF2 −g h² (n²/2 + 3/4 (1 − 3⁻ⁿ)). Velocity −g n h in all.
+/// Free fall from rest after n = 64 steps of h = 1/64 s, g = 9.81 m/s²: symplectic Euler −g h² n(n + 1)/2, explicit Euler −g h² n(n − 1)/2, Heun,
+/// Verlet, Runge–Kutta, midpoint and Newmark −g (n h)²/2, backward Euler as symplectic Euler, BDF2 −g h² (n²/2 + 3/4 (1 − 3⁻ⁿ)). The velocity is −g n
+/// h for all.
 #[test]
 fn free_fall_follows_the_recurrence_of_every_integrator() {
     let cases = [
@@ -165,7 +165,7 @@ fn free_fall_follows_the_recurrence_of_every_integrator() {
         ("newmark", -4.905),
     ];
     let mut names: Vec<&str> = opruga::catalogue().integrators.iter().map(|s| s.kind).collect();
-    // Where nothing moves, nothing falls.
+    // In statics nothing falls.
     names.retain(|n| *n != "equilibrium" && !cases.iter().any(|c| c.0 == *n));
     assert!(names.is_empty(), "integrators without a row here: {names:?}");
     for (rule, expected) in cases {
@@ -182,8 +182,8 @@ fn free_fall_follows_the_recurrence_of_every_integrator() {
     }
 }
 
-/// A slope of tan θ = 1/2 (26.565°) on which a chain lies along: a = g (sin θ − μ cos θ) = 0.0877433 m/s² for μ = 0.49;
-/// after 2.5 s it has moved by 0.274198 m at 0.219358 m/s.
+/// A chain lies along a slope of tan θ = 1/2 (26.565°): a = g (sin θ − μ cos θ) = 0.0877433 m/s² for μ = 0.49; after 2.5 s it has moved by 0.274198 m
+/// and has the speed 0.219358 m/s.
 #[test]
 fn a_chain_slides_down_a_slope_by_the_closed_form() {
     let mut world = built(plane(&slope(0.49, CHAIN)));
@@ -198,8 +198,8 @@ fn a_chain_slides_down_a_slope_by_the_closed_form() {
     assert!((end[1] + 0.5 * end[0]).abs() < 1e-12, "it stays on the slope");
 }
 
-/// With μ = tan θ = 0.50 the chain stays: it creeps by less than 1e-4 m in 10 s; so does a soft block with μ = 0.6 once
-/// it has settled, while with μ = 0.49 the block slides as the chain does.
+/// With μ = tan θ = 0.50 the chain sticks: it creeps by less than 1e-4 m in 10 s. So does a soft block with μ = 0.6 once it has settled, while with μ
+/// = 0.49 the block slides like the chain.
 #[test]
 fn what_sticks_does_not_creep() {
     for (mu, body, settle) in [(0.5, CHAIN, 0), (0.6, BLOCK, 180)] {
@@ -216,7 +216,7 @@ fn what_sticks_does_not_creep() {
         assert!(moved < 1e-4, "μ = {mu}: {moved} m in 10 s");
     }
     let mut world = built(plane(&slope(0.49, BLOCK)));
-    // Its landing costs a little speed at first: acceleration between two later moments.
+    // Its landing reduces the speed a little at first, so the acceleration is measured between two later moments.
     frames(&mut world, 60);
     let speed = |world: &World<2>| {
         let p = world.momentum().linear.0;
@@ -229,9 +229,8 @@ fn what_sticks_does_not_creep() {
     assert!((acceleration / 0.087_743_307_437_092 - 1.0).abs() < 0.02, "{acceleration}");
 }
 
-/// A block at rest on a slope stays, whatever its damping becomes. One that is put down at once vibrates and, with µ = 0.6 little above
-/// tan θ = 0.5, walks: at a speed that depends neither on the step nor on the rule, so that it is no error of theirs; with
-/// µ = 0.7 it stops.
+/// A block at rest on a slope stays, however its damping changes. A block that is placed suddenly vibrates and, with µ = 0.6, slightly above tan θ =
+/// 0.5, walks. Its speed depends neither on the step nor on the integrator, so it is not a numerical error. With µ = 0.7 it stops.
 #[test]
 fn a_block_on_a_slope_stays_at_rest_and_walks_only_where_it_vibrates() {
     let scene = |mu, damping: f64, substeps: u32, rule: &str| {
@@ -254,8 +253,8 @@ fn a_block_on_a_slope_stays_at_rest_and_walks_only_where_it_vibrates() {
     println!("at rest: creeps by {crept:.1e} m in 10 s");
     assert!(crept < 1e-9, "{crept}");
 
-    // Friction that falls to a hundredth above tan θ = 0.5 lets it settle anew and holds it. At the limit itself nothing holds and
-    // nothing drives: the little speed that settling gave it stays as it is.
+    // If friction falls to a hundredth above tan θ = 0.5, the block settles again and sticks. At the limit itself no net force acts: the small speed
+    // from settling stays constant.
     for (mu, holds) in [(0.505, true), (0.5, false)] {
         let mut world = scene(0.6, 20.0, 64, "symplectic_euler");
         frames(&mut world, 120);
@@ -299,7 +298,7 @@ fn slope(mu: f64, body: &str) -> String {
     )
 }
 
-/// Sliding on the flat with μ = 0.4 from 2 m/s: stops after v²/(2 μ g) = 0.509684 m and v/(μ g) = 0.509684 s.
+/// Sliding on a horizontal floor with μ = 0.4 from 2 m/s: it stops after v²/(2 μ g) = 0.509684 m and v/(μ g) = 0.509684 s.
 #[test]
 fn a_sliding_chain_stops_after_the_closed_form() {
     let mut world = built(plane(&format!(
@@ -319,12 +318,12 @@ fn a_sliding_chain_stops_after_the_closed_form() {
     println!("way {way} m, time {stop} s");
     assert!((way / 0.509_683_995_922_528 - 1.0).abs() < 1e-3, "{way}");
     assert!((stop - 0.509_683_995_922_528).abs() < 2e-3, "{stop}");
-    // All of ½ m v² went into friction.
+    // All of ½ m v² was dissipated by friction.
     assert!((world.energy().loss_friction - 2.0).abs() < 1e-3, "{:?}", world.energy());
 }
 
-/// A chain of 2 m between two points 1 m apart hangs by 0.796388 m (catenary, a = 0.229640 m). Eighty rigid links of
-/// equal weight hang by 0.796504 m with a horizontal pull of 0.114818 times the weight.
+/// A chain of 2 m between two points 1 m apart sags by 0.796388 m (catenary, a = 0.229640 m). Eighty rigid links of equal weight sag by 0.796504 m
+/// with a horizontal force of 0.114818 times the weight.
 #[test]
 fn a_hanging_chain_is_a_catenary() {
     let links = 80;
@@ -351,8 +350,8 @@ fn a_hanging_chain_is_a_catenary() {
     assert!((pull.abs() / (9.81 * 0.114_817_806) - 1.0).abs() < 1e-3, "{pull}");
 }
 
-/// A hanging bar of springs, half the mass of a link at its ends, longer by ρ g L²/(2 E) = 0.03924 m for ρ = 1000 kg/m³,
-/// L = 1 m, E = 125 kPa: the lumped chain has exactly the value of the continuum.
+/// A hanging bar of springs, with half the mass of a link at its ends, elongates by ρ g L²/(2 E) = 0.03924 m for ρ = 1000 kg/m³, L = 1 m, E = 125
+/// kPa: the lumped chain has exactly the value of the continuum.
 #[test]
 fn a_hanging_bar_is_longer_by_its_weight() {
     let mut world = built(plane(&format!(
@@ -367,8 +366,8 @@ fn a_hanging_bar_is_longer_by_its_weight() {
     assert!((world.probe(0)[1].1 - 9810.0).abs() < 1e-3, "the pin carries the whole weight: {:?}", world.probe(0));
 }
 
-/// A body of 2 kg that pins lift by 1 m within a second takes m g h = 19.62 J, half way up ½ m v² = 1 J more; a chain of
-/// 1 kg at 3 m/s that a pin stops in flight gives 4.5 J away.
+/// Pins that lift a body of 2 kg by 1 m within a second do the work m g h = 19.62 J, and half way up ½ m v² = 1 J more; a chain of 1 kg at 3 m/s that
+/// a pin stops in flight loses 4.5 J.
 #[test]
 fn pins_do_the_work_of_what_they_move() {
     let lifted = |rule: &str, pins: &str| {
@@ -382,7 +381,7 @@ fn pins_do_the_work_of_what_they_move() {
         for pins in [pin.to_string(), format!("{pin}, {{ select = {{ node = 3 }}, axes = \"x\" }}")] {
             let mut world = built(lifted(rule, &pins));
             frames(&mut world, 30);
-            // In the first step the rules differ by g h² of way: the pins take the body up to speed in it.
+            // In the first step the displacements of the integrators differ by g h²: the pins accelerate the body in it.
             assert!((world.energy().work_user - 9.81 - 1.0).abs() < 0.03, "{rule}: {:?}", world.energy());
             frames(&mut world, 60);
             assert!((world.energy().work_user - 19.62).abs() < 0.03, "{rule}: {:?}", world.energy());
@@ -400,7 +399,7 @@ fn pins_do_the_work_of_what_they_move() {
     assert!(world.energy().loss_integrator.abs() < 1e-12);
 }
 
-/// A node that two pins hold is held by one force: the reaction is the weight, not twice the weight.
+/// A node with two pins has one reaction: its weight, not twice its weight.
 #[test]
 fn a_node_pinned_twice_has_one_reaction() {
     let mut world = built(plane(&format!(
@@ -414,8 +413,8 @@ fn a_node_pinned_twice_has_one_reaction() {
     assert!(reaction[0].abs() < 1e-12 && (reaction[1] - 19.62).abs() < 1e-12, "{reaction:?}");
 }
 
-/// In flight, without gravity: linear momentum for every integrator, angular momentum for those whose update conserves
-/// it, both to 1e-12 of Σ|m v| and of Σ m |x| |v|. Springs with damping and gas act all the while.
+/// In flight, without gravity: linear momentum is conserved with every integrator, angular momentum with those whose update conserves it, both to
+/// 1e-12 of Σ|m v| and of Σ m |x| |v|. Springs with damping and gas act all the time.
 #[test]
 fn momentum_stays_in_flight() {
     for (rule, angular) in [
@@ -463,8 +462,8 @@ fn flies<const D: usize>(mut world: World<D>, rule: &str, angular: bool) {
     assert!((reading(&mut world, "volume") / gas - 1.0).abs() > 0.01, "the ball is alive");
 }
 
-/// A ball of the scene `integrators` without damping: what the ledger cannot explain is the integrator's, and falls at its order in the step.
-/// (Symplectic Euler and Verlet swing about the true energy; the others drift.)
+/// A ball of the scene `integrators` without damping: the part of the energy that the ledger cannot explain is the error of the integrator, and
+/// decreases with its order in the step. (With symplectic Euler and Verlet the energy oscillates about the true one; with the others it drifts.)
 #[test]
 fn the_energy_of_a_swinging_ball_drifts_at_the_order_of_the_integrator() {
     let text = opruga::scenes::find("integrators").expect("a scene");
@@ -494,14 +493,14 @@ fn the_energy_of_a_swinging_ball_drifts_at_the_order_of_the_integrator() {
     }
 }
 
-/// The balance of a membrane of modulus 5,000 N/m and 1,000 J of gas must not depend on the triangles: the volume over that
-/// of the inscribed polyhedron at rest varies by less than 1.5 % from 162 to 10,242 nodes. The volumes of the first three
-/// come from a program of another author with springs of the same modulus; how it shares a triangle's area among its
-/// edges is not known, so they agree to a thousandth only.
+/// The equilibrium of a membrane of modulus 5,000 N/m and 1,000 J of gas must not depend on the triangulation: the volume divided by that of the
+/// inscribed polyhedron at rest varies by less than 1.5 % from 162 to 10,242 nodes. The first three volumes come from an independent program with
+/// springs of the same modulus. It is not known how that program distributes a triangle's area over its edges, so the results agree only to a
+/// thousandth.
 #[test]
 fn a_balloon_is_as_large_whatever_its_tessellation() {
     let rest_sphere = 4.0 / 3.0 * std::f64::consts::PI * 0.125;
-    // Rest volume over that of the sphere, volume in equilibrium [m³].
+    // Rest volume divided by that of the sphere, volume in equilibrium [m³].
     let cases = [(2, 0.9662, Some(0.6046)), (3, 0.9914, Some(0.6195)), (4, 0.9978, Some(0.6234)), (5, 0.9995, None)];
     let ratios = cases.map(|(subdivisions, inscribed, expected)| {
         let mut world = built(space(&format!(

@@ -1,4 +1,4 @@
-//! Drawings that bodies carry, as pictures show them.
+//! Pictures of drawings that bodies carry.
 #![allow(clippy::disallowed_methods, reason = "pictures need no equal bits")]
 
 use crate::common;
@@ -28,7 +28,7 @@ fn a_drawing_is_seen_in_its_colours_unless_something_else_is_asked_for() {
         assert_eq!(colours, COLOURS.map(|[r, g, b]| [r, g, b, 255]), "{filling}");
         assert!(own.legend.is_none() && own.bodies[0].scalar.is_empty());
         assert!(own.bodies[0].areas.iter().all(|area| !area.triangles.is_empty()), "{filling}");
-        // Somebody wants to see the strain: on squares the silhouette cuts it off.
+        // The strain is requested: on squares, the silhouette clips it.
         let strain = scenery.picture(&scenery.capture_quantity(&mut world, false, Quantity::Strain));
         strain.check().expect("it fits together");
         let silhouettes = usize::from(filling == "lattice");
@@ -37,12 +37,12 @@ fn a_drawing_is_seen_in_its_colours_unless_something_else_is_asked_for() {
         scenery.show_springs(&world);
         assert!(scenery.picture(&scenery.capture(&mut world, false)).bodies[0].areas.is_empty());
     }
-    // Nobody has asked for colours.
+    // No quantity is requested.
     let world = fish("spacing = 0.08, filling = \"triangles\"");
     assert!(world.blueprint().bodies[0].mesh.skin.is_none());
 }
 
-/// The middle of what is drawn falls as the body does, and the drawing lies within the body's nodes.
+/// The centre of the drawing falls like the body, and the drawing is within the body's nodes.
 #[test]
 fn a_drawing_moves_with_its_body() {
     for filling in ["none", "triangles", "lattice"] {
@@ -63,7 +63,7 @@ fn a_drawing_moves_with_its_body() {
     }
 }
 
-/// What is painted changes no bit of a run.
+/// Painting changes no bit of a run.
 #[test]
 fn colours_change_no_bits() {
     let hash = |colours: bool| {
@@ -83,7 +83,7 @@ fn scenes_with_drawings_are_drawn() {
         let view = opruga::draw::View::fit([&picture]).expect("a view");
         let style = opruga::draw::Style::film(&view, 2, 320);
         let image = opruga::draw::draw(&picture, &view, &style).expect("an image");
-        // The sea blue of the fish is there to see.
+        // The sea blue of the fish is visible.
         let blue = (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y)));
         let count = blue.filter(|(x, y)| image.pixel(*x, *y) == [0x55, 0xac, 0xee]).count();
         assert!(count > 100, "{name}: {count} pixels");

@@ -1,11 +1,11 @@
-//! What implicit rules make of the energy of bodies in free flight: the tables of docs/finite-elements.md.
+//! The energy of bodies in free flight with implicit integrators: the tables of docs/finite-elements.md.
 #![allow(clippy::disallowed_methods)] // expected values of the tests' own
 
 use crate::common;
 
 use common::{built, head, plane};
 
-/// The table of docs/finite-elements.md: by how much a soft block that flies and spins misses its energy at most, in parts of it.
+/// The table of docs/finite-elements.md: the largest relative error of the energy of a soft block that flies and spins.
 #[test]
 fn in_free_flight_rules_of_second_order_keep_the_energy_within_their_error() {
     let text = |rule: &str, substeps: u32| {
@@ -13,7 +13,7 @@ fn in_free_flight_rules_of_second_order_keep_the_energy_within_their_error() {
             + "[[body]]\nname = \"block\"\nshape = { kind = \"grid\", size = [0.4, 0.2], cells = [8, 4] }\ndensity = 1000.0\n\
                velocity = [1.0, 2.0]\nangular_velocity = 6.0\nmodels = [{ kind = \"fem\", youngs_modulus = 1e5 }]\n"
     };
-    // Of 1/60 s in 1 and 4 steps.
+    // Frames of 1/60 s in 1 and 4 steps.
     for (rule, limits, order) in [
         ("implicit_midpoint", [1.2e-3, 5e-5], 2.0),
         ("newmark", [1.5e-3, 1e-4], 2.0),
@@ -34,12 +34,11 @@ fn in_free_flight_rules_of_second_order_keep_the_energy_within_their_error() {
     }
 }
 
-/// The second table: a block that is let go from seven tenths of its height trembles in cells that are strained by a third; its
-/// slowest period is some thirteen steps of 1/60 s (E = 10⁴ Pa), or four (10⁵ Pa), in which the first two rules gain without
-/// bound.
+/// The second table: a block that is released from seven tenths of its height vibrates with strains of a third. Its slowest period is about thirteen
+/// steps of 1/60 s (E = 10⁴ Pa), or four (10⁵ Pa); in the latter case the energy grows without bound with the first two integrators.
 #[test]
 fn a_block_that_trembles_by_a_third_misses_less_of_its_energy_in_shorter_steps() {
-    // The largest gain and loss, in parts of the energy at the start, and when a step was refused.
+    // The largest relative gain and loss of the initial energy, and when a step was refused.
     let missed = |rule: &str, modulus: f64, substeps: u32| {
         let mut world = built(plane(
             &(head(1.0 / 60.0, substeps, 0.0, rule)

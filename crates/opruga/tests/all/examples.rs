@@ -1,4 +1,4 @@
-//! Every example runs, and what it prints is right.
+//! Every example runs, and its output is right.
 #![allow(dead_code, reason = "a test calls `run` of an example, cargo calls `main`")]
 #![allow(clippy::duplicate_mod, reason = "two examples build on the scene of a third")]
 
@@ -15,7 +15,7 @@ mod own_model;
 #[path = "../../examples/study.rs"]
 mod study;
 
-/// From 1.5 m a point falls for √(2 · 1.5 / 9.81) s = 0.553 s; the ball swells first, so its lowest node is there sooner.
+/// A point falls from 1.5 m in √(2 · 1.5 / 9.81) s = 0.553 s; the ball swells first, so its lowest node arrives earlier.
 #[test]
 fn the_ball_in_code_bounces() {
     let (meets, rises) = ball_in_code::run().expect("it runs");
@@ -36,7 +36,7 @@ fn the_own_model_sags_as_the_closed_form_says() {
     assert!((sag - expected).abs() < 1e-3 * expected, "{sag} m instead of {expected} m");
 }
 
-/// Symplectic Euler falls ½ g h t too far, h = 1/1920 s.
+/// With symplectic Euler it falls ½ g h t too far, h = 1/1920 s.
 #[test]
 fn the_own_integrator_is_exact_in_free_fall() {
     let (own, euler) = (own_integrator::run("taylor"), own_integrator::run("symplectic_euler"));
@@ -45,7 +45,7 @@ fn the_own_integrator_is_exact_in_free_fall() {
     assert!((euler - 1.22625 - 0.5 * 9.81 * 0.5 / 1920.0).abs() < 1e-9, "{euler} m");
 }
 
-/// The stress is the same everywhere, which linear tetrahedra have exactly.
+/// The stress is uniform, which linear tetrahedra represent exactly.
 #[test]
 fn the_bar_from_arrays_stretches_as_the_closed_form_says() {
     let [found, expected] = elements_from_arrays::run().expect("it runs");

@@ -1,14 +1,14 @@
-//! Free solids of finite elements fall on floors and obstacles under every implicit rule, at steps of 1/60 s.
+//! Free solids of finite elements fall on floors and obstacles with every implicit integrator, at steps of 1/60 s.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use crate::common;
 use common::{built, plane, space};
 use opruga::World;
 
-/// The rules that step through time.
+/// The integrators that step through time.
 const RULES: [&str; 4] = ["backward_euler", "bdf2", "implicit_midpoint", "newmark"];
 
-/// A body that falls: its shape and more lines of it, how fast, on what.
+/// A falling body: its shape with further lines, its speed, and the obstacle.
 struct Fall {
     name: &'static str,
     dimension: usize,
@@ -71,7 +71,7 @@ fn scene(fall: &Fall, material: &str, modulus: f64, damping: f64, rule: &str) ->
     )
 }
 
-/// What Newton's method did: frames made, the most iterations of a step, their mean, or why a step was refused.
+/// Statistics of Newton's method: the number of frames, the largest number of iterations of a step, their mean, or why a step was refused.
 #[derive(Debug)]
 struct Effort {
     frames: u64,
@@ -104,7 +104,7 @@ fn effort(fall: &Fall, text: &str, frames: u64) -> Effort {
     }
 }
 
-/// What once ended in infinite numbers or took a hundred iterations and more.
+/// Cases that once ended in infinite numbers or took a hundred iterations or more.
 #[test]
 fn solids_that_fall_on_floors_and_balls_are_stepped_by_every_rule_within_a_dozen_iterations_or_so() {
     let cases = [
@@ -122,7 +122,7 @@ fn solids_that_fall_on_floors_and_balls_are_stepped_by_every_rule_within_a_dozen
         for rule in RULES {
             let mut text = scene(fall, material, modulus, damping, rule);
             if name == "star" {
-                // Average acceleration, which damps nothing, has steps here that do not converge, on most meshes of the star.
+                // Average acceleration, which has no damping, has steps here that do not converge, on most meshes of the star.
                 if rule == "newmark" {
                     let alone = effort_of(built(plane(&text)), 30);
                     let clear =
@@ -142,7 +142,7 @@ fn solids_that_fall_on_floors_and_balls_are_stepped_by_every_rule_within_a_dozen
     }
 }
 
-/// The energy after every frame, less the least before it: the most that it ever grew by, and the largest kinetic energy [J].
+/// The largest increase of the energy above its earlier minimum after any frame, and the largest kinetic energy [J].
 fn growth<const D: usize>(mut world: World<D>, frames: u64) -> Result<[f64; 2], String> {
     let (mut least, mut most, mut moving) = (world.energy().total(), 0.0f64, 0.0f64);
     for _ in 0..frames {
@@ -155,7 +155,7 @@ fn growth<const D: usize>(mut world: World<D>, frames: u64) -> Result<[f64; 2], 
     Ok([most, moving])
 }
 
-/// Newmark's rule once let such a body gain energy without end. In flight, rules that damp nothing let energy swing.
+/// With Newmark's method such a body once gained energy without bound. In flight, the energy oscillates with integrators that have no damping.
 #[test]
 fn drawings_of_elements_that_fall_on_a_floor_gain_no_energy() {
     drawings_fall(&RULES[3..]);
@@ -191,7 +191,7 @@ fn drawings_fall(rules: &[&str]) {
     }
 }
 
-/// The table of shapes, materials, rules and moduli; `FALLS=spot,heart`, `RULES=`, `MATERIALS=`, `MODULI=`, `FRAMES=` choose of it.
+/// The table of shapes, materials, integrators and moduli; `FALLS=spot,heart`, `RULES=`, `MATERIALS=`, `MODULI=`, `FRAMES=` select parts of it.
 #[test]
 #[ignore = "a measurement"]
 fn iterations_of_falling_solids() {
@@ -226,8 +226,8 @@ fn iterations_of_falling_solids() {
     }
 }
 
-/// Bars of quadratic tetrahedra and a square of quadratic triangles strike the floor in real time, soft and stiff, of every law that a
-/// game would take: three iterations do not reach the end of such a step, and what counts all the same makes no energy.
+/// Bars of quadratic tetrahedra and a square of quadratic triangles strike the floor in real time, soft and stiff, with every law that a game would
+/// use. Three iterations do not reach the end of such a step, but the accepted result must create no energy.
 #[test]
 fn what_falls_in_real_time_makes_no_energy() {
     falls_in_real_time(&["stable_neo_hookean"]);
@@ -287,8 +287,8 @@ fn falls_without_gain<const D: usize>(mut world: World<D>, name: &str) {
     }
 }
 
-/// A clamped beam that swings under its weight. What steps leave out of balance comes back behind its time: with as much as backward
-/// Euler stands, `bdf2` gained ten times the energy of the swing.
+/// A clamped beam swings under its own weight. Residuals of earlier steps return later: with the residuals that backward Euler tolerates, `bdf2`
+/// gained ten times the energy of the motion.
 #[test]
 fn what_swings_in_real_time_makes_no_energy() {
     for rule in ["backward_euler", "bdf2"] {

@@ -1,4 +1,4 @@
-//! Fields that are written and have no say among the others are told of, with what they need.
+//! Fields that have no effect together with the others are reported, with what they require.
 
 use crate::common;
 use common::*;
@@ -83,7 +83,7 @@ fn no_shipped_scene_has_a_field_without_effect() {
     }
 }
 
-/// A condition names another field of the same table, and words that it can have.
+/// A condition names another field of the same table, and values that it can have.
 #[test]
 fn conditions_name_fields_and_words_that_exist() {
     let catalogue = catalogue();
@@ -129,7 +129,7 @@ fn what_has_no_effect_and_was_set_by_nobody_is_not_written() {
     gas.set(spec, "nRT", Value::Number(20.0), 2).expect("allowed");
     let table = written::kind_table(&gas, 2);
     assert!(!table.contains_key("gamma") && table.contains_key("nRT") && table.contains_key("process"));
-    // With another process it has one, and what a person has set is written wherever it stands.
+    // With another process it has an effect, and a field that the user has set is always written.
     gas.set(spec, "process", Value::Text("adiabatic".into()), 2).expect("allowed");
     assert!(written::kind_table(&gas, 2).contains_key("gamma"));
     gas.set(spec, "gamma", Value::Number(1.2), 2).expect("allowed");

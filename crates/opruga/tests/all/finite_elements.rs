@@ -1,20 +1,20 @@
-//! Finite elements from the text of a scene: weight, bending, stable steps, refusals.
+//! Finite elements from the text of a scene: weight, bending, stable steps, errors.
 //!
-//! Expected values are literals from closed forms or from other programs; the comment says which.
+//! Expected values are literals from closed forms or from other programs, as the comments say.
 
 use crate::common;
 use common::*;
 use opruga::math::message::Message;
 use opruga::{Options, World, WorldError};
 
-/// The mean of a coordinate over the nodes of body 0 that lie at a coordinate of the rest shape.
+/// The mean of a coordinate over the nodes of body 0 at a given coordinate of the rest shape.
 fn mean_at<const D: usize>(world: &World<D>, axis: usize, place: f64, of: usize) -> f64 {
     let rest = &world.blueprint().bodies[0].mesh.positions;
     let nodes: Vec<u32> = (0..rest.len() as u32).filter(|n| (rest[*n as usize][axis] - place).abs() < 1e-9).collect();
     nodes.iter().map(|n| world.position(0, *n)[of] - rest[*n as usize][of]).sum::<f64>() / nodes.len() as f64
 }
 
-/// A bar that hangs by its upper end grows by ρgL²/2E = 0.03924 m, exactly at the nodes of quadrilaterals.
+/// A bar that hangs by its upper end elongates by ρgL²/2E = 0.03924 m, exactly at the nodes of quadrilaterals.
 #[test]
 fn a_hanging_bar_grows_by_its_weight() {
     for cells in ["", "simplices = true\norder = 1\n", "simplices = true\n"] {
@@ -26,7 +26,7 @@ fn a_hanging_bar_grows_by_its_weight() {
         )));
         frames(&mut world, 5);
         let growth = -mean_at(&world, 1, 0.0, 1);
-        // Masses at the nodes of triangles are not quite the weight of their shape functions.
+        // The masses at the nodes of triangles are not exactly the integrals of their shape functions.
         let tolerance = if cells.is_empty() { 1e-6 } else { 2e-3 };
         assert!((growth / 0.03924 - 1.0).abs() < tolerance, "{cells}: {growth}");
     }
@@ -49,7 +49,7 @@ fn a_beam_of_quadratic_tetrahedra_bends_by_its_weight() {
     assert!((sag / 0.014686 - 1.0).abs() < 0.01, "{sag}");
 }
 
-/// The estimate of the stable step sees finite elements: above it the scene is refused, with it the energy is kept.
+/// The estimate of the stable step includes finite elements: above it the scene is refused, at it the energy is conserved.
 #[test]
 fn explicit_integrators_know_their_step() {
     let scene = |substeps: u32| {
@@ -63,7 +63,7 @@ fn explicit_integrators_know_their_step() {
     let WorldError::UnstableStep { substeps, .. } = refused(&scene(1)) else { panic!("another refusal") };
     assert!((10..3000).contains(&substeps), "{substeps}");
     assert!(World::new(plane(&scene(substeps * 3 / 4)), Options::default()).is_err());
-    // The beam stiffens a little where it bends.
+    // The beam becomes slightly stiffer where it bends.
     let mut world = built(plane(&scene(substeps * 5 / 4)));
     frames(&mut world, 50);
     let energy = world.energy();
@@ -71,7 +71,7 @@ fn explicit_integrators_know_their_step() {
     assert!(energy.closure.abs() < 0.02, "{energy:?}");
 }
 
-/// A square of St. Venant–Kirchhoff in plane stress, pulled apart along both axes, has no thickness.
+/// A square of St. Venant–Kirchhoff in plane stress, stretched along both axes, has no valid thickness.
 #[test]
 fn a_plate_without_thickness_ends_the_run_at_the_last_good_frame() {
     let mut world = built(plane(&format!(
@@ -79,7 +79,7 @@ fn a_plate_without_thickness_ends_the_run_at_the_last_good_frame() {
          models = [{{ kind = \"fem\", material = \"st_venant_kirchhoff\", youngs_modulus = 100.0, poissons_ratio = 0.4, plane = \"stress\" }}]\n",
         head(0.01, 40, 0.0, "verlet")
     )));
-    // Every node away from the middle.
+    // Every node moves away from the centre.
     for node in 0..world.node_count(0) as u32 {
         let x = world.position(0, node);
         world.set_node(0, node, x.map(|c| 0.5 + 1.4 * (c - 0.5)), [0.0; 2]).unwrap_or_else(|e| panic!("{e}"));
@@ -115,8 +115,8 @@ fn cells_that_cannot_be_had_are_refused_where_they_are_asked_for() {
     assert!(locking.contains("order = 2"), "{locking}");
 }
 
-/// What does not lock is what a body of finite elements is made of: quadratic triangles and tetrahedra unless it says
-/// otherwise, whether the shape is cut, filled or read; bodies without elements keep their nodes.
+/// Bodies of finite elements consist by default of elements that do not lock: quadratic triangles and tetrahedra, whether the shape is cut, filled or
+/// read. Bodies without elements keep their nodes.
 #[test]
 fn triangles_and_tetrahedra_of_finite_elements_are_quadratic_by_default() {
     let nodes = |body: &str, model: &str| {
@@ -138,7 +138,7 @@ fn triangles_and_tetrahedra_of_finite_elements_are_quadratic_by_default() {
     assert!(nodes(heart, fem) > 3 * nodes(&format!("{heart}\norder = 1"), loose));
 }
 
-/// Two squares of one metre side by side, of 1000 and 3000 kg/m³ and half a metre deep, as a mesh file says.
+/// Two adjacent squares of one metre, with 1000 and 3000 kg/m³ and half a metre deep, as a mesh file gives them.
 #[test]
 fn a_mesh_file_gives_every_cell_its_density() {
     let mesh = |second: &str| {
@@ -180,8 +180,8 @@ fn a_mesh_file_gives_every_cell_its_density() {
     }
 }
 
-/// A linear law knows no pendulum: pinned at one node, or in space along one edge, a block turns without end, whatever its weight.
-/// The same block of another law hangs, and a linear one is held by a second pin.
+/// A linear law cannot represent a pendulum: pinned at one node, or in space along one edge, a block rotates without limit, whatever its weight. The
+/// same block with another law hangs, and a linear one is held by a second pin.
 #[test]
 fn a_linear_body_that_only_its_weight_would_hold_is_refused_with_its_rotation() {
     let body = |material: &str, size: &str, cells: &str, pins: &str| {
@@ -219,8 +219,8 @@ fn a_linear_body_that_only_its_weight_would_hold_is_refused_with_its_rotation() 
     assert!(mean_at(&held, 1, 2.0, 1) < 0.0);
 }
 
-/// A bar of 1 × 0.2 × 0.2 m that pins press by 0.4 m, straight or askew, buckles: its straight shape stays a balance, which does not
-/// hold. Iterations that come to it leave it again, within what they are allowed by default.
+/// A bar of 1 × 0.2 × 0.2 m that pins compress by 0.4 m, straight or skewed, buckles: its straight shape remains an equilibrium, but an unstable one.
+/// Iterations that reach it leave it again, within the default number.
 #[test]
 fn a_bar_that_is_pressed_until_it_buckles_is_followed_by_default() {
     let bar = |rule: &str, cells: &str, substeps: u32, motion: &str| {
@@ -243,13 +243,13 @@ fn a_bar_that_is_pressed_until_it_buckles_is_followed_by_default() {
         let work = world.solver_work();
         println!("{rule}: {work:?}");
         assert!(work.iterations < most, "{rule}: {work:?}");
-        // Bowed out in whatever direction, or by the way askew: no node of the middle lies where pressing alone would leave it.
+        // Bowed out in any direction, or by the skew of the pins: no node in the middle is where pure compression would leave it.
         let (up, aside) = (mean_at(&world, 0, 0.5, 1), mean_at(&world, 0, 0.5, 2));
         let up = up - if motion.contains("0.5, 0.0") { 0.25 } else { 0.0 };
         let bow = (up * up + aside * aside).sqrt();
         println!("{rule}: the middle is bowed out by {bow} m");
         assert!(bow > 0.05, "{rule}: {bow}");
-        // Corners of quadratic cells may fold, which no integration point feels; no cell is inside out at one.
+        // Corners of quadratic cells may fold, which no integration point detects; no cell is inverted at an integration point.
         assert!(world.cell_states(0).iter().all(|cell| cell.smallest_volume_ratio > 0.0), "{rule}");
     }
 }

@@ -1,7 +1,7 @@
-//! Scenes that were tampered with, read with everything that the library has, built, and run for a few frames: a world,
-//! an error with its place, or a body that diverges, but never a panic and never a number that is not finite.
+//! Altered scenes, read with everything that the library has, built, and run for a few frames: the result is a world, an error with its location, or
+//! a body that diverges, but never a panic and never a number that is not finite.
 //!
-//! The mutations are the same in every run; `fuzz/` looks for new ones.
+//! The mutations are the same in every run; `fuzz/` searches for new ones.
 
 use opruga::blueprint::{AnyBlueprint, Blueprint};
 use opruga::io::scene::{Limits, Options as Reading, read};
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 fn runs<const D: usize>(mut blueprint: Blueprint<D>) {
-    // A mutation may ask for a million substeps, and a step of an implicit rule costs as much as hundreds of others.
+    // A mutation may ask for a million substeps, and a step of an implicit integrator costs as much as hundreds of explicit ones.
     let explicit = ["explicit_euler", "symplectic_euler", "heun", "verlet", "runge_kutta"];
     let (most, frames) = if explicit.contains(&blueprint.integrator.kind()) { (64, 3) } else { (1, 1) };
     blueprint.time.substeps = blueprint.time.substeps.min(most);
@@ -50,7 +50,7 @@ fn survives(text: &str, overrides: Vec<(String, String)>) {
     }
 }
 
-/// The text of a scene, without contact: bodies that explode meet in every step, which takes seconds.
+/// The text of a scene without contact: bodies that explode collide in every step, which takes seconds.
 fn text_of(name: &str) -> String {
     let text = scenes::find(name).expect("a scene");
     let Some((before, section)) = text.split_once("[contact]") else { return text.to_string() };
@@ -76,13 +76,13 @@ const SCENES: [&str; 14] = [
     "word",
 ];
 
-/// What a number of a scene may become.
+/// The replacements of a number in a scene.
 const NUMBERS: [&str; 18] = [
     "0", "0.0", "-0.0", "1", "-1", "2", "3", "1e-300", "5e-324", "1e-9", "1e9", "1e30", "1e150", "1e300", "-1e300",
     "100", "7", "0.5",
 ];
 
-/// The places of numbers in a text: from a digit or sign to what ends it.
+/// The ranges of numbers in a text: from a digit or sign to the character that ends it.
 fn numbers(text: &str) -> Vec<(usize, usize)> {
     let bytes = text.as_bytes();
     let inside = |c: u8| c.is_ascii_digit() || b".eE+-_".contains(&c);
@@ -129,7 +129,7 @@ proptest! {
     }
 }
 
-/// Every scene under every integrator, and with every model under two of them; over all scenes every model meets every integrator.
+/// Every scene with every integrator, and with every model with two of them; over all scenes, every model occurs with every integrator.
 #[test]
 fn scenes_with_other_integrators_and_models() {
     with_other_integrators_and_models(|number| number % 5 == 0);
@@ -141,7 +141,7 @@ fn scenes_with_other_integrators_and_models_whole_sweep() {
     with_other_integrators_and_models(|number| number % 5 != 0);
 }
 
-/// The combinations with chosen numbers.
+/// The combinations with selected numbers.
 fn with_other_integrators_and_models(chosen: fn(usize) -> bool) {
     let known = catalogue();
     let rules = &known.integrators;

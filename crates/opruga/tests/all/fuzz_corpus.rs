@@ -1,7 +1,7 @@
-//! The inputs that the fuzz targets of recordings, checkpoints and sweeps begin from: made here, and compared with those of
-//! `fuzz/corpus`. `OPRUGA_CORPUS=write cargo test -p opruga --test all fuzz_corpus::` writes them anew after a change of format.
+//! The inputs from which the fuzz targets of recordings, checkpoints and sweeps start: made here, and compared with those in `fuzz/corpus`.
+//! `OPRUGA_CORPUS=write cargo test -p opruga --test all fuzz_corpus::` writes them again after a change of format.
 
-// The bodies of the targets, which the fuzzer calls with other bytes.
+// The functions of the targets, which the fuzzer calls with other bytes.
 #[path = "../../../../fuzz/src/lib.rs"]
 #[allow(unreachable_pub, reason = "it is a crate of its own there")]
 mod targets;
@@ -18,7 +18,7 @@ use std::io::Cursor;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// A ring of five nodes: its states are short.
+/// A ring of five nodes, so that its states are short.
 const SCENE: &str = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\nsubsteps = 4\n[integrator]\nkind = \"symplectic_euler\"\n\
                      [[body]]\nname = \"ring\"\nmass = 1\nshape = { kind = \"ring\", radius = 0.5, vertices = 5 }\n\
                      models = [{ kind = \"mass_spring\", stiffness = 100.0 }]\n";
@@ -34,7 +34,7 @@ fn world() -> World<2> {
     World::new(blueprint(), Options::default()).expect("a world")
 }
 
-/// A recording with a state in so many frames and something that a program did.
+/// A recording with one state every `every` frames and an action of a program.
 fn recording(every: u64) -> Vec<u8> {
     let path = std::env::temp_dir().join(format!("opruga-corpus-{}-{every}", std::process::id()));
     let mut world = world();
@@ -87,7 +87,7 @@ fn question() -> Question {
     }
 }
 
-/// A question and its table, a zero between them.
+/// A question and its table, separated by a zero byte.
 fn sweep_folder() -> Vec<u8> {
     let sweep = question().sweep(&opruga::Registries::default()).expect("a sweep");
     let points = sweep.points().expect("two points");
@@ -121,7 +121,7 @@ fn the_corpus_is_that_of_this_version() {
             std::fs::read(&path).is_ok_and(|there| there == bytes),
             "{name} is another one: see the head of this file"
         );
-        // Each leads to the end of what it is an input of.
+        // Each is read to its end by its target.
         match name.split_once('/').expect("a folder") {
             ("recording", kind) => {
                 let recording = Recording::open(Cursor::new(&bytes[..])).expect("a recording");
@@ -144,7 +144,7 @@ fn the_corpus_is_that_of_this_version() {
     }
 }
 
-/// Every target has a body, a file that the fuzzer builds and a corpus to begin from; and takes all of that as it will.
+/// Every target has a function, a file that the fuzzer builds and a corpus to start from, and handles all of that.
 #[test]
 fn every_target_takes_its_corpus() {
     let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz");
@@ -163,7 +163,7 @@ fn every_target_takes_its_corpus() {
     );
     let manifest = std::fs::read_to_string(fuzz.join("Cargo.toml")).expect("a manifest");
     for (name, target) in targets::TARGETS {
-        // Nothing but the call, which is compiled by a nightly compiler alone: what it calls is compiled here.
+        // The file contains only the call, which requires a nightly compiler; the called function is compiled here.
         let built = std::fs::read_to_string(fuzz.join(format!("fuzz_targets/{name}.rs"))).expect("a target");
         let code: Vec<&str> = built.lines().filter(|line| !line.is_empty() && !line.starts_with("//!")).collect();
         let call = format!("libfuzzer_sys::fuzz_target!(|bytes: &[u8]| opruga_fuzz::{name}(bytes));");
@@ -172,7 +172,7 @@ fn every_target_takes_its_corpus() {
         for file in std::fs::read_dir(fuzz.join("corpus").join(name)).expect("a corpus") {
             let bytes = std::fs::read(file.expect("an entry").path()).expect("a file");
             target(&bytes);
-            // Cut off, as a fuzzer begins.
+            // Truncated, as a fuzzer would do first.
             target(&bytes[..bytes.len() / 2]);
         }
     }

@@ -1,4 +1,4 @@
-//! Gas that is let in, heated, or leaks: amounts and energies against their closed forms, in bodies that keep their volume.
+//! Gas that is let in, heated, or leaks: amounts and energies compared with their closed forms, in bodies of constant volume.
 #![allow(clippy::disallowed_methods)] // expected values of the tests' own
 
 use crate::common;
@@ -6,10 +6,10 @@ use common::*;
 use opruga::World;
 use opruga::core::spec::Value;
 
-/// N R² sin(2π/N)/2 for N = 36, R = 0.5 m, a metre deep [m³].
+/// N R² sin(2π/N)/2 for N = 36, R = 0.5 m, one metre deep [m³].
 const VOLUME: f64 = 0.781_416_799_501_186_5;
 
-/// A ring that is held, and gas in it.
+/// A pinned ring with gas in it.
 fn held(gas: &str) -> World<2> {
     built(plane(&format!(
         "{}[[body]]\nname = \"ring\"\nfixed = true\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 36 }}\n\
@@ -22,7 +22,7 @@ fn reading(world: &mut World<2>, name: &str) -> f64 {
     world.readings(0).into_iter().find(|r| r.0 == name).expect("a reading").1
 }
 
-/// The ramp is linear and ends; what it lets in is the work on the gas: P V/(γ − 1) of an adiabatic one.
+/// The ramp is linear and ends; the gas that it lets in is work on the gas: P V/(γ − 1) for an adiabatic one.
 #[test]
 fn a_ramp_lets_the_gas_in_linearly() {
     let mut world = held("nRT = 80.0, ramp = 0.8");
@@ -57,7 +57,7 @@ fn a_leak_brings_the_pressure_down_to_that_outside() {
     }
 }
 
-/// T/T₀ is straight between the points of its curve and constant after the last.
+/// T/T₀ is linear between the points of its curve and constant after the last.
 #[test]
 fn temperature_follows_its_curve() {
     let mut world = held("nRT = 80.0, temperature = [[0, 1], [0.4, 1.5], [0.8, 0.5]]");
@@ -84,7 +84,7 @@ fn a_leak_loses_what_a_ramp_has_let_in_and_no_more() {
             let found = reading(&mut world, "nRT");
             assert!((found - expected).abs() < 1e-5 * most, "{amount} J, frame {frame}: {found} {expected}");
         }
-        // Full, it goes on to the pressure outside.
+        // When the ramp has ended, it leaks down to the ambient pressure.
         let full = reading(&mut world, "nRT");
         frames(&mut world, 50);
         let expected = ambient * VOLUME + (full - ambient * VOLUME) * (-leak).exp();
@@ -115,7 +115,7 @@ fn what_has_leaked_stays_lost_when_the_leak_is_closed_and_setting_the_amount_fil
     assert!((reading(&mut world, "nRT") - 70.0 * (-0.1_f64).exp()).abs() < 1e-9);
 }
 
-/// However fast it is, a leak brings the pressure to that outside and not beyond, from above and from nothing.
+/// However fast it is, a leak brings the pressure to the ambient one and not beyond, from above and from zero.
 #[test]
 fn a_leak_faster_than_a_step_ends_at_the_pressure_outside() {
     for gas in ["nRT = 50.0", "nRT = 50.0, process = \"adiabatic\"", "nRT = 0.0", "nRT = 0.0, process = \"adiabatic\""]
@@ -128,7 +128,7 @@ fn a_leak_faster_than_a_step_ends_at_the_pressure_outside() {
     }
 }
 
-/// What a command changes is somebody's work: at every moment the energy is that of the start and what the channels have brought.
+/// Energy changed by a command counts as work: at every moment the energy is the initial energy plus the entries of the ledger.
 #[test]
 fn the_energy_that_comes_with_a_parameter_is_entered_as_work() {
     let mut world = held("nRT = 50.0, ambient = 20.0");
@@ -144,8 +144,8 @@ fn the_energy_that_comes_with_a_parameter_is_entered_as_work() {
     }
 }
 
-/// What a gas is given by, amount or pressure, gives way to the other when that is set: the chamber is filled anew, whatever had
-/// leaked, by a program and by a command; a snapshot of before restores what was.
+/// A gas is given by its amount or its pressure. If the other one is set, by a program or by a command, it replaces the former: the chamber is filled
+/// again, whatever had leaked. An earlier snapshot restores the former state.
 #[test]
 fn a_gas_given_by_its_amount_can_be_set_by_its_pressure() {
     let mut world = held("nRT = 80.0, leak = 1.5");

@@ -1,10 +1,10 @@
-//! Every scene that comes with the library ends with the bits of `scenes/golden.txt`, on any number of threads and with
-//! any vector instructions of this processor. The test tries the best instructions with 3 threads; the other ways are the best ones with 1 and 8
-//! threads, and the others with 3. The sweep tries one of them with every scene, by turns: all of them with every scene take four times as long
-//! (`cargo test -p opruga --test all -- --ignored in_all_ways`). The first frames are recorded, and played back.
+//! Every scene that comes with the library ends with the bits in `scenes/golden.txt`, for any number of threads and any vector instructions of this
+//! processor. The test uses the best instructions with 3 threads. The other configurations are the best instructions with 1 and 8 threads, and the
+//! other instructions with 3. The sweep uses one of them for every scene, in turn; all of them for every scene take four times as long (`cargo test
+//! -p opruga --test all -- --ignored in_all_ways`). The first frames are recorded and played back.
 //!
-//! `cargo xtask goldens` writes the hashes anew (it tries all ways with `OPRUGA_GOLDENS=write`); the numbers of frames
-//! are written by hand. A changed hash is a changed result: its reason belongs into the commit.
+//! `cargo xtask goldens` writes the hashes again (it uses all configurations with `OPRUGA_GOLDENS=write`); the numbers of frames are written by hand.
+//! A changed hash is a changed result: the commit must give its reason.
 
 use crate::recordings::first_frames_are_replayed;
 use opruga::blueprint::{AnyBlueprint, Blueprint};
@@ -20,14 +20,14 @@ struct Golden {
     hash: String,
 }
 
-/// Frames of a scene that the file does not name yet.
+/// The number of frames of a scene that the file does not contain yet.
 const FRAMES: u64 = 20;
 
 fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes")
 }
 
-/// The comment at the head of the file, and its lines.
+/// The comment at the beginning of the file, and its lines.
 fn file() -> (String, Vec<Golden>) {
     let text = std::fs::read_to_string(folder().join("golden.txt")).expect("scenes/golden.txt");
     let head = text.lines().filter(|l| l.starts_with('#')).map(|l| format!("{l}\n")).collect();
@@ -40,10 +40,11 @@ fn file() -> (String, Vec<Golden>) {
     (head, lines.map(golden).collect())
 }
 
-/// In place of the hash of a scene whose bits are the same on processors of one class only.
+/// Replaces the hash of a scene whose bits are the same only on processors of one class.
 const OF_A_CLASS: &str = "this_cpu_class";
 
-/// The state after some frames, of which the first are replayed where a name is given; a scene without a promise for every processor is marked.
+/// The hash of the state after some frames, the first of which are replayed if a name is given; a scene without a guarantee for every processor is
+/// marked.
 fn hash<const D: usize>(blueprint: &Blueprint<D>, frames: u64, options: &Options, replay: Option<&str>) -> String {
     let new = || World::new(blueprint.clone(), options.clone()).expect("a world");
     let mut world = new();
@@ -55,7 +56,7 @@ fn hash<const D: usize>(blueprint: &Blueprint<D>, frames: u64, options: &Options
     format!("{mark}{:016x}", world.state_hash())
 }
 
-/// What the file says of a hash.
+/// The entry of the file for a hash.
 fn written(found: &str) -> &str {
     if found.starts_with(OF_A_CLASS) { OF_A_CLASS } else { found }
 }
@@ -97,14 +98,14 @@ fn every_scene_ends_with_its_golden_hash_in_all_ways() {
     compare(&|_| other_ways(), false);
 }
 
-/// Instructions and threads beside those of the test: how many threads share the work does not depend on the instructions that they use.
+/// Configurations of instructions and threads other than that of the test. The distribution of work over threads does not depend on the instructions.
 fn other_ways() -> Vec<(Simd, usize)> {
     let best = |simd: &Simd| simd.name() == Simd::best().name();
     let others = Simd::available().into_iter().filter(|simd| !best(simd)).map(|simd| (simd, 3));
     others.chain([1, 8].map(|threads| (Simd::best(), threads))).collect()
 }
 
-/// Runs every scene in the ways that are given by its number.
+/// Runs every scene in the configurations for its number.
 fn compare(ways_of: &dyn Fn(usize) -> Vec<(Simd, usize)>, replay: bool) {
     let write = std::env::var("OPRUGA_GOLDENS").is_ok_and(|w| w == "write");
     let (head, golden) = file();
@@ -116,7 +117,7 @@ fn compare(ways_of: &dyn Fn(usize) -> Vec<(Simd, usize)>, replay: bool) {
         let reading = scene::Options { files: scenes::files(), ..scene::Options::default() };
         let read = scene::read(source.as_bytes(), &format!("{name}.toml"), &catalogue(), &reading);
         let (blueprint, notices) = read.unwrap_or_else(|errors| panic!("{}", errors[0]));
-        // Warnings are errors here; what a scene asks for is none.
+        // Warnings are errors here, except those about things that a scene asks for.
         assert!(notices.iter().all(|n| n.about.code == "shape.dropped"), "{name}: {}", notices[0]);
         let start = std::time::Instant::now();
         let mut first = String::new();

@@ -1,4 +1,4 @@
-//! Implicit integrators and statics on whole scenes: rest, sliding, impact, sag, catenary, snapshots, refusals.
+//! Implicit integrators and statics on whole scenes: rest, sliding, impact, sag, catenary, snapshots, errors.
 #![allow(clippy::disallowed_methods)] // expected values of the tests' own
 
 use crate::common;
@@ -7,14 +7,14 @@ use opruga::math::message::Message;
 use common::{built, frames, head, plane, refused, space};
 use opruga::World;
 
-/// The rules that step through time.
+/// The integrators that step through time.
 const RULES: [&str; 4] = ["backward_euler", "bdf2", "implicit_midpoint", "newmark"];
 
-/// A stiff block of springs on y = 0: hω is about 30 at a step of 1/60 s, five times the limit of explicit rules.
+/// A stiff block of springs on y = 0: hω is about 30 at a step of 1/60 s, five times the limit of explicit integrators.
 const BLOCK: &str = "[[body]]\nname = \"block\"\nshape = { kind = \"grid\", size = [0.4, 0.2], cells = [4, 2] }\n\
     mass = 2.0\nmodels = [ { kind = \"mass_spring\", stiffness = 2e5, damping = 20.0, edges = \"shear\" } ]\n";
 
-/// A floor at a height with a coefficient of friction.
+/// A floor at some height with a coefficient of friction.
 fn floor(height: f64, friction: f64, restitution: f64) -> String {
     format!(
         "[[collider]]\nkind = \"half_space\"\npoint = [0.0, {height:?}]\nnormal = [0.0, 1.0]\nfriction = {friction:?}\n\
@@ -46,7 +46,7 @@ fn a_stiff_block_falls_comes_to_rest_and_stays() {
             assert!((now[0] - x[0]).abs() + (now[1] - x[1]).abs() < 1e-7, "{rule}: {x:?} {now:?}");
         }
         let energy = world.energy();
-        // All of the fall went into the impact, the springs' damping and the error of the rule.
+        // The whole potential energy was dissipated by the impact, the damping of the springs and the numerical damping.
         assert!(energy.kinetic < 1e-4 && energy.loss_contact > 0.1, "{rule}: {energy:?}");
         assert!(energy.work_correction.abs() < 1e-9 && energy.work_user.abs() < 1e-9, "{rule}: {energy:?}");
         let solver = world.solver_work();
@@ -54,8 +54,8 @@ fn a_stiff_block_falls_comes_to_rest_and_stays() {
     }
 }
 
-/// A block on an incline with tan θ = ½ (gravity is tilted, not the floor), of springs that are damped so, with so many steps a
-/// frame; and what becomes of it in 2.5 s: way, speed, and the speed that it gained in the last two seconds.
+/// Places a block on an incline with tan θ = ½ (gravity is tilted, not the floor), made of springs with this damping, with this number of steps per
+/// frame. Returns the displacement, the speed, and the increase of the speed in the last two seconds, all after 2.5 s.
 fn on_the_incline(rule: &str, substeps: u32, damping: f64, friction: f64) -> ([f64; 3], opruga::Energy) {
     let size = 1.25f64.sqrt();
     let (along, across) = (9.81 * 0.5 / size, -9.81 / size);
@@ -71,15 +71,15 @@ fn on_the_incline(rule: &str, substeps: u32, damping: f64, friction: f64) -> ([f
     ([mean(&world, |n| world.position(0, n)[0]) - 0.2, now, now - early], world.energy())
 }
 
-/// µ = 0.49 slides by .0877433 m/s² (validation B5), in one step a frame and in many; what is elastic slips a little farther while it
-/// settles under its weight, by every rule as far as by Verlet's in tiny steps. µ = 0.52 stays where it is.
+/// With µ = 0.49 it slides at .0877433 m/s² (validation B5), with one step per frame and with many. An elastic block slips a little farther while it
+/// settles under its weight, with every integrator as far as with Verlet's in tiny steps. With µ = 0.52 it stays where it is.
 #[test]
 fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
     let across = 9.81 / 1.25f64.sqrt();
     let ([true_way, ..], _) = on_the_incline("verlet", 512, 300.0, 0.49);
     assert!((true_way / 0.274_198 - 1.0).abs() < 0.02, "{true_way}");
     for rule in RULES {
-        // A rod of two nodes stands at the limit itself, under every rule.
+        // A rod of two nodes reproduces the limit exactly, with every integrator.
         let rod = "[[body]]\nname = \"rod\"\nshape = { kind = \"line\", from = [0.0, 0.0], to = [0.4, 0.0], segments = 1 }\n\
             mass = 2.0\nmodels = [ { kind = \"mass_spring\", stiffness = 2e5 } ]\n";
         let head = head(1.0 / 60.0, 1, 0.0, rule)
@@ -91,7 +91,7 @@ fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
         println!("{rule}: {way:.6} m, {speed:.6} m/s with little damping");
         assert!((way / 0.274_198 - 1.0).abs() < 1e-2, "{rule}: {way} {speed}");
         assert!((speed / 0.219_358 - 1.0).abs() < 3e-3, "{rule}: {way} {speed}");
-        // Friction takes µ N s of it.
+        // Friction dissipates µ N s of it.
         let rubbed = 0.49 * 2.0 * across * way;
         assert!((energy.loss_friction / rubbed - 1.0).abs() < 2e-2, "{rule}: {} {rubbed}", energy.loss_friction);
         let ([way, speed, _], energy) = on_the_incline(rule, 1, 20.0, 0.52);
@@ -105,7 +105,7 @@ fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
             if substeps >= 16 {
                 assert!((way / true_way - 1.0).abs() < 1e-2, "{rule}, {substeps} steps: {way} {true_way}");
             }
-            // Friction takes µ N s of it.
+            // Friction dissipates µ N s of it.
             let rubbed = 0.49 * 2.0 * across * way;
             let lost = energy.loss_friction;
             assert!((lost / rubbed - 1.0).abs() < 2e-2, "{rule}, {substeps} steps: {lost} {rubbed}");
@@ -120,8 +120,8 @@ fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
     }
 }
 
-/// While all nodes slide one way, friction takes µ times the momentum that the floor gives across, also of a block that hops and
-/// trembles: mΔv = −µ (m g T + mΔw), w upwards.
+/// While all nodes slide in the same direction, friction removes µ times the normal impulse of the floor, even for a block that hops and vibrates:
+/// mΔv = −µ (m g T + mΔw), with w upwards.
 #[test]
 fn friction_takes_its_share_of_every_impact() {
     let block = BLOCK.replace("mass = 2.0", "mass = 2.0\nvelocity = [5.0, 0.0]");
@@ -140,7 +140,7 @@ fn friction_takes_its_share_of_every_impact() {
     }
 }
 
-/// Half of the speed returns, once for each impact; the rest is in the ledger.
+/// Half of the speed returns, once for each impact; the rest of the energy is in the ledger.
 #[test]
 fn a_bounce_returns_what_the_restitution_says() {
     for rule in RULES {
@@ -155,7 +155,7 @@ fn a_bounce_returns_what_the_restitution_says() {
     }
 }
 
-/// A weight on a spring hangs m g/k below, whatever the step: from 1e-5 s to 2 s (validation B7).
+/// A weight on a spring hangs m g/k lower, for every step from 1e-5 s to 2 s (validation B7).
 #[test]
 fn the_sag_does_not_depend_on_the_step() {
     for rule in RULES {
@@ -197,7 +197,7 @@ fn a_hanging_chain_is_a_catenary() {
         let sag = -nodes(&world).iter().map(|x| x[1]).fold(0.0, f64::min);
         println!("{solver}: sag {sag}, {:?}", world.solver_work());
         assert!((sag - 0.796_388).abs() < 2e-4, "{solver}: {sag}");
-        // And there it stays.
+        // It stays there.
         frames(&mut world, 1);
         assert!((-nodes(&world)[50][1] - sag).abs() < 1e-9);
     }
@@ -224,7 +224,7 @@ fn a_run_that_is_taken_up_again_ends_with_the_same_bits() {
     }
 }
 
-/// A gas-filled ring under its springs: the pressure of the gas balances them, by every solver.
+/// A gas-filled ring of springs: the pressure of the gas balances them, with every solver.
 #[test]
 fn all_linear_solvers_lead_to_the_same_motion() {
     let run = |solver: &str| {
@@ -249,7 +249,7 @@ fn all_linear_solvers_lead_to_the_same_motion() {
     }
 }
 
-/// In space: a stiff sheet of springs falls over a ball without a node inside of it.
+/// In space: a stiff sheet of springs falls over a ball, and no node enters the ball.
 #[test]
 fn a_stiff_sheet_lies_on_a_ball() {
     let text = "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\n[world]\ngravity = [0.0, -9.81, 0.0]\n\
@@ -278,7 +278,7 @@ fn refusals_say_what_is_wrong_and_what_helps() {
 
     let arc = head(0.1, 1, -9.81, "equilibrium")
         .replace("kind = \"equilibrium\"\n", "kind = \"equilibrium\"\narc_length = 0.1\n");
-    // Without load, where the curve begins, nothing presses a body onto an obstacle.
+    // Without load, at the beginning of the curve, nothing presses a body onto an obstacle.
     let error = refused(&(format!("{arc}{BLOCK}") + &floor(-5.0, 0.5, 0.0)));
     assert_eq!(error.code(), "static.arc_length_and_obstacles");
     assert!(error.in_full().contains("allowed: pins that hold it, or the whole load at once"), "{error}");
@@ -289,7 +289,7 @@ fn refusals_say_what_is_wrong_and_what_helps() {
     assert_eq!(error.code(), "integrator.needs");
     assert!(error.to_string().contains("no second derivatives, which `backward_euler` needs"), "{error}");
 
-    // One iteration does not do.
+    // One iteration is not enough.
     let turning = |fields: &str| {
         let text = head(0.2, 1, -9.81, "backward_euler")
             .replace("kind = \"backward_euler\"\n", &format!("kind = \"backward_euler\"\n{fields}"));
@@ -305,7 +305,7 @@ fn refusals_say_what_is_wrong_and_what_helps() {
         assert!(text.contains(part), "{text}");
     }
     assert_eq!((nodes(&world), world.time()), (before, 0.0));
-    // Two other answers to the same question.
+    // The two other policies for the same case.
     for (policy, code) in [("accept", "step.not_converged"), ("halve", "step.halved")] {
         let fields =
             format!("iterations = {}\nwhen_not_converged = \"{policy}\"\n", if policy == "accept" { 2 } else { 4 });
@@ -316,7 +316,7 @@ fn refusals_say_what_is_wrong_and_what_helps() {
     }
 }
 
-/// The fixed budget of the real-time setting: what it leaves undone in a step is done in the next ones.
+/// The fixed budget of the real-time setting: what one step does not complete is done in the next ones.
 #[test]
 fn real_time_stays_near_the_exact_solution() {
     let run = |accuracy: &str| {
@@ -338,7 +338,7 @@ fn real_time_stays_near_the_exact_solution() {
     assert!(error < 0.02 && work.iterations <= 3 * work.steps, "{error} {work:?}");
 }
 
-/// Every pair of model and integrator that claims to fit is stepped, in the plane and in space; every other one is refused.
+/// Every pair of model and integrator that claims to be compatible is stepped, in the plane and in space; every other one is refused.
 #[test]
 fn every_pair_of_model_and_integrator_does_as_it_says() {
     let models = |dimension: usize, kind: &str| match (kind, dimension) {
@@ -349,7 +349,7 @@ fn every_pair_of_model_and_integrator_does_as_it_says() {
         }
         ("drag", _) => Some("{ kind = \"drag\", rate = 1.0 }, { kind = \"mass_spring\", stiffness = 100.0 }"),
         ("as_published", 2) => Some("{ kind = \"as_published\" }"),
-        // Others have tests of their own.
+        // Others have their own tests.
         _ => None,
     };
     let mut tried = 0;
@@ -393,8 +393,7 @@ fn every_pair_of_model_and_integrator_does_as_it_says() {
     assert!(tried >= 9 * 10 - 20, "{tried}");
 }
 
-/// What a rule damps by itself is told as that, and is no error that nobody can explain. (Of explicit rules, tests of torture ask that
-/// they warn.)
+/// Numerical damping is reported as such, and not as an unexplained error. (For explicit integrators, torture tests check that they warn.)
 #[test]
 fn the_ledger_tells_a_rules_own_damping_from_errors() {
     let ball = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 0.5, vertices = 12, center = [0.0, 0.0] }\nmass = 1.0\n\
@@ -410,7 +409,7 @@ fn the_ledger_tells_a_rules_own_damping_from_errors() {
     }
 }
 
-/// A floor without friction holds a block up, and not where it is along the floor.
+/// A floor without friction supports a block, but does not fix its position along the floor.
 #[test]
 fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
     let text = |friction: f64, shape: &str, level: f64| {
@@ -422,7 +421,7 @@ fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
             + &floor(level, friction, 0.0)
     };
     let square = "{ kind = \"grid\", size = [0.4, 0.2], cells = [4, 2] }";
-    // It hangs above the floor, just touches it, or begins within it, up to the whole of it.
+    // It is above the floor, just touches it, or begins within it, partly or completely.
     let levels = [-0.05, -0.099, 0.0, 0.03, 0.05, 0.09, 0.15, 0.3];
     for (friction, level) in [0.0, 0.1, 0.5, 1.0].into_iter().flat_map(|friction| levels.map(|level| (friction, level)))
     {
@@ -446,9 +445,9 @@ fn an_equilibrium_on_a_floor_names_the_motions_that_it_leaves_free() {
     }
 }
 
-/// A weight on a damped spring whose other end is pinned begins with the velocity of the whole body, which the pin ends at once: no damper
-/// acts by the motion that the held node had. With c = 2 and k = 40 at 1 kg, v₀ = ½ m/s and no weight, after a second:
-/// x = e⁻¹ (v₀/ω) sin ω, v = e⁻¹ v₀ (cos ω − (sin ω)/ω), ω = √39.
+/// A weight on a damped spring whose other end is pinned starts with the velocity of the whole body, and the pin stops the other end at once: the
+/// damper must not act because of the former motion of the pinned node. With c = 2 and k = 40 at 1 kg, v₀ = ½ m/s and no gravity, after one second: x
+/// = e⁻¹ (v₀/ω) sin ω, v = e⁻¹ v₀ (cos ω − (sin ω)/ω), ω = √39.
 #[test]
 fn a_pin_ends_the_motion_of_its_node_before_the_first_step() {
     let omega = 39f64.sqrt();
@@ -464,7 +463,7 @@ fn a_pin_ends_the_motion_of_its_node_before_the_first_step() {
         let [dx, dv] = [world.position(0, 1)[1] + 1.0 - x, world.velocity(0, 1)[1] - v];
         println!("{rule}: {dx:e} m, {dv:e} m/s");
         assert!(dx.abs() < error && dv.abs() < error, "{rule}: {dx:e} {dv:e}");
-        // What the pin has taken is its work, and nothing is missed.
+        // The energy removed by the pin is its work, and none is missing.
         let energy = world.energy();
         assert!(energy.loss_integrator.abs() < 1e-3 && (energy.work_user + 0.125).abs() < 1e-3, "{rule}: {energy:?}");
     }

@@ -1,4 +1,4 @@
-//! What must not matter: where a run was interrupted, how a scene is turned, mirrored, moved or numbered.
+//! Invariance: a run does not depend on where it was interrupted, nor on the rotation, reflection, position or numbering of its scene.
 
 use crate::common;
 use common::*;
@@ -12,10 +12,10 @@ use std::sync::Arc;
 type Map<'a> = &'a dyn Fn([f64; 2]) -> [f64; 2];
 /// A map of space.
 type MapOfSpace<'a> = &'a dyn Fn([f64; 3]) -> [f64; 3];
-/// What is kept of a scene.
+/// A selection of the parts of a scene.
 type Keep<'a> = &'a dyn Fn(&mut Blueprint<2>);
 
-/// Two bodies with everything that acts in the plane, on a floor, beside a round obstacle, one of them pulled.
+/// Two bodies with everything that acts in the plane, on a floor, next to a round obstacle, one of them pulled.
 fn scene() -> Blueprint<2> {
     plane(&format!(
         "{}drag = 0.1\n[[body]]\nname = \"ball\"\nmass = 1\nvelocity = [1.5, -1]\nangular_velocity = 2\nposition = [-1, 0.8]\n\
@@ -31,7 +31,7 @@ fn scene() -> Blueprint<2> {
     ))
 }
 
-/// The scene under a linear map that keeps lengths; `mirror` says that it turns left into right.
+/// The scene under a linear isometry; `mirror` says that it is a reflection.
 fn mapped(mut scene: Blueprint<2>, map: Map, mirror: bool) -> Blueprint<2> {
     let pair = |v: &[f64]| map([v[0], v[1]]);
     scene.surroundings.gravity = map(scene.surroundings.gravity);
@@ -83,8 +83,8 @@ fn ran<const D: usize>(scene: Blueprint<D>, count: u64) -> World<D> {
     world
 }
 
-/// The largest difference between a state, mapped, and another; of velocities a hundredth, since the fast motions of the
-/// bodies make some hundred radians a second.
+/// The largest difference between a mapped state and another one; for velocities divided by a hundred, because the fast motions of the bodies have
+/// some hundred radians per second.
 fn difference(a: &[[f64; 2]], b: &[[f64; 2]], map: Map) -> f64 {
     let positions = a.len() / 2;
     largest(a.iter().zip(b).enumerate().flat_map(|(k, (a, b))| {
@@ -97,7 +97,7 @@ fn difference(a: &[[f64; 2]], b: &[[f64; 2]], map: Map) -> f64 {
 fn a_scene_turned_by_right_angles_has_the_same_bits() {
     let turns: [(&str, Map); 3] =
         [("90°", &|[x, y]| [-y, x]), ("180°", &|[x, y]| [-x, -y]), ("270°", &|[x, y]| [y, -x])];
-    // A round obstacle pushes along a direction that is not turned to the bit.
+    // The direction in which a round obstacle pushes is not rotated exactly.
     let parts: [(&str, Keep, f64); 3] = [
         ("models and a pull", &|s| s.colliders.clear(), 0.0),
         ("a floor", &|s| s.colliders.truncate(1), 0.0),
@@ -145,7 +145,7 @@ fn a_mirrored_scene_moves_as_its_mirror_image() {
     assert!(off < 1e-10, "{off:e}");
 }
 
-/// Far away the numbers are coarser: 1.2e-10 m at 1e6 m. The shape stays as it is to what that leaves.
+/// Far away, numbers are coarser: 1.2e-10 m at 1e6 m. The shape is preserved to that precision.
 #[test]
 fn a_scene_far_away_keeps_its_shape() {
     let free = || {
@@ -206,7 +206,7 @@ fn the_order_of_bodies_does_not_matter_to_the_bit() {
     }
 }
 
-/// Another numbering of the nodes, and how far the states are apart then.
+/// The difference between the states after the nodes are renumbered.
 fn renumbered<const D: usize>(scene: Blueprint<D>, step: usize, count: u64) -> f64 {
     let mut other = scene.clone();
     let mut new = Vec::new();
@@ -262,7 +262,7 @@ fn interrupted<const D: usize>(scene: &Blueprint<D>, name: &str, at: &[u64], end
     }
 }
 
-/// In the ramp, in flight, under the pull, and at rest; in the plane and in space.
+/// During the ramp, in flight, during the pull, and at rest; in the plane and in space.
 #[test]
 fn an_interrupted_run_ends_like_a_whole_one() {
     for (name, at, end) in [
@@ -281,7 +281,7 @@ fn an_interrupted_run_ends_like_a_whole_one() {
     }
 }
 
-/// A body of boundary elements that turns while it falls onto a floor: its factor is kept in a frame.
+/// A body of boundary elements that rotates while it falls onto a floor: its factor is kept within a frame.
 #[test]
 fn an_interrupted_run_of_boundary_elements_ends_like_a_whole_one() {
     for rule in ["backward_euler", "bdf2", "implicit_midpoint", "newmark"] {
@@ -297,7 +297,7 @@ fn an_interrupted_run_of_boundary_elements_ends_like_a_whole_one() {
     }
 }
 
-/// The balloons under a linear map of space that keeps lengths.
+/// The balloons under a linear isometry of space.
 fn balloons(map: MapOfSpace, mirror: bool) -> Blueprint<3> {
     let mut scene = space(opruga::scenes::find("balloons").expect("a scene"));
     scene.surroundings.gravity = map(scene.surroundings.gravity);
@@ -324,8 +324,8 @@ fn balloons(map: MapOfSpace, mirror: bool) -> Blueprint<3> {
 #[test]
 fn space_has_no_preferred_direction() {
     let same = |x| x;
-    // In flight and while they are pressed to the floor. Later, as they bounce, single nodes come and go, and every such
-    // event makes what rounding has left larger.
+    // In flight and while they are pressed to the floor. Later, when they bounce, contacts of single nodes begin and end, and every such event
+    // amplifies the rounding error.
     let reference = ran(balloons(&same, false), 15);
     assert!(reference.energy().loss_contact > 0.01);
     let before = state(&reference);
@@ -353,8 +353,8 @@ fn space_has_no_preferred_direction() {
     }
 }
 
-/// The scene of a ball on a floor with lengths in units of 1/f metres: what is a length grows by f, gravity and
-/// speeds with it, energies by f². In the plane gas acts on a depth, which grows too.
+/// The scene of a ball on a floor with lengths in units of 1/f metres: lengths, gravity and speeds grow by f, energies by f². In the plane gas acts
+/// on a depth, which grows as well.
 fn in_units(f: f64) -> Blueprint<2> {
     let text = format!(
         "{}[[body]]\nname = \"ball\"\nmass = 2\nthickness = {f:?}\nposition = [0, {:?}]\nvelocity = [{:?}, {:?}]\nangular_velocity = 2\n\
@@ -378,7 +378,7 @@ fn in_units(f: f64) -> Blueprint<2> {
     plane(&text)
 }
 
-/// Metres, about millimetres, about kilometres: by powers of two to the bit, since no number of the engine has a size.
+/// Metres, about millimetres, about kilometres: powers of two give the same bits, because the engine contains no absolute length.
 #[test]
 fn the_unit_of_length_does_not_matter_to_the_bit() {
     let reference = ran(in_units(1.0), 64);

@@ -1,4 +1,4 @@
-//! Which bodies are stepped together, with which integrator, and what a change of one body costs the others.
+//! Which bodies are stepped together, with which integrator, and the cost of a change of one body for the others.
 
 use crate::common;
 use common::*;
@@ -9,7 +9,7 @@ use opruga::{Options, World};
 const MODELS: &str =
     "{ kind = \"mass_spring\", stiffness = 600.0, damping = 0.5 }, { kind = \"pressure\", nRT = 30.0 }";
 
-/// A ring of a name and its integrator, in a row of rings.
+/// A ring with a name and an integrator, in a row of rings.
 fn ring(name: &str, place: usize, rule: &str) -> String {
     let rule = if rule.is_empty() { String::new() } else { format!("integrator = {rule}\n") };
     format!(
@@ -54,7 +54,7 @@ fn a_drag_on_one_body_of_a_thousand_builds_one_island_anew() {
         let (before, command) = (world.islands_built(), drag(500, &world));
         world.command(command).expect("a body");
         world.frame().expect("a frame");
-        // The drag of the last frame ends when that of this one begins: once for both.
+        // The drag of the last frame ends when that of this one begins: one rebuild for both.
         assert_eq!(world.islands_built() - before, 1, "frame {frame}");
     }
     assert!(world.energy().work_user > 0.0, "it was pulled");
@@ -90,7 +90,7 @@ fn adding_removing_and_setting_leave_other_islands_alone() {
     assert_eq!(world.reaction(17, &names), [0.0; 2], "still there");
 }
 
-/// Bodies of a batch may differ in numbers: the stiffest must be looked at wherever it lies.
+/// Bodies of a batch may differ in numbers: the stiffest must be found wherever it is.
 #[test]
 fn a_stiff_copy_in_a_later_batch_is_refused() {
     let mut world = built(plane(&copies(16)));

@@ -1,4 +1,4 @@
-//! The ledger of bodies in which nothing moves: what rounding makes of them is no error of an integrator.
+//! The ledger of bodies at rest: rounding errors do not count as errors of an integrator.
 
 use opruga::blueprint::AnyBlueprint;
 use opruga::io::{Files, scene};
@@ -12,7 +12,7 @@ const BODIES: [&str; 2] = [
      models = [{ kind = \"mass_spring\", stiffness = 400.0, edges = \"shear\" }]",
 ];
 
-/// The laws of solids, some of whose energies at rest are differences of large parts and are rounded with those.
+/// The laws of solids. The energy of some at rest is a difference of large terms, and has their rounding errors.
 const LAWS: [&str; 7] = [
     "linear",
     "corotated",
@@ -23,7 +23,7 @@ const LAWS: [&str; 7] = [
     "mooney_rivlin",
 ];
 
-/// A solid that lies on the floor, as far from the origin as said [m].
+/// A solid on the floor, at this distance from the origin [m].
 fn solid(law: &str, modulus: f64, far: f64) -> String {
     format!(
         "density = 1000.0\nshape = {{ kind = \"grid\", size = [1.0, 0.5], cells = [4, 2], corner = [{far}, 0.0] }}\n\
@@ -56,8 +56,7 @@ name = \"it\"
     )
 }
 
-/// The closure at the end of a second, how often it was warned of, and what has no cause [J]. The first node begins with a
-/// speed along x [m/s].
+/// The closure at the end of a second, the count of its warning, and the unexplained energy [J]. The first node begins with a speed along x [m/s].
 fn outcome(text: &str, speed: f64) -> (f64, u64, f64) {
     let blueprint = match scene::read(text.as_bytes(), "test.toml", &catalogue(), &scene::Options::default()) {
         Ok((AnyBlueprint::Plane(blueprint), _)) => blueprint,
@@ -87,8 +86,8 @@ fn a_body_at_rest_without_gravity_has_a_closed_ledger() {
     }
 }
 
-/// Solids of every law, soft and a hundred times stiffer, that nothing moves, and the same on a floor, where they give way to their
-/// weight by less and less.
+/// Solids of every law, soft and a hundred times stiffer, at rest, and the same on a floor, where they settle under their own weight more and more
+/// slowly.
 #[test]
 fn a_solid_at_rest_has_a_closed_ledger() {
     let explicit = ["symplectic_euler", "verlet"].map(|rule| (rule, 64, 1e6));
@@ -115,7 +114,7 @@ fn a_solid_at_rest_has_a_closed_ledger() {
     }
 }
 
-/// What explicit Euler adds to a slow swing of a solid is told from rounding, also where the solid lies on a floor.
+/// The energy that explicit Euler adds to a slow oscillation of a solid is distinguished from rounding, even if the solid lies on a floor.
 #[test]
 fn an_open_ledger_of_a_solid_is_warned_of() {
     for law in LAWS {
@@ -129,7 +128,7 @@ fn an_open_ledger_of_a_solid_is_warned_of() {
     }
 }
 
-/// A motion however slow is none of rounding: what explicit Euler adds to it is seen.
+/// However slow a motion is, it is not a rounding error: the energy that explicit Euler adds to it is detected.
 #[test]
 fn an_open_ledger_of_a_slow_motion_is_warned_of() {
     let body = BODIES[0].replace("damping = 0.3", "damping = 0.0");
@@ -140,7 +139,7 @@ fn an_open_ledger_of_a_slow_motion_is_warned_of() {
     }
 }
 
-/// Scenes that are timed are no worse physics than others: their runs warn of nothing.
+/// The physics of benchmark scenes is no worse than that of others: their runs have no warnings.
 #[test]
 fn the_scene_that_times_spot_has_a_closed_ledger() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benches/scenes/spot.toml");
@@ -155,8 +154,8 @@ fn the_scene_that_times_spot_has_a_closed_ledger() {
     assert!(warnings.is_empty(), "{warnings:?}, closure {}", world.energy().closure);
 }
 
-/// Statics: hands that lead pins do the work of the springs and no more, whatever the body weighs and however fast they go, and what a
-/// gas is given by heat, by its ramp, or taken by a leak is not counted as theirs.
+/// Statics: moving pins do the work of the springs and no more, whatever the mass of the body and the speed of the pins; energy that a gas gets by
+/// heat or by its ramp, or loses by a leak, is not counted as theirs.
 #[test]
 fn balances_that_are_led_have_a_closed_ledger() {
     let chain = |mass: f64| {
@@ -174,7 +173,7 @@ fn balances_that_are_led_have_a_closed_ledger() {
              pin = [{{ select = {{ node = 0 }}, axes = \"xy\" }}, {{ select = {{ node = 12 }}, axes = \"y\" }}]"
         )
     };
-    // Four springs in a row that are drawn out by half a metre: ½ · 25 N/m · 0.25 m².
+    // Four springs in a row that are extended by half a metre: ½ · 25 N/m · 0.25 m².
     for mass in [1.0, 1e5] {
         let ([_, energy], closure) = led(&chain(mass));
         assert!((energy.work_user - 3.125).abs() < 1e-9 && closure < 1e-9, "{mass} kg: {energy:?}");
@@ -184,13 +183,13 @@ fn balances_that_are_led_have_a_closed_ledger() {
         println!("{gas}: {first:?} {energy:?}");
         let given = energy.work_gas - first.work_gas;
         assert!(given.abs() > 1.0 && closure < 1e-9, "{gas}: {closure:e} {energy:?}");
-        // Nobody leads this ring once it has come to its first balance, but for what is left of small steps.
+        // After its first equilibrium this ring does not move, except for remaining small corrections.
         let led = energy.work_user - first.work_user;
         assert!(led.abs() < 0.2 * given.abs(), "{gas}: {led} J of {given} J");
     }
 }
 
-/// The energy of a body after its first balance and after a second of them, and its closure then.
+/// The energies of a body after its first equilibrium and after one second of equilibria, and then its closure.
 fn led(body: &str) -> ([Energy; 2], f64) {
     let text = scene("equilibrium", 1, body).replace("[time]\n", "[time]\nframe = 0.1\n");
     let blueprint = match scene::read(text.as_bytes(), "test.toml", &catalogue(), &scene::Options::default()) {

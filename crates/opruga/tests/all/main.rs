@@ -1,4 +1,4 @@
-//! Every test of this crate that needs no process of its own, in one program: it is linked once.
+//! All tests of this crate that do not need a process of their own, in one program, so that it is linked once.
 
 mod arcs_on_obstacles;
 mod broken_off;

@@ -1,6 +1,6 @@
-//! What goes with what: every model on every kind of body, under every integrator, and every two models together.
+//! Compatibility: every model on every type of body, with every integrator, and every pair of models.
 //!
-//! The tables of docs/methods.md come from these runs. `OPRUGA_TABLES=write` writes them anew.
+//! The tables of docs/methods.md come from these runs. `OPRUGA_TABLES=write` writes them again.
 
 use super::common::read;
 use opruga::core::spec::{Default, Field, Role, Spec};
@@ -8,10 +8,10 @@ use opruga::{Options, catalogue};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// A kind of body: what the tables call it, its dimension and its lines in a scene.
+/// A type of body: its name in the tables, its dimension and its lines in a scene.
 type Body = (&'static str, usize, &'static str);
 
-/// Small bodies of every kind, each held at some nodes.
+/// Small bodies of every type, each pinned at some nodes.
 const BODIES: &[Body] = &[
     (
         "chain",
@@ -71,7 +71,7 @@ const BODIES: &[Body] = &[
 ];
 const TRIANGLES: &str = "triangles";
 
-/// A model with the values at which an editor begins, and of a choice the first field; `full` gives fields without a default too.
+/// A model with the initial values of an editor, and the first field of each choice; `full` includes fields without a default.
 fn written(spec: &Spec, full: bool) -> String {
     let given = |field: &&Field| match field.default {
         Default::Required => true,
@@ -86,7 +86,7 @@ fn written(spec: &Spec, full: bool) -> String {
     text + " }"
 }
 
-/// How a run ended: through all of its frames, or with a code and a sentence.
+/// The end of a run: after all of its frames, or with a code and a sentence.
 type End = Result<(), (String, String)>;
 
 fn run(body: &Body, models: &[&str], rule: &str) -> End {
@@ -115,7 +115,7 @@ impl Reasons {
     /// The letter of a reason: a sentence without the names of the body, the model and the integrator.
     fn letter(&mut self, end: &End, model: &str, rule: &str) -> char {
         let Err((code, said)) = end else { panic!("there is no reason") };
-        // What is refused says so before the run; a run that ends otherwise is a fault.
+        // A combination that is refused must be refused before the run; a run that ends otherwise is a fault.
         assert!(
             code.starts_with("model.")
                 || code.starts_with("integrator.")
@@ -124,7 +124,7 @@ impl Reasons {
         );
         let said = said.trim_start_matches("body `body`: ").trim_start_matches(&format!("{model}: "));
         let said = said.split("; ").next().unwrap_or_default().replace(&format!("`{rule}`"), "the integrator");
-        // Numbers belong to the body of this test.
+        // Numbers depend on the body of this test.
         let mut said: String = said.split(|c: char| c.is_ascii_digit()).collect::<Vec<_>>().join("#");
         while said.contains("##") {
             said = said.replace("##", "#");
@@ -150,12 +150,12 @@ fn table(head: &str, columns: &[String], rows: &[(String, Vec<String>)], notes: 
     format!("{out}\n{notes}")
 }
 
-/// The models and the integrators of the library, with what each model does alone: by model, body and integrator.
+/// The models and the integrators of the library, with the result of each model alone: by model, body and integrator.
 struct Runs {
     models: Vec<&'static Spec>,
     rules: Vec<&'static Spec>,
     ends: BTreeMap<(&'static str, &'static str, usize, &'static str), End>,
-    /// How a model is written on a body.
+    /// The text of a model on a body.
     texts: BTreeMap<(&'static str, &'static str, usize), String>,
 }
 
@@ -167,7 +167,7 @@ impl Runs {
             known.integrators.iter().find(|rule| rule.has_role(Role::OfferedExplicit)).expect("an explicit rule");
         for model in &known.models {
             for body in BODIES.iter().filter(|body| model.dimensions.contains(&body.1)) {
-                // What one body needs, such as the thickness of a curve, another refuses.
+                // A field that one body needs, such as the thickness of a curve, is refused by another.
                 let spare = run(body, &[&written(model, false)], explicit.kind).is_ok();
                 let full = !spare && run(body, &[&written(model, true)], explicit.kind).is_ok();
                 let text = written(model, full);
@@ -187,7 +187,7 @@ impl Runs {
         let texts = models.map(|model| self.texts.get(&(model.kind, body.0, body.1)).map_or("", String::as_str));
         run(body, &texts, rule)
     }
-    /// The bodies that a model takes: those that the offered explicit integrator steps.
+    /// The bodies that a model supports: those that the suggested explicit integrator can step.
     fn bodies(&self, model: &'static str) -> impl Iterator<Item = &'static Body> {
         let rule = self.rule(Role::OfferedExplicit);
         BODIES.iter().filter(move |body| self.ends.get(&(model, body.0, body.1, rule)).is_some_and(Result::is_ok))
@@ -224,7 +224,7 @@ impl Runs {
                 let mut cell = "✓".to_string();
                 for body in self.bodies(model.kind) {
                     let end = &self.ends[&(model.kind, body.0, body.1, rule.kind)];
-                    // What holds no node alone has no equilibrium without other forces.
+                    // A model that does not hold nodes by itself has no equilibrium without other forces.
                     let with_springs = || self.sum(body, [springs, model], rule.kind);
                     if end.is_ok() {
                         continue;
@@ -276,7 +276,7 @@ impl Runs {
     }
 }
 
-/// What `Registry::pairs` promises in lists and in the studio holds on every body that a model takes.
+/// The result of `Registry::pairs` in lists and in the studio is right for every body that a model supports.
 #[test]
 #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
 fn what_goes_with_what_is_what_the_page_of_methods_says_whole_sweep() {

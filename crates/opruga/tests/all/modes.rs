@@ -5,8 +5,8 @@ use crate::common;
 
 use common::{built, frames, head, plane};
 
-/// A chain of N equal springs, held at one end, with half a mass at the other: ω = 2 √(k/m) sin((2n − 1) π/4N), which tends
-/// to (2n − 1) c/4L of the bar (validation B4); across the chain nothing resists.
+/// A chain of N equal springs, pinned at one end, with half a mass at the other: ω = 2 √(k/m) sin((2n − 1) π/4N), which tends to (2n − 1) c/4L of the
+/// bar (validation B4); nothing resists transverse displacements.
 #[test]
 fn a_chain_swings_along_itself_as_a_bar() {
     let (springs, stiffness, mass) = (20, 800.0, 0.05);
@@ -18,7 +18,7 @@ fn a_chain_swings_along_itself_as_a_bar() {
             mass * f64::from(springs)
         );
     let world = built(plane(&text));
-    // Masses go by lengths: half of one at each end.
+    // Masses are proportional to lengths: half of one at each end.
     assert!((world.node_mass(0, springs as u32) - 0.5 * mass).abs() < 1e-12);
     let modes = world.modes(0, 8).unwrap();
     assert_eq!(modes.len(), 8);
@@ -30,8 +30,8 @@ fn a_chain_swings_along_itself_as_a_bar() {
     }
 }
 
-/// A ring of springs at rest around a gas at the pressure outside: the breathing has ω² = 2 γ P N sin(2π/N)/M, which tends to
-/// 4πγP/M (validation B3), and 4 k sin²(π/N)/m of the springs; the free ring has three rigid modes.
+/// A ring of springs at rest around a gas at ambient pressure: the breathing mode has ω² = 2 γ P N sin(2π/N)/M, which tends to 4πγP/M (validation
+/// B3), plus 4 k sin²(π/N)/m of the springs; the free ring has three rigid modes.
 #[test]
 fn a_ring_breathes_at_the_frequency_of_its_gas_and_springs() {
     let (nodes, radius, pressure, mass, stiffness) = (16u32, 0.5f64, 100.0f64, 2.0f64, 50.0f64);
@@ -54,7 +54,7 @@ fn a_ring_breathes_at_the_frequency_of_its_gas_and_springs() {
         let n = f64::from(nodes);
         let expected = 2.0 * gamma * pressure * n * (2.0 * pi / n).sin() / mass
             + 4.0 * stiffness * (pi / n).sin().powi(2) * n / mass;
-        // The mode in which all nodes go outward alike.
+        // The mode in which all nodes move outward equally.
         let outward = |shape: &[[f64; 2]]| -> f64 {
             let along = |k: usize| {
                 let x = world.position(0, k as u32);
@@ -67,7 +67,7 @@ fn a_ring_breathes_at_the_frequency_of_its_gas_and_springs() {
     }
 }
 
-/// Two masses in one direction on a spring that is compressed by its pins: across its axis it is unstable.
+/// A mass between two springs that their pins compress: it is unstable across their axis.
 #[test]
 fn an_unstable_state_has_a_negative_square() {
     let text = head(0.001, 1, 0.0, "verlet")
@@ -76,14 +76,14 @@ fn an_unstable_state_has_a_negative_square() {
            pin = [ { select = { nodes = [0, 2] }, axes = \"xy\" } ]\n";
     let mut world = built(plane(&text));
     let modes = world.modes(0, 2).unwrap();
-    // Across 2 k (1 − l₀/l)/m, along 2 k/m, with m = 2 kg in the middle.
+    // Transverse 2 k (1 − l₀/l)/m, axial 2 k/m, with m = 2 kg in the middle.
     assert!((modes[0].square + 2.0 * 100.0 * 0.2 / 2.0).abs() < 1e-9 && modes[0].omega() == 0.0, "{modes:?}");
     assert!((modes[1].square - 2.0 * 100.0 / 2.0).abs() < 1e-9, "{modes:?}");
     frames(&mut world, 1);
     assert!(world.modes(5, 1).is_err());
 }
 
-/// Modes whose search would take more memory than it may are refused before it begins.
+/// If the search for modes would exceed its memory limit, it is refused before it begins.
 #[test]
 fn more_modes_than_memory_allows_are_refused() {
     let text = head(0.001, 1, 0.0, "backward_euler")

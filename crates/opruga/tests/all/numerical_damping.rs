@@ -1,4 +1,4 @@
-//! What implicit rules take by themselves is measured and told, and nothing else is left over.
+//! The numerical damping of implicit integrators is measured and reported, and the ledger has no other gap.
 #![allow(clippy::disallowed_methods)] // expected values of the tests' own
 
 use crate::common;
@@ -20,7 +20,7 @@ fn warns<const D: usize>(world: &World<D>, code: &str) -> bool {
     world.warnings().iter().any(|warning| warning.code == code)
 }
 
-/// All that entered, less all that left and is there now, is what is left unexplained.
+/// Asserts that the initial energy plus all inputs equals the present energy plus all losses.
 fn adds_up(start: f64, e: &Energy) {
     let given = start + e.work_user + e.work_gas + e.work_correction;
     let taken = e.loss_damping + e.loss_friction + e.loss_contact + e.loss_numerical;
@@ -36,7 +36,7 @@ fn tight(frame: f64, substeps: u32, gravity: f64, rule: &str) -> String {
     head(frame, substeps, gravity, rule).replace("[world]", &format!("{TIGHT}[world]"))
 }
 
-/// A soft square that spins about its middle, stretched by that to and fro, ten steps a turn.
+/// A soft square that spins about its centre and oscillates in length because of that, with ten steps per revolution.
 const SPINNING: &str = "[[body]]\nname = \"square\"\nshape = { kind = \"grid\", size = [1, 1], cells = [3, 3] }\n\
     density = 1000\nangular_velocity = 10.0\nvelocity = [1.0, 2.0]\n\
     models = [ { kind = \"fem\", youngs_modulus = 1e6, poissons_ratio = 0.3MORE } ]\n";
@@ -61,7 +61,8 @@ fn a_free_body_has_its_energy_less_what_the_rule_took() {
     }
 }
 
-/// A stiff bar that swings about its end, sixteen steps a period: what backward Euler takes is told, and no rule of no damping is blamed.
+/// A stiff bar that swings about its end, with sixteen steps per period: the dissipation of backward Euler is reported, and no integrator without
+/// damping is blamed.
 #[test]
 fn a_pendulum_that_the_rule_stops_is_told() {
     let bar = "[[body]]\nname = \"bar\"\nshape = { kind = \"grid\", size = [1.0, 0.1], cells = [10, 1], corner = [0, 0] }\ndensity = 1000\n\
@@ -83,8 +84,8 @@ const RING: &str = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius
 const FLOOR: &str =
     "[[collider]]\nkind = \"half_space\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\nfriction = 0.3\nrestitution = 0.5\n";
 
-/// Weight, a gas that is pumped up, a load that comes and goes, a pin that moves, obstacles with friction and restitution, steps that
-/// are halved, few iterations in real time.
+/// Weight, a gas that is pumped up, a load that is applied and removed, a moving pin, obstacles with friction and restitution, halved steps, few
+/// iterations in real time.
 #[test]
 fn nothing_is_left_over_whatever_acts() {
     let gas = RING.replace("GAS", "{ kind = \"pressure\", nRT = 60.0 }");
@@ -122,7 +123,7 @@ fn nothing_is_left_over_whatever_acts() {
     }
 }
 
-/// A snapshot, an earlier frame, a look into a frame: the sum is that of the frames that count.
+/// Snapshots, returns to an earlier frame, and sampling within a frame: the sum covers exactly the frames that count.
 #[test]
 fn what_rules_took_goes_with_the_state() {
     let text =
@@ -160,7 +161,7 @@ fn what_rules_took_goes_with_the_state() {
     }
 }
 
-/// A program may change the scene while it runs: what that gives is its work, and no damping.
+/// A program may change the scene while it runs: the energy of such a change is its work, not damping.
 #[test]
 fn changes_of_the_scene_are_no_damping() {
     let text = "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\nframe = 0.02\nsubsteps = 1\n[world]\n\

@@ -1,4 +1,4 @@
-//! What scenes say about their pictures, and what pictures say about scenes.
+//! Fields of scenes that concern pictures, and the contents of pictures of scenes.
 
 use crate::common;
 use common::*;
@@ -7,8 +7,8 @@ use opruga::blueprint::AnyBlueprint;
 use opruga::pictures::Scenery;
 use opruga::scenes;
 
-/// Every shape that comes with the scenes and somebody made: the word that its credit must contain, and the licence where that asks
-/// to be named wherever the shape is shown.
+/// For every shape that comes with the scenes and has an author: the word that its credit must contain, and the licence if it must be named wherever
+/// the shape is shown.
 fn makers() -> Vec<(String, Vec<&'static str>)> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/shapes/CREDITS.md");
     let table = std::fs::read_to_string(path).expect("the credits");
@@ -114,7 +114,7 @@ fn bodies_at_rest_show_no_rounding() {
     }
 }
 
-/// The numbers behind the colours of all bodies at the start.
+/// The values that the colours of all bodies show at the start.
 fn shown<const D: usize>(mut world: World<D>) -> Vec<f32> {
     let scenery = Scenery::new(&world);
     let moment = scenery.capture(&mut world, false);

@@ -1,4 +1,4 @@
-//! The scene that shows the published ball beside the same ball with its physics mended, as the documents describe it.
+//! The scene that shows the published ball next to the same ball with corrected physics, as the documentation describes it.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use crate::common;
@@ -21,14 +21,14 @@ fn reading(world: &mut World<2>, body: usize, name: &str) -> f64 {
     world.readings(body).into_iter().find(|r| r.0 == name).expect("a reading").1
 }
 
-/// In flight both swing about the mean radius of the thesis, 131 px, with an area of N R² sin(2π/N)/2 = 53,640 px²; on the
-/// floor the published "volume" (erratum E1) loses up to 8 % against the true area, the mended one nothing.
+/// In flight both oscillate about the mean radius of the thesis, 131 px, with an area of N R² sin(2π/N)/2 = 53,640 px². On the floor the published
+/// "volume" (erratum E1) loses up to 8 % compared with the true area, the corrected one nothing.
 #[test]
 fn both_balls_agree_in_flight_and_part_on_the_floor() {
     let mut world = built(plane(opruga::scenes::find("published-beside-physics").expect("a scene")));
     let (published, physics) = (world.body("published").expect("a body"), world.body("physics").expect("a body"));
     let mut mean = [0.0; 2];
-    // The published "volume" over the true area: least and largest, in flight and on the floor.
+    // The published "volume" divided by the true area: smallest and largest, in flight and on the floor.
     let mut share = [[f64::INFINITY, 0.0f64]; 2];
     for frame in 1..=450 {
         frames(&mut world, 1);
@@ -45,7 +45,7 @@ fn both_balls_agree_in_flight_and_part_on_the_floor() {
     for area in mean {
         assert!((area / 53_640.0 - 1.0).abs() < 0.01, "{mean:?}");
     }
-    // One constant factor as long as the ball is round.
+    // A constant factor as long as the ball is round.
     let [flight, floor] = share;
     assert!(flight[1] / flight[0] < 1.0 + 1e-12, "{share:?}");
     assert!((floor[0] / flight[0] - 0.92).abs() < 0.005, "{share:?}");

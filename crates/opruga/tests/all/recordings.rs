@@ -1,4 +1,4 @@
-//! Recordings of worlds that a program handles: what it does comes with them.
+//! Recordings of worlds that a program controls: its actions are included.
 
 use opruga::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use opruga::io::recording::{Header, Recording};
@@ -32,7 +32,7 @@ fn command(at: f64, until: f64, action: Action<2>) -> CommandBlueprint<2> {
     CommandBlueprint { at, until, action }
 }
 
-/// What a program does before some frames.
+/// The actions of a program before some frames.
 fn handle(world: &mut World<2>, frame: u64) {
     let drag = Action::Drag {
         body: 0,
@@ -84,7 +84,7 @@ fn is_done_again(every: u64) {
         let recording = Recording::open(std::fs::File::open(&path).expect("a file")).expect("a recording");
         Playback::of(recording, frames).expect("whole")
     };
-    // Computed again, every frame has the same bits; without what the program did it has not.
+    // Computed again, every frame has the same bits, but not without the actions of the program.
     let (mut playback, mut again) = (open(), world("pressures"));
     for frame in 1..=frames {
         playback.step(&mut again, frame).expect("a frame");
@@ -98,7 +98,7 @@ fn is_done_again(every: u64) {
     let mut alone = world("pressures");
     (0..frames).for_each(|_| alone.frame().expect("a frame"));
     assert_ne!(alone.state_hash(), hashes[frames as usize]);
-    // Shown in any order, and gone on with from any of them.
+    // Shown in any order, and continued from any frame.
     let mut shown = world("pressures");
     for frame in [12, 3, 4, 6, 29, 0, 21, 20, 8, 30] {
         playback.show(&mut shown, frame).expect("a frame");
@@ -111,15 +111,15 @@ fn is_done_again(every: u64) {
     std::fs::remove_file(path).expect("the file is there");
 }
 
-/// Records the first frames of a world, at most so many, and compares what the recording shows, and computes again in a new world, with the bits of
-/// the run. Gives the number of frames.
+/// Records up to `most` first frames of a world, and compares the frames that the recording shows, and those computed again in a new world, with the
+/// bits of the run. Returns the number of frames.
 pub(crate) fn first_frames_are_replayed<const D: usize>(
     name: &str,
     run: &mut World<D>,
     new: impl Fn() -> World<D>,
     most: usize,
 ) -> u64 {
-    // A state in three, so that some frames are computed; scenes whose frames take long have one.
+    // One state in three, so that some frames are computed; for scenes with slow frames, every state.
     let nodes: usize = run.blueprint().bodies.iter().map(|body| body.mesh.nodes()).sum();
     let work = nodes * run.blueprint().time.substeps as usize;
     let much = if run.blueprint().contact.is_some() { 10_000 } else { 100_000 };
@@ -148,7 +148,7 @@ pub(crate) fn first_frames_are_replayed<const D: usize>(
     frames as u64
 }
 
-/// The hash of a frame follows from positions and velocities alone, wherever they lie, and from each of them.
+/// The hash of a frame depends only on positions and velocities, on each of them, and not on their layout in memory.
 #[test]
 fn the_hash_of_a_frame_sees_every_number_and_no_layout() {
     for name in ["pressures", "integrators", "ball"] {
@@ -166,7 +166,7 @@ fn the_hash_of_a_frame_sees_every_number_and_no_layout() {
                     let (x, v) = (together.position(body, node), together.velocity(body, node));
                     let (mut near, mut like) = (x, v);
                     let changed = if number < 2 { &mut near[number] } else { &mut like[number - 2] };
-                    // The last bit alone.
+                    // Only the last bit.
                     *changed = f64::from_bits(changed.to_bits() ^ 1);
                     together.set_node(body, node, near, like).expect("placed");
                     seen.insert(together.frame_hash());
@@ -195,8 +195,8 @@ fn what_cannot_be_recorded_is_an_error_and_the_frames_before_stay() {
     std::fs::remove_file(path).expect("the file is there");
 }
 
-/// States are kept as far apart as a run's speed asks for: the crowd's are, those of a slow scene are not, and with a quarter
-/// of the steps four times as far. From one to the next it is the same work: a frame between two is soon there.
+/// The distance of kept states depends on the speed of a run: it is large for the crowd, one for a slow scene, and four times as large with a quarter
+/// of the steps. The work from one state to the next is the same, so that a frame between two is soon computed.
 #[test]
 fn states_of_fast_scenes_are_kept_farther_apart() {
     let apart = |name: &str, substeps: Option<u32>| {
@@ -213,11 +213,11 @@ fn states_of_fast_scenes_are_kept_farther_apart() {
         let (apart, together) = apart(name, None);
         assert!((1..=64).contains(&apart) && (1..=20).contains(&together), "{name}: {apart} {together}");
     }
-    // What a kill costs is bounded for the smallest frames too.
+    // The cost of a kill is limited for the smallest frames as well.
     assert!((2..=25).contains(&apart("ball", Some(1)).1));
 }
 
-/// A state that differs in motion alone is put into the islands that are there; the bits are those of islands built anew.
+/// A state that differs only in motion is restored into the existing islands, with the same bits as in rebuilt islands.
 #[test]
 fn a_snapshot_goes_into_the_islands_that_are_there() {
     for (name, frames) in [("pressures", 40), ("leaking-tyre", 30), ("two-chambers", 20), ("ball", 60)] {
@@ -243,7 +243,7 @@ fn a_snapshot_goes_into_the_islands_that_are_there() {
         if name != "ball" {
             assert_eq!(reused.islands_built(), built, "{name}: nothing was built anew");
         }
-        // What does not fit changes nothing.
+        // A state that does not fit changes nothing.
         let before = reused.snapshot();
         for bad in [&states[3][..states[3].len() - 1], &[&states[3][..], &[0; 8]].concat(), &before[8..]] {
             assert!(reused.restore(bad).is_err());

@@ -1,4 +1,4 @@
-//! A model that only this test knows: once it is registered, all layers above know it too.
+//! A model that only this test knows: once it is registered, all layers above support it.
 
 use opruga::extend::*;
 use opruga::io::{reference, scene, schema};
@@ -59,7 +59,7 @@ fn registries() -> Registries {
     Registries { plane: Arc::new(plane), space: Arc::new(space) }
 }
 
-/// A single node of 1 kg on the bed, which gravity pulls down.
+/// A single node of 1 kg on the bed, pulled down by gravity.
 fn text(dimension: usize, model: &str) -> String {
     let gravity = if dimension == 2 { "[0, -10]" } else { "[0, -10, 0]" };
     let shape =
@@ -90,7 +90,7 @@ fn a_registered_model_is_listed_described_and_paired_with_integrators() {
     assert!(!reference::markdown(&catalogue()).contains(SPEC.kind));
 }
 
-/// Where a scene misspells it, the error offers it; where nobody has registered it, the scene is refused.
+/// If a scene misspells it, the error suggests it; if it is not registered, the scene is refused.
 #[test]
 fn a_registered_model_is_offered_where_a_scene_misspells_it() {
     let known = catalogue_of(&registries());
@@ -108,7 +108,7 @@ fn a_registered_model_is_offered_where_a_scene_misspells_it() {
     assert!(!refused(&text(2, SPEC.kind), &catalogue()).is_empty());
 }
 
-/// Also beside other errors, which let the world be built part by part.
+/// Also together with other errors, in which case the world is built part by part.
 #[test]
 fn what_a_registered_model_refuses_is_among_the_problems_of_the_scene() {
     let (registries, known) = (registries(), catalogue_of(&registries()));
@@ -134,7 +134,7 @@ fn a_sweep_runs_a_scene_with_a_registered_model() {
     assert_eq!(rows.iter().map(|row| &row.status).collect::<Vec<_>>(), [&Status::Done, &Status::Done]);
 }
 
-/// Half a swing about the balance m g/k below: after it the node is 2 m g/k = 0.02 m lower.
+/// Half a period about the equilibrium m g/k below: after it the node is 2 m g/k = 0.02 m lower.
 #[test]
 fn a_scene_with_a_registered_model_runs_in_both_dimensions() {
     let (registries, known) = (registries(), catalogue_of(&registries()));

@@ -14,16 +14,16 @@ use opruga::{Options, World, catalogue, scenes};
 use std::fmt::Write as _;
 use std::time::Instant;
 
-/// The most of the points of a body that may lie inside another one in the end.
+/// The largest fraction of the points of a body that may be inside another one at the end.
 const MOST_INSIDE: f64 = 0.01;
 
-/// A scene that begins a little differently with every seed.
+/// A scene whose initial state varies a little with the seed.
 struct Trial {
     name: String,
     text: String,
-    /// Whether its bodies begin inside one another: then they count when the time of the scene is over.
+    /// Whether its bodies begin inside one another; they are then checked when the duration of the scene is over.
     inside: bool,
-    /// Whether it is short enough to be run with every change.
+    /// Whether it is short enough to be run for every change.
     short: bool,
 }
 
@@ -38,7 +38,7 @@ impl Trial {
         Trial { short: true, ..self }
     }
 
-    /// Runs it; the failure, or how far bodies are inside one another in the end.
+    /// Runs it; returns the failure, or how far bodies are inside one another at the end.
     fn run(&self, seed: u32) -> Result<f64, String> {
         let text = self.text.replacen("seed = 1\n", &format!("seed = {seed}\n"), 1);
         assert!(seed == 1 || text != self.text, "{} names no seed", self.name);
@@ -65,20 +65,20 @@ impl Trial {
     }
 }
 
-/// Rings of so many vertices, of the same mass, stiffness of a whole turn and gas.
+/// Rings with this number of vertices, with the same mass, gas and stiffness of the whole circumference.
 fn rings(vertices: u32, count: [u32; 2]) -> Trial {
     let text = include_str!("../robust/rings.toml");
     let text = text.replace("vertices = 36", &format!("vertices = {vertices}"));
     let scale = f64::from(vertices) / 36.0;
     let text = text.replace("stiffness = 900.0", &format!("stiffness = {}", 900.0 * scale));
-    // Bending of so short edges would need shorter steps than all else.
+    // Bending of such short edges would need shorter steps than everything else.
     let bending = if vertices > 36 { 0.0 } else { 0.1 };
     let text = text.replace("stiffness = 0.1", &format!("stiffness = {bending}"));
     let text = text.replace("substeps = 64", &format!("substeps = {}", (10.0 * scale).ceil().max(64.0)));
     Trial::new(format!("rings of {vertices}"), text.replace("count = [3, 4]", &format!("count = {count:?}")))
 }
 
-/// A block whose ends turn by three turns against one another.
+/// A block whose ends are rotated against one another by three turns.
 fn twisted() -> Trial {
     let mut text = String::from(
         r#"format = "opruga-1"
@@ -116,7 +116,7 @@ copies = { count = [1, 1, 1], spacing = [1.0, 1.0, 1.0], jitter = 0.02 }
     Trial::new("twisted", text)
 }
 
-/// A cord in a knot, drawn tight.
+/// A knotted cord that is pulled tight.
 fn knot() -> Trial {
     let text = scenes::find("knot").expect("the scene of the knot");
     let copies = "\ncopies = { count = [1, 1, 1], spacing = [1.0, 1.0, 1.0], jitter = 0.05 }\n[[body.pin]]";
@@ -124,8 +124,8 @@ fn knot() -> Trial {
     Trial::new("knot", text.replacen("dimension = 3\n", "dimension = 3\nseed = 1\n", 1))
 }
 
-/// An obstacle with sharp or flat edges, cracks or holes, and a cube that falls on it. Source: K. Erleben, Methodology for assessing mesh-based contact
-/// point methods (2018), as files by PolyFEM (licence beside them).
+/// An obstacle with sharp or flat edges, cracks or holes, and a cube that falls on it. Source: K. Erleben, Methodology for assessing mesh-based
+/// contact point methods (2018), as files by PolyFEM (the licence is next to them).
 fn erleben(name: &str, surface: &str, rule: &str) -> Trial {
     let (integrator, response, substeps) = match rule {
         "explicit" => ("symplectic_euler", "constraint", 64),
@@ -212,7 +212,7 @@ fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Runs trials from starts by some seeds, and prints what came of each.
+/// Runs trials from the starts of some seeds, and prints the result of each.
 fn run_all(trials: &[Trial], seeds: core::ops::RangeInclusive<u32>) {
     let only = std::env::var("OPRUGA_TRIAL").unwrap_or_default();
     let mut failures = String::new();

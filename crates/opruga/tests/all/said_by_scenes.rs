@@ -1,6 +1,6 @@
-//! What scenes can say of starts, loads and probes: velocities as fields, forces per volume, stresses.
+//! Features of scenes for starts, loads and probes: velocity fields, forces per volume, stresses.
 //!
-//! Expected values are closed forms; the comment says which.
+//! Expected values are closed forms, given in the comments.
 
 use crate::common;
 use common::*;
@@ -47,11 +47,11 @@ fn a_velocity_field_is_linear_about_the_centre_of_mass() {
         let wanted = [0.5 - 3.0 * s + 0.1 * r + 0.2 * s, -2.0 + 3.0 * r - 0.3 * r + 0.4 * s];
         assert!((0..2).all(|d| (v[d] - wanted[d]).abs() < 1e-12), "{v:?} {wanted:?}");
     }
-    // The centre of mass moves as `linear` says.
+    // The centre of mass moves with the velocity `linear`.
     let momentum = world.momentum().linear.0;
     assert!((momentum[0] - 900.0).abs() < 1e-9 && (momentum[1] + 3600.0).abs() < 1e-9, "{momentum:?}");
 
-    // In space: turning is a gradient whose two halves are opposite, to rounding.
+    // In space: a rotation is an antisymmetric gradient, to rounding.
     let body = "[[body]]\nname = \"b\"\nshape = { kind = \"grid\", size = [1, 2, 1], cells = [2, 3, 1] }\nrotation = [0.3, 0, 0.2]\ndensity = 900\n\
                 models = [{ kind = \"fem\", youngs_modulus = 1e5 }]\n";
     let start = |said: &str| velocities(&built(space(&(head_3d("verlet") + body + said))));
@@ -63,7 +63,7 @@ fn a_velocity_field_is_linear_about_the_centre_of_mass() {
             assert!((0..3).all(|d| (v[d] - wanted[d]).abs() < 1e-12), "{said}: {v:?} {wanted:?}");
         }
     }
-    // The plain form stays.
+    // The plain form is still valid.
     assert!(start("velocity = [1, 2, 3]\n").iter().all(|(_, v)| *v == [1.0, 2.0, 3.0]));
 }
 
@@ -102,7 +102,7 @@ fn a_velocity_field_of_the_wrong_shape_is_refused_with_what_is_right() {
     }
 }
 
-/// Copies lie side by side in eight lanes; each starts and loads as it does alone, to the bit.
+/// Copies are next to one another in eight lanes; the start and the loads of each are those of a single body, to the bit.
 #[test]
 fn eight_bodies_side_by_side_move_as_one_alone_does() {
     let scene = |copies: &str| {
@@ -126,8 +126,8 @@ fn eight_bodies_side_by_side_move_as_one_alone_does() {
     }
 }
 
-/// A column under its own weight as a force per volume: u = b L²/2E at the free end, σ = b (L − y), exactly linear; the ends of a
-/// column of boxes are exact (ν = 0). The reaction is b V, and in statics a curve scales all of it.
+/// A column under its own weight as a force per volume: u = b L²/2E at the free end, σ = b (L − y), exactly linear; the ends of a column of boxes are
+/// exact (ν = 0). The reaction is b V, and in statics a curve scales all of it.
 #[test]
 fn a_force_per_volume_makes_the_closed_form_of_a_column() {
     let (force, modulus) = (-2000.0, 1e5);
@@ -152,7 +152,7 @@ fn a_force_per_volume_makes_the_closed_form_of_a_column() {
         let probe = world.probe(0);
         let column = |name: &str| probe.iter().find(|(column, _)| column == name).expect("a column").1;
         assert!((column("foot.ry") + force * 0.1).abs() < 1e-6, "{probe:?}");
-        // The lowest cells have the stress of their middles: b (L − h/2) where cells are boxes.
+        // The lowest cells have the stress at their centres: b (L − h/2) if the cells are boxes.
         if cells.is_empty() {
             assert!((column("foot.syy") / (force * (2.0 - 0.125)) - 1.0).abs() < 1e-6, "{probe:?}");
             assert!((column("foot.von_mises") + column("foot.syy")).abs() < 1e-3, "{probe:?}");
@@ -161,7 +161,7 @@ fn a_force_per_volume_makes_the_closed_form_of_a_column() {
     }
 }
 
-/// In free fall under a force per volume of ρ g the ledger enters as work what gravity would give: ½ m v².
+/// In free fall under a force per volume of ρ g, the ledger enters the equivalent of gravity as work: ½ m v².
 #[test]
 fn the_work_of_a_force_per_volume_is_in_the_ledger() {
     let text = head_3d("verlet")
@@ -171,7 +171,7 @@ fn the_work_of_a_force_per_volume_is_in_the_ledger() {
     let mut world = built(space(&text));
     frames(&mut world, 10);
     let (energy, speed) = (world.energy(), 9.81 * 0.1);
-    // The consistent force of quadratic cells sets them swinging a little, against the mass of their nodes.
+    // The consistent force of quadratic cells makes them oscillate slightly, because the masses of their nodes differ.
     assert!((world.momentum().linear.0[1] / (-800.0 * speed) - 1.0).abs() < 1e-9, "{:?}", world.momentum());
     assert!((energy.work_user - energy.kinetic - energy.elastic).abs() < 1e-3 * energy.work_user, "{energy:?}");
     assert!((energy.work_user / (0.5 * 800.0 * speed * speed) - 1.0).abs() < 0.02, "{energy:?}");
@@ -193,8 +193,8 @@ fn a_force_per_volume_without_cells_is_refused_with_a_hint() {
     }
 }
 
-/// A block under a pressure p from all sides but below, on a floor without friction: σ = −p along the load; the floor carries its weight
-/// and the load.
+/// A block under a pressure p on all sides but the lowest, on a floor without friction: σ = −p along the load; the floor carries its weight and the
+/// load.
 #[test]
 fn probes_tell_the_stress_and_the_force_of_the_floor() {
     let mut world = built(plane(&format!(
@@ -235,10 +235,10 @@ fn stresses_of_a_body_that_knows_none_are_refused() {
         assert_eq!((error.code, error.path.as_str()), ("scene.no_stress", "probe.0.record"), "{error}");
         assert!(error.hint.is_some() && error.allowed.is_some(), "{error}");
     }
-    // Obstacles push every body.
+    // Obstacles act on every body.
     let text = format!("{}{body}record = [\"contact\"]\n", head(0.01, 8, 0.0, "verlet"));
     assert_eq!(built(plane(&text)).probe(0), [("p.cx".to_string(), 0.0), ("p.cy".to_string(), 0.0)]);
-    // A command may give it finite elements: then there are no numbers until it does.
+    // A command may give it finite elements; there are no numbers until then.
     let text = format!(
         "{}[[body]]\nname = \"b\"\nshape = {{ kind = \"grid\", size = [1, 1], cells = [1, 1] }}\nmass = 1\n\
          models = [{{ kind = \"mass_spring\", stiffness = 100.0 }}]\n[[probe]]\nname = \"p\"\nbody = \"b\"\nrecord = [\"volume_ratio\"]\n\
@@ -251,7 +251,7 @@ fn stresses_of_a_body_that_knows_none_are_refused() {
     assert!((world.probe(0)[0].1 - 1.0).abs() < 1e-12);
 }
 
-/// A snapshot in the middle goes on to the same bits.
+/// A run continued from a snapshot in the middle has the same bits.
 #[test]
 fn runs_with_fields_and_loads_go_on_with_the_same_bits() {
     let text = head(0.01, 8, -9.81, "verlet")

@@ -1,15 +1,15 @@
-//! Obstacles side by side and impacts that end exactly on a surface, under every integrator.
+//! Adjacent obstacles, and impacts that end exactly on a surface, with every integrator.
 #![allow(clippy::disallowed_methods)] // sines and roots of the tests' own
 
 use crate::common;
 use common::*;
 
-/// Every integrator that steps through time.
+/// All integrators that step through time.
 fn rules() -> Vec<&'static str> {
     opruga::catalogue().integrators.iter().map(|spec| spec.kind).filter(|kind| *kind != "equilibrium").collect()
 }
 
-/// Two nodes side by side above the seam of two boxes at x = 0 stay on them; so does one exactly above it.
+/// Two adjacent nodes above the seam of two boxes at x = 0 stay on them; so does one exactly above it.
 #[test]
 fn what_falls_onto_a_seam_lies_on_it() {
     for rule in rules() {
@@ -41,7 +41,7 @@ fn what_falls_onto_a_seam_lies_on_it() {
     }
 }
 
-/// From 0.3 m at 1 m/s a step ends on the surface to the last digit: the node comes back with e = 0.8 of its speed.
+/// From 0.3 m at 1 m/s, a step ends on the surface to the last digit: the node bounces with e = 0.8 of its speed.
 #[test]
 fn an_impact_that_ends_exactly_on_the_surface_is_one() {
     for rule in rules() {

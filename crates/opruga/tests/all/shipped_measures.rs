@@ -1,5 +1,5 @@
-//! The shapes that come with the scenes, measured by a second way: straight from the numbers of their files, by formulas that share no code with the
-//! readers, and against published figures.
+//! The shapes that come with the scenes, measured in a second way: directly from the numbers in their files, by formulas that share no code with the
+//! readers, and compared with published numbers.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use opruga::blueprint::AnyBlueprint;
@@ -16,7 +16,7 @@ fn tried(dimension: u8, shape: &str) -> Result<AnyBlueprint, Vec<SceneError>> {
         "format = \"opruga-1\"\ndimension = {dimension}\n[time]\nseconds = 1\n[integrator]\nkind = \"verlet\"\n\
          [[body]]\nname = \"it\"\nmass = 1\nshape = {{ {shape} }}\n"
     );
-    // Some of the shapes are for tests alone, and not within the program.
+    // Some of the shapes are only for tests, and not part of the program.
     let options = scene::Options { files: Files::in_folder(folder().join("..")), ..scene::Options::default() };
     scene::read(text.as_bytes(), "test.toml", &catalogue(), &options).map(|read| read.0)
 }
@@ -34,7 +34,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/shapes")
 }
 
-/// No shape is shipped unmeasured: surfaces and maps here, drawings and letters in shipped_shapes.rs.
+/// Every shape that is shipped is measured: surfaces and maps here, drawings and letters in shipped_shapes.rs.
 #[test]
 fn every_shape_that_is_shipped_is_measured() {
     let entries = std::fs::read_dir(folder()).expect("shapes");
@@ -49,7 +49,7 @@ fn every_shape_that_is_shipped_is_measured() {
     assert_eq!(shapes, known);
 }
 
-/// Surface, vertices, triangles, V − E + F, volume: of Spot, boxes of 1 m, and polyhedra in a torus of 1 m and 0.5 m and in a ball of 1 m.
+/// Surface, vertices, triangles, V − E + F, volume: of Spot, boxes of 1 m, and polyhedra inscribed in a torus of 1 m and 0.5 m and in a ball of 1 m.
 const SURFACES: [(&str, usize, usize, i64, f64); 5] = [
     ("spot", 2930, 5856, 2, 0.718_258_788),
     ("torus", 400, 800, 0, 4.774_581_347),
@@ -92,10 +92,10 @@ fn by_divergence(vertices: &[Point], triangles: &[[usize; 3]]) -> f64 {
     triangles.iter().map(sixth).sum()
 }
 
-/// Where rays stand within their cells: nowhere on edges of regular surfaces, which two triangles share.
+/// The positions of rays within their cells: never on edges of regular surfaces, which two triangles share.
 const OFF: [f64; 2] = [0.487_31, 0.513_47];
 
-/// The lengths that rays along z run inside, entry to exit, whichever way the triangles are turned: a grid of so many rays each way.
+/// The total length inside of rays along z, from entry to exit, whatever the orientation of the triangles: a grid of `rays` by `rays` rays.
 fn by_rays(vertices: &[Point], triangles: &[[usize; 3]], rays: usize) -> f64 {
     let edge = |pick: fn(f64, f64) -> f64, from: f64, axis: usize| vertices.iter().fold(from, |x, v| pick(x, v[axis]));
     let low = [0, 1].map(|axis| edge(f64::min, f64::INFINITY, axis));
@@ -213,20 +213,20 @@ impl Map {
     }
 }
 
-/// From point to point, the shorter way round the globe: a step over the antimeridian is no step back.
+/// From point to point, along the shorter way round the globe: a step over the antimeridian is not a step back.
 fn sides(ring: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
     let shorter = |from: f64, to: f64| from + (to - from + 540.0).rem_euclid(360.0) - 180.0;
     ring.iter().zip(ring.iter().cycle().skip(1)).map(move |(a, b)| (*a, [shorter(a[0], b[0]), b[1]]))
 }
 
-/// The bands between sides and the equator, of heights that a latitude has; around a pole what is beyond the ring.
+/// The bands between sides and the equator, with the height for a latitude given by a function; around a pole, the area beyond the ring.
 fn bands(ring: &[[f64; 2]], height: impl Fn(f64) -> f64) -> f64 {
     let sum: f64 = sides(ring).map(|(a, b)| 0.5 * (b[0] - a[0]) * (height(a[1]) + height(b[1]))).sum();
     let turned: f64 = sides(ring).map(|(a, b)| b[0] - a[0]).sum();
     if turned.abs() > 180.0 { turned.abs() * height(90.0) - sum.abs() } else { sum.abs() }
 }
 
-/// Outer rings less their holes, by an area of rings.
+/// Outer rings minus their holes, for a given area of rings.
 fn total(polygons: &Polygons, area: impl Fn(&[[f64; 2]]) -> f64) -> f64 {
     polygons.iter().map(|rings| area(&rings[0]) - rings[1..].iter().map(|hole| area(hole)).sum::<f64>()).sum()
 }
@@ -244,7 +244,7 @@ fn round(ring: &[[f64; 2]]) -> f64 {
     EARTH * EARTH * 1f64.to_radians() * bands(ring, |latitude| latitude.to_radians().sin())
 }
 
-/// Lowest and highest coordinates.
+/// The lowest and the highest coordinates.
 fn bounds(polygons: &Polygons) -> [[f64; 2]; 2] {
     let mut found = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for point in polygons.iter().flatten().flatten() {
@@ -258,7 +258,7 @@ fn bounds(polygons: &Polygons) -> [[f64; 2]; 2] {
     found
 }
 
-/// Country, its area in km², how far the map of 1 : 110 million may be off: all territory by The World Factbook (CIA, 2024).
+/// Country, its area in km², and the tolerance for the map of 1 : 110 million: the whole territory according to The World Factbook (CIA, 2024).
 const PUBLISHED: [(&str, f64, f64); 9] = [
     ("Croatia", 56_594.0, 0.03),
     ("Hungary", 93_028.0, 0.02),
@@ -271,8 +271,8 @@ const PUBLISHED: [(&str, f64, f64); 9] = [
     ("Brazil", 8_515_770.0, 0.01),
 ];
 
-/// A country that is drawn as large as it is has the area that is published for it: the projection is true to area at the middle latitude, and countries
-/// that reach less than 40° from south to north differ from it by a few per cent at most.
+/// A country drawn in its real size has its published area: the projection is equal-area at the central latitude, and the areas of countries that
+/// extend over less than 40° of latitude differ by a few per cent at most.
 #[test]
 fn countries_have_the_areas_that_are_published_for_them() {
     let map = Map::open("countries-110m.json");
@@ -282,7 +282,7 @@ fn countries_have_the_areas_that_are_published_for_them() {
         let (_, polygons) = features.iter().find(|(own, _)| own == name).expect(name);
         let [low, high] = bounds(polygons);
         let narrow = (0.5 * (low[1] + high[1])).to_radians().cos();
-        // As large as it is, with kilometres for metres.
+        // In its real size, with kilometres instead of metres.
         let size = degree * ((high[0] - low[0]) * narrow).max(high[1] - low[1]);
         let mesh = plane(&format!(
             "kind = \"map\", file = \"shapes/countries-110m.json\", layer = \"countries\", feature = \"{name}\", \
@@ -298,7 +298,7 @@ fn countries_have_the_areas_that_are_published_for_them() {
     }
 }
 
-/// The lowest and the highest latitude; a ring around a pole reaches it.
+/// The lowest and the highest latitude; a ring around a pole includes the pole.
 fn latitudes(polygons: &Polygons) -> [f64; 2] {
     let [low, high] = bounds(polygons);
     let polar = |ring: &Vec<[f64; 2]>| sides(ring).map(|(a, b)| b[0] - a[0]).sum::<f64>().abs() > 180.0;
@@ -306,7 +306,7 @@ fn latitudes(polygons: &Polygons) -> [f64; 2] {
     [if south { -90.0 } else { low[1] }, high[1]]
 }
 
-/// The body of polygons, in the default projection, with the area in square degrees that its height gives it.
+/// The body of polygons in the default projection, and the area in square degrees that follows from its height.
 fn laid_out(polygons: &Polygons, more: &str) -> Result<(Arc<Mesh<2>>, f64), Vec<SceneError>> {
     let AnyBlueprint::Plane(blueprint) = tried(2, &format!("kind = \"map\", spacing = 0.0005, size = 1.0, {more}"))?
     else {
@@ -324,7 +324,7 @@ fn laid_out(polygons: &Polygons, more: &str) -> Result<(Arc<Mesh<2>>, f64), Vec<
 /// Its outline touches itself in the file.
 const TOUCHING: [&str; 1] = ["Sudan"];
 
-/// Every country is read with all its islands and holes and with the area of its corners, over the antimeridian and around the pole too.
+/// Every country is read with all its islands and holes and with the area of its corners, also over the antimeridian and around the pole.
 #[test]
 fn all_countries_have_the_pieces_and_areas_of_their_raw_corners() {
     let map = Map::open("countries-110m.json");
@@ -341,7 +341,7 @@ fn all_countries_have_the_pieces_and_areas_of_their_raw_corners() {
         };
         let raw = total(&polygons, flat);
         assert!((found / raw - 1.0).abs() < 0.01, "{name}: {found}, not {raw} square degrees");
-        // At this scale a few islands have shrunk to nothing: there and back again.
+        // At this scale a few islands have shrunk to nothing: forth and back.
         let is_there = |ring: &Vec<[f64; 2]>| flat(ring) > 1e-6 * raw;
         let rings = polygons.iter().flatten().filter(|ring| is_there(ring)).count();
         assert_eq!(mesh.components().expect("closed").len(), rings, "{name}");
@@ -355,7 +355,8 @@ fn all_countries_have_the_pieces_and_areas_of_their_raw_corners() {
     assert_eq!((measured, touching), (177 - TOUCHING.len(), TOUCHING.map(String::from).to_vec()));
 }
 
-/// All land: the area of its corners, its pieces with the Caspian Sea as their only hole, and on the globe the land of the Earth but for small islands.
+/// All land: the area of its corners, its pieces with the Caspian Sea as their only hole, and on the globe the land area of the Earth except small
+/// islands.
 #[test]
 fn all_land_has_the_area_and_the_pieces_of_its_raw_corners() {
     let map = Map::open("land-110m.json");

@@ -31,7 +31,7 @@ fn area(mesh: &Mesh<2>) -> f64 {
     opruga::mesh::signed_volume(&mesh.facets, &mesh.positions)
 }
 
-/// V − E + T of a filled body of the plane: pieces less holes.
+/// V − E + T of a filled body of the plane: pieces minus holes.
 fn euler(mesh: &Mesh<2>) -> i64 {
     mesh.nodes() as i64 - mesh.edges(EdgeSet::All).len() as i64 + mesh.cells.len() as i64
 }
@@ -49,7 +49,7 @@ fn smallest_angle(mesh: &Mesh<2>) -> f64 {
     smallest
 }
 
-/// Shape, pieces, holes, area at size 1, the smallest angle that its filling may have [°].
+/// Shape, pieces, holes, area at size 1, the smallest allowed angle of its filling [°].
 #[test]
 fn outlines_have_their_areas_pieces_and_holes() {
     let svg = |name: &str| format!("kind = \"svg\", file = \"shapes/{name}.svg\"");
@@ -81,10 +81,10 @@ fn outlines_have_their_areas_pieces_and_holes() {
     }
 }
 
-/// The tip of the heart turns by 40°: at every spacing a node lies in it, and the skin reaches as far down as the drawing.
+/// The tip of the heart has an angle of 40°: at every spacing there is a node in it, and the skin extends as far down as the drawing.
 #[test]
 fn the_heart_keeps_its_tip_at_every_spacing() {
-    // From its path: 32.069 of 35.77 units high, so that its middle is at half of that over the tip.
+    // From its path: 32.069 of 35.77 units high, so that its centre is half of that above the tip.
     let tip = -0.5 * (34.034 - 1.965) / (35.885 - 0.115);
     for spacing in [0.02, 0.03, 0.05, 0.06, 0.07, 0.1, 0.2] {
         let skin = plane(&format!("kind = \"svg\", file = \"shapes/heart.svg\", spacing = {spacing}, size = 1.0"));
@@ -93,7 +93,7 @@ fn the_heart_keeps_its_tip_at_every_spacing() {
     }
 }
 
-/// Squares around every outline hold together, and carry it with the area that it was drawn with.
+/// Squares around every outline are connected, and carry it with its original area.
 #[test]
 fn lattices_of_squares_carry_the_outlines_as_they_were_drawn() {
     let svg = |name: &str| format!("kind = \"svg\", file = \"shapes/{name}.svg\"");
@@ -145,7 +145,7 @@ fn surfaces_have_their_volumes_and_euler_characteristics() {
     assert_eq!((torus.nodes(), torus.facets.len(), torus.euler_characteristic()), (400, 800, 0));
     println!("spot {}, torus {}", spot.enclosed_volume(), torus.enclosed_volume());
     let ring = {
-        // 20 by 20 nodes on a torus of radii 1 and ½: polygons of 20 corners around and across.
+        // 20 by 20 nodes on a torus of radii 1 and ½: polygons of 20 corners in both directions.
         let (low, high) = torus.bounds();
         let tube = 0.5 * (high[1] - low[1]);
         2.0 * std::f64::consts::PI.powi(2) * (0.5 * (high[0] - low[0]) - tube) * tube * tube
@@ -167,5 +167,5 @@ fn surfaces_have_their_volumes_and_euler_characteristics() {
     assert!(!skin.positions(&jelly.positions).iter().zip(&spot.positions).any(far));
 }
 
-/// What the drawings measure by themselves, at a size of 1: integrals over their curves by an independent program.
+/// The areas of the drawings themselves at size 1: integrals over their curves by an independent program.
 const AREAS: [f64; 8] = [0.65282, 0.44842, 0.43381, 0.60890, 0.50971, 0.23453, 0.47180, 0.09967];

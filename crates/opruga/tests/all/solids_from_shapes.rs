@@ -1,4 +1,4 @@
-//! Outlines and surfaces become bodies of finite elements in one line, and are stepped implicitly.
+//! Outlines and surfaces become bodies of finite elements by a single line, and are stepped implicitly.
 #![allow(clippy::disallowed_methods, reason = "what tests expect needs no equal bits")]
 
 use crate::common;
@@ -7,7 +7,7 @@ use opruga::World;
 
 const FEM: &str = "density = 1000\nmodels = [{ kind = \"fem\", material = \"stable_neo_hookean\", youngs_modulus = 5e4, poissons_ratio = 0.4 }]\n";
 
-/// The line that makes the shape, and what it takes of nodes and cells at least.
+/// The line that makes the shape, and the least numbers of nodes and cells.
 fn fallen<const D: usize>(mut world: World<D>, shape: &str) {
     let cells = world.blueprint().bodies[0].mesh.cells.len();
     assert!(cells > 50, "{shape}: {cells} cells");
@@ -21,7 +21,7 @@ fn fallen<const D: usize>(mut world: World<D>, shape: &str) {
     let measure = world.blueprint().bodies[0].mesh.measure().expect("a filled body").value();
     assert!((mass / (1000.0 * measure) - 1.0).abs() < 1e-6, "{shape}: {mass} kg in {measure}");
     frames(&mut world, 4);
-    // In free fall nothing is strained, however the cells lie: velocities are n g h.
+    // In free fall nothing is strained, whatever the cells are: velocities are n g h.
     let energy = world.energy();
     let kinetic = 0.5 * mass * (9.81f64 * 0.05).powi(2);
     assert!((energy.kinetic / kinetic - 1.0).abs() < 1e-6, "{shape}: {} J, not {kinetic}", energy.kinetic);
@@ -58,7 +58,7 @@ fn outlines_are_solids_in_one_line() {
 fn surfaces_are_solids_in_one_line() {
     for (file, spacing, filling, order) in [
         ("spot", 0.15, "tetrahedra", "order = 1"),
-        // Quadratic where the scene is silent.
+        // Quadratic by default.
         ("torus", 0.16, "tetrahedra", ""),
         ("torus", 0.15, "lattice", "order = 1"),
     ] {

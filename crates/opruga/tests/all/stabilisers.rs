@@ -1,4 +1,4 @@
-//! The thesis's limits on force, velocity and pressure: off unless asked for, and every time they act is counted.
+//! The thesis's limits of force, velocity and pressure: off by default, and each use is counted.
 
 use crate::common;
 use common::*;
@@ -8,7 +8,7 @@ fn count(world: &World<2>, code: &str) -> u64 {
     world.warnings().into_iter().find(|w| w.code == code).map_or(0, |w| w.count)
 }
 
-/// Eleven nodes of 0.2 kg that fall.
+/// Eleven falling nodes of 0.2 kg.
 fn stone(limits: &str) -> World<2> {
     built(plane(&format!(
         "{}{limits}\n[[body]]\nname = \"stone\"\nnode_mass = 0.2\nshape = {{ kind = \"ring\", radius = 0.5, vertices = 11 }}\n",
@@ -24,7 +24,7 @@ fn limits_are_off_by_default() {
     assert!(world.warnings().is_empty(), "{:?}", world.warnings());
 }
 
-/// The weight of a node, 2 N, is shortened to 1.5 N in every step.
+/// The weight of a node, 2 N, is limited to 1.5 N in every step.
 #[test]
 fn the_largest_force_is_kept_and_counted_per_node_and_step() {
     let mut world = stone("largest_force = 1.5");
@@ -33,7 +33,7 @@ fn the_largest_force_is_kept_and_counted_per_node_and_step() {
     assert_eq!((count(&world, "limit.force"), count(&world, "limit.velocity")), (11 * 16 * 64, 0));
 }
 
-/// A fall of 10 m/s² reaches 2.5 m/s after a quarter of a second; every later step would exceed it.
+/// A fall with 10 m/s² reaches 2.5 m/s after a quarter of a second; every later step would exceed it.
 #[test]
 fn the_largest_velocity_is_kept_and_counted_per_node_and_step() {
     let mut world = stone("largest_velocity = 2.5");
@@ -44,7 +44,7 @@ fn the_largest_velocity_is_kept_and_counted_per_node_and_step() {
     assert_eq!((count(&world, "limit.velocity"), count(&world, "limit.force")), (11 * 16 * 48, 0));
 }
 
-/// Side by side in a batch that is not full, too.
+/// Also next to one another in a batch that is not full.
 #[test]
 fn limits_count_the_nodes_of_bodies_alone() {
     let limits = "largest_force = 1.5\nlargest_velocity = 1e9";
@@ -57,7 +57,7 @@ fn limits_count_the_nodes_of_bodies_alone() {
     assert_eq!((world.islands(), count(&world, "limit.force")), (1, 3 * 11 * 16 * 4));
 }
 
-/// The gas of a held ring at 100 Pa under a cap of 60 Pa: counted once per step.
+/// The gas of a pinned ring at 100 Pa with a limit of 60 Pa: counted once per step.
 #[test]
 fn the_largest_pressure_is_kept_and_counted_per_step() {
     let gas = |cap: &str| {
@@ -78,7 +78,7 @@ fn the_largest_pressure_is_kept_and_counted_per_step() {
     assert!(free.warnings().is_empty(), "{:?}", free.warnings());
 }
 
-/// `nearest_facet` takes hold of the nearest point of an edge: both of its ends are pulled by their shares.
+/// `nearest_facet` grabs the nearest point of an edge: both of its ends are pulled, weighted by their shares.
 #[test]
 fn a_pull_on_a_facet_moves_both_of_its_ends() {
     let mut world = built(plane(&format!(
@@ -89,7 +89,7 @@ fn a_pull_on_a_facet_moves_both_of_its_ends() {
     )));
     frames(&mut world, 4);
     let speed = |node: u32| world.velocity(0, node)[0];
-    // The point (1, 0.25) lies between nodes 1 and 2 with shares 3/4 and 1/4.
+    // The point (1, 0.25) is between nodes 1 and 2 with shares 3/4 and 1/4.
     assert!(speed(1) > 0.0 && (speed(1) / speed(2) - 3.0).abs() < 1e-9, "{} {}", speed(1), speed(2));
     assert_eq!((speed(0), speed(3)), (0.0, 0.0));
 }

@@ -1,4 +1,4 @@
-//! Bodies that start with the velocities that a mesh file has for their nodes.
+//! Bodies that start with the velocities of nodes in a mesh file.
 
 use crate::common::{head, read};
 use opruga::blueprint::AnyBlueprint;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 const FILE: &str = "shape = { kind = \"mesh\", file = \"a.msh\", unreferenced = \"leave_out\" }\n";
 
-/// A square of two triangles and a node of no cell, with values of nodes.
+/// A square of two triangles and a node without cells, with values of nodes.
 fn square(values: &str) -> String {
     format!(
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n9 5 5 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n\
@@ -60,14 +60,14 @@ fn nodes_start_with_the_velocities_of_the_mesh_file() {
         own,
         "scale changes lengths alone"
     );
-    // What the table says besides is added, about the centre of mass: (0.5, 0.5).
+    // The other fields of the table are added, about the centre of mass: (0.5, 0.5).
     let both = start("velocity = { of_nodes = \"wind\", linear = [10, 0], angular = 2 }\n");
     assert_eq!(both, [[12.0, -2.0], [13.0, 1.0], [12.0, 1.25], [13.0, -0.5]]);
-    // A quarter turn of the body turns them too.
+    // A rotation of the body by a quarter turn rotates them, too.
     for (v, own) in start("rotation = 1.5707963267948966\nvelocity = { of_nodes = \"wind\" }\n").iter().zip(own) {
         assert!((v[0] + own[1]).abs() < 1e-15 && (v[1] - own[0]).abs() < 1e-15, "{v:?} {own:?}");
     }
-    // Copies have them all.
+    // All copies have them.
     let copies = plane(
         &(body("velocity = { of_nodes = \"wind\" }\ncopies = { count = [2, 1], spacing = [3, 3] }\n") + SPRINGS),
         &square(&wind()),
@@ -75,7 +75,7 @@ fn nodes_start_with_the_velocities_of_the_mesh_file() {
     assert_eq!((velocities(&copies, 0), velocities(&copies, 1)), (own.to_vec(), own.to_vec()));
 }
 
-/// Nodes that cells of second order get in the middle of their edges have the mean of both ends.
+/// Midpoint nodes of cells of second order have the mean of both ends.
 #[test]
 fn nodes_in_the_middle_of_edges_have_the_mean_velocity() {
     let solid = "models = [{ kind = \"fem\", youngs_modulus = 1e5 }]\n";
@@ -87,7 +87,7 @@ fn nodes_in_the_middle_of_edges_have_the_mean_velocity() {
     }
 }
 
-/// What a scene or its mesh file says wrongly of velocities of nodes is refused where the scene names them.
+/// Errors of a scene or its mesh file about velocities of nodes are reported where the scene names them.
 #[test]
 fn velocities_of_nodes_that_are_not_there_are_refused_with_those_that_are() {
     let rows = ["1 1 0 0", "2 1 0 0", "3 1 0 0", "4 1 0 0"];
@@ -126,7 +126,7 @@ fn velocities_of_nodes_that_are_not_there_are_refused_with_those_that_are() {
     assert_eq!(none[0].allowed.as_deref(), Some("there are none"));
 }
 
-/// A state goes on in a fresh world of the same scene and file bit for bit, also where a command adds the body later.
+/// A state continues in a new world of the same scene and file with the same bits, also if a command adds the body later.
 #[test]
 fn a_body_that_starts_with_velocities_of_nodes_goes_on_from_a_snapshot() {
     let added = head(0.01, 8, -9.81, "verlet")
@@ -148,7 +148,7 @@ fn a_body_that_starts_with_velocities_of_nodes_goes_on_from_a_snapshot() {
     }
 }
 
-/// The frame that a run writes as VTK XML starts another run: nodes are where they were, and as fast, to the last bit.
+/// The frame that a run writes as VTK XML starts another run, with the same positions and velocities of nodes to the last bit.
 #[test]
 fn a_frame_in_vtk_xml_is_the_start_of_another_run() {
     let text = "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\nframe = 0.01\nsubsteps = 8\n[integrator]\nkind = \"verlet\"\n\

@@ -1,4 +1,4 @@
-//! What sweeps measure, against closed forms.
+//! The measurements of sweeps, compared with closed forms.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 use opruga::sweep::{Axis, Design, Metric, Row, Status, Sweep};
@@ -33,7 +33,7 @@ fn value(row: &Row, metric: usize) -> f64 {
     row.numbers[metric].expect("a number")
 }
 
-/// Nodes without forces between them, at most 0.2 mm apart: they fall as a point does.
+/// Nodes without forces between them, at most 0.2 mm apart, which fall like a point.
 const FALLING: &str = r#"
 format = "opruga-1"
 dimension = 2
@@ -63,7 +63,7 @@ select = { node = 6 }
 record = ["position", "velocity"]
 "#;
 
-/// Without forces of springs each node is a point mass: after a fall from h it rises to e² h, and hits at √(2 g h).
+/// Without spring forces each node is a point mass: after a fall from h it rises to e² h, and its impact speed is √(2 g h).
 #[test]
 fn a_point_that_falls_from_a_height_bounces_to_the_square_of_its_restitution_times_that_height() {
     let sweep = sweep(
@@ -75,10 +75,10 @@ fn a_point_that_falls_from_a_height_bounces_to_the_square_of_its_restitution_tim
     for row in rows(&sweep) {
         let e: f64 = row.values[0].as_deref().and_then(opruga::sweep::number).expect("a number");
         let height = value(&row, 0);
-        // One substep of 0.2 ms at the speed of the impact and at that of the bounce, and the size of the drop.
+        // The displacement in one substep of 0.2 ms at the speeds of the impact and of the bounce, and the size of the body.
         let tolerance = 2.0 * 2e-4 * (2.0 * 9.81 * fall).sqrt() + 2e-4;
         assert!((height - e * e * fall).abs() < tolerance, "e = {e}: {height} against {}", e * e * fall);
-        // Probes are read at the ends of frames, at most 0.02 s before the impact.
+        // Probes are evaluated at the ends of frames, at most 0.02 s before the impact.
         let speed = (2.0 * 9.81 * fall).sqrt();
         assert!(value(&row, 1) >= -speed * 1.001 && value(&row, 1) <= -speed + 0.02 * 9.81 * 1.001);
         assert!((value(&row, 2) - 1.4).abs() < tolerance);
@@ -86,7 +86,7 @@ fn a_point_that_falls_from_a_height_bounces_to_the_square_of_its_restitution_tim
     }
 }
 
-/// k (l − l₀) = 2 nRT / (N l): the ring of N springs around a gas without pressure outside.
+/// k (l − l₀) = 2 nRT / (N l): the ring of N springs around a gas without ambient pressure.
 #[test]
 fn a_pressurised_ring_settles_at_the_radius_of_the_closed_form() {
     let text = r#"
@@ -156,14 +156,14 @@ fn a_question_that_makes_no_sense_is_refused_before_any_run() {
     assert!(sweep(&text, &["body.drop.mass=1,2"], &["energy_drift"]).points().is_err());
 }
 
-/// What is seen of a run does not change it, and a speed is that of the given clock.
+/// Measuring a run does not change it, and a speed depends on the given clock.
 #[test]
 fn speeds_are_those_of_the_clock_and_change_nothing_else() {
     let plain = rows(&sweep(FALLING, &["body.drop.mass=1,2"], &["bounce_height", "low.y.mean"]));
     let timed = sweep(FALLING, &["body.drop.mass=1,2"], &["bounce_height", "low.y.mean", "nanoseconds_per_step"]);
     let points = timed.points().expect("points");
     let ticks = std::cell::Cell::new(0.0);
-    // Half a second passes between two looks at this clock.
+    // This clock advances by half a second between two readings.
     let clock = || {
         ticks.set(ticks.get() + 0.5);
         ticks.get()

@@ -1,6 +1,6 @@
-//! Thermal expansion from the text of a scene: free bodies, held bars, slices, temperatures of cells, live changes, refusals.
+//! Thermal expansion from the text of a scene: free bodies, clamped bars, slices, temperatures of cells, changes during a run, errors.
 //!
-//! Expected values are closed forms; the comment says which.
+//! Expected values are closed forms, given in the comments.
 
 use crate::common;
 use common::*;
@@ -32,7 +32,7 @@ fn statics(body: &str) -> String {
     format!("{}[[body]]\nname = \"b\"\ndensity = 1000\n{body}", head(1.0, 1, 0.0, "equilibrium"))
 }
 
-/// The displacement of every node over its place at rest, along one axis, off the pins of a corner.
+/// The largest error of the displacement of a node relative to its rest position, if pins fix a corner.
 fn largest_error<const D: usize>(world: &World<D>, growth: [f64; D]) -> f64 {
     let rest = &world.blueprint().bodies[0].mesh.positions;
     largest((0..rest.len()).flat_map(|node| {
@@ -46,7 +46,7 @@ fn largest_stress<const D: usize>(world: &World<D>) -> f64 {
     largest(world.cell_states(0).iter().flat_map(|state| state.stress.as_flattened().to_vec()))
 }
 
-/// A free body grows by exactly g in every direction and has no stress: every law, every kind of cells, in space and as a plate.
+/// A free body expands by exactly g in every direction and has no stress: every law, every type of cells, in space and as a plate.
 #[test]
 fn a_free_heated_body_grows_by_exactly_its_expansion_and_has_no_stress() {
     let cells = ["", "simplices = true\norder = 1\n", "simplices = true\n"];
@@ -102,7 +102,7 @@ fn a_slice_grows_by_one_plus_poissons_ratio_times_its_expansion() {
     }
 }
 
-/// A bar between two walls: σ = −EαΔT exactly under the law of small strain; under the others it is that of their law at 1/g.
+/// A bar between two walls: exactly σ = −EαΔT for the law of small strain; for the others, the stress of their law at 1/g.
 #[test]
 fn a_bar_held_at_both_ends_has_the_stress_of_its_expansion() {
     let (modulus, strain) = (2e5, 0.01);
@@ -133,7 +133,7 @@ fn a_bar_held_at_both_ends_has_the_stress_of_its_expansion() {
         let stress = world.cell_states(0)[0].stress[0][0];
         assert!((stress / (-modulus * strain) - 1.0).abs() < 0.03, "{law}: {stress}");
     }
-    // At the temperature of rest nothing is different, to the bit.
+    // At the reference temperature nothing changes, to the bit.
     let mut cold = built(space(&bar("neo_hookean", "thermal_expansion = 1e-4, temperature = 293.15")));
     let mut plain = built(space(&bar("neo_hookean", "damping = 0.0")));
     frames(&mut cold, 1);
@@ -141,7 +141,7 @@ fn a_bar_held_at_both_ends_has_the_stress_of_its_expansion() {
     assert_eq!(cold.state_hash(), plain.state_hash());
 }
 
-/// Heating while the scene runs: the bar grows to its new length, and what is put in is work of the user.
+/// Heating during the run: the bar expands to its new length, and the added energy is work of the user.
 #[test]
 fn the_temperature_changes_while_the_scene_runs_and_its_work_is_in_the_ledger() {
     let text = head(0.05, 4, 0.0, "backward_euler")
@@ -157,19 +157,19 @@ fn the_temperature_changes_while_the_scene_runs_and_its_work_is_in_the_ledger() 
     assert!(largest_error(&world, [1.1, 1.1]) < 1e-4, "{:e}", largest_error(&world, [1.1, 1.1]));
     let energy = world.energy();
     assert!(energy.work_user > 1.0 && energy.closure < 0.7, "{energy:?}");
-    // Gone back to and on again: the same bits.
+    // Rewound and continued: the same bits.
     let hash = world.state_hash();
     let mut again = built(plane(&text));
     again.restore(&kept).expect("a snapshot of this scene");
     frames(&mut again, 60);
     assert_eq!(again.state_hash(), hash);
-    // Back to rest.
+    // Back to the reference temperature.
     world.set("body.b.models.fem.temperature", Value::Number(293.15)).expect("a parameter");
     frames(&mut world, 60);
     assert!(largest_error(&world, [1.0, 1.0]) < 1e-4);
 }
 
-/// Eight bodies of different temperatures, side by side: each as alone, to the bit.
+/// Eight adjacent bodies of different temperatures: each moves as it does alone, to the bit.
 #[test]
 fn eight_bodies_of_different_temperatures_move_as_each_alone_does() {
     let scene = |only: Option<usize>| {
@@ -226,7 +226,7 @@ fn what_cannot_be_a_temperature_is_refused_with_a_hint() {
     );
     let errors = read(&scene("thermal_expansion = 1e-3, temperature = -5.0", "")).expect_err("below absolute zero");
     assert!(errors.iter().any(|error| error.code == "scene.range"), "{errors:?}");
-    // Without expansion a temperature says nothing, which is told.
+    // Without expansion a temperature has no effect, which is reported.
     let options = opruga::io::scene::Options::default();
     let text = scene("temperature = 400.0", "");
     let (_, notices) =
@@ -234,8 +234,8 @@ fn what_cannot_be_a_temperature_is_refused_with_a_hint() {
     assert!(notices.iter().any(|notice| notice.about.message.contains("with `thermal_expansion` or")), "{notices:?}");
 }
 
-/// Temperatures of cells of a mesh: two layers, the warmer one bends the strip as Timoshenko's bimetal does,
-/// κ = 3/2 αΔT/h for layers of equal thickness and stiffness (total height h), so that its end rises by ½ κ L².
+/// Temperatures of cells of a mesh: of two layers, the warmer one bends the strip like Timoshenko's bimetal, κ = 3/2 αΔT/h for layers of equal
+/// thickness and stiffness (total height h), so that its end rises by ½ κ L².
 #[test]
 fn temperatures_of_cells_bend_a_strip_as_timoshenko_says() {
     let mut text = statics(
@@ -244,7 +244,7 @@ fn temperatures_of_cells_bend_a_strip_as_timoshenko_says() {
          thermal_expansion = 1e-4, temperature_of_cells = \"T\" }]\n\
          pin = [{ select = { side = \"left\" }, axes = \"x\" }, { select = { node = 0 }, axes = \"y\" }]\n",
     );
-    // The reader makes no values of cells for grids: they are put into the blueprint, as those of a mesh file are.
+    // The reader makes no values of cells for grids, so they are added to the blueprint like those of a mesh file.
     text = text.replace("temperature_of_cells = \"T\"", "temperature = 293.15");
     let mut blueprint = plane(&text);
     let body = &mut blueprint.bodies[0];

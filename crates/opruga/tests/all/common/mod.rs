@@ -1,4 +1,4 @@
-//! From the text of a scene to a world, the way a user goes.
+//! Makes a world from the text of a scene, as a user does.
 #![allow(dead_code, reason = "every test file uses its own part")]
 
 use opruga::blueprint::{AnyBlueprint, Blueprint};
@@ -34,7 +34,7 @@ pub(crate) fn built<const D: usize>(blueprint: Blueprint<D>) -> World<D> {
     World::new(blueprint, Options::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Why a scene in the plane builds no world.
+/// The error of a scene in the plane whose world cannot be built.
 pub(crate) fn refused(text: &str) -> WorldError {
     World::new(plane(text), Options::default()).expect_err("the world should be refused")
 }
@@ -46,12 +46,12 @@ pub(crate) fn frames<const D: usize>(world: &mut World<D>, count: u64) {
     }
 }
 
-/// The largest of absolute values.
+/// The largest absolute value.
 pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |most, x| if x.abs() > most { x.abs() } else { most })
 }
 
-/// The head of a scene in the plane: length of a frame, substeps, gravity downwards, integrator.
+/// The head of a scene in the plane: length of a frame, substeps, downward gravity, integrator.
 pub(crate) fn head(frame: f64, substeps: u32, gravity: f64, rule: &str) -> String {
     format!(
         "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\nframe = {frame:?}\nsubsteps = {substeps}\n\

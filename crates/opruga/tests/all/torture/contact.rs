@@ -3,7 +3,7 @@
 use super::*;
 use opruga::core::spec::Value;
 
-/// Row 71: a million steps at rest in a corner: no drift, no jitter.
+/// Row 71: a million steps at rest in a corner without drift or jitter.
 #[test]
 fn rest_in_a_corner_is_rest() {
     let corner = format!(
@@ -23,10 +23,10 @@ fn rest_in_a_corner_is_rest() {
     assert!(moved < 1e-6 && speed < 1e-6, "{moved:e} m, {speed:e} m/s");
 }
 
-/// What a person does to a world.
+/// An action of a person on a world.
 type Change<'a> = &'a dyn Fn(&mut World<2>);
 
-/// Row 71: what has come to rest moves when gravity or its gas changes, or when it is set down elsewhere.
+/// Row 71: a body at rest moves when gravity or its gas changes, or when it is placed elsewhere.
 #[test]
 fn what_rests_wakes_when_something_changes() {
     let models = BALL.replace("damping = 1.0", "damping = 5.0");
@@ -52,7 +52,7 @@ fn what_rests_wakes_when_something_changes() {
     }
 }
 
-/// A ball between a floor and a plate that comes down by `way` [m] and stays there; the ball is 1 m high and lies at 0.1 m.
+/// A ball between a floor and a plate that descends by `way` [m] and stays there; the ball is 1 m high and begins at 0.1 m.
 fn press(way: f64, more: &str) -> World<2> {
     let plates = format!(
         "{FLOOR}[[collider]]\nkind = \"half_space\"\npoint = [0, 1.1]\nnormal = [0, -1]\n\
@@ -62,7 +62,7 @@ fn press(way: f64, more: &str) -> World<2> {
     built(plane(&ring(256, BALL, &plates)))
 }
 
-/// Row 67: pressed to a hundredth of its height, a ball stays between the plates and right side out.
+/// Row 67: compressed to a hundredth of its height, a ball stays between the plates and is not inverted.
 #[test]
 fn a_ball_is_pressed_to_a_hundredth_of_its_height() {
     let mut world = press(1.09, "");
@@ -78,8 +78,8 @@ fn a_ball_is_pressed_to_a_hundredth_of_its_height() {
     assert!(world.warnings().iter().all(|w| w.code != "contact.no_room"), "{:?}", world.warnings());
 }
 
-/// Row 67: where plates meet, nothing that lies between them has a place; that is told with time, body and both plates, and
-/// numbers stay finite.
+/// Row 67: if plates meet, there is no space for anything between them. This is reported with the time, the body and both plates, and numbers stay
+/// finite.
 #[test]
 fn plates_that_meet_are_told_with_time_and_pair() {
     let mut world = press(1.2, "");
@@ -87,13 +87,13 @@ fn plates_that_meet_are_told_with_time_and_pair() {
     assert!(finite(&world));
     let warnings = world.warnings();
     let warning = warnings.iter().find(|w| w.code == "contact.no_room").expect("a warning");
-    // They pass one another at 1.5 s · 1.1/1.2 = 1.375 s, and lie 0.1 m deep in each other for the last half second.
+    // They pass one another at 1.5 s · 1.1/1.2 = 1.375 s, and overlap by 0.1 m in the last half second.
     assert!((30..=38).contains(&warning.count), "{warning:?}");
     let said = &warning.message;
     let time: f64 = said["at t = ".len()..].split(' ').next().and_then(|t| t.parse().ok()).expect("a time");
     assert!((1.375..1.41).contains(&time), "{said}");
     assert!(said.contains("obstacles 0 (half_space) and 1 (half_space) left body `b` no room: node "), "{said}");
-    // Plates that just meet leave no room either, and so do those that stop a hair before.
+    // Plates that just touch leave no space, either, nor do those that stop slightly before.
     for way in [1.1, 1.0999] {
         let mut world = press(way, "");
         frames(&mut world, 120);
@@ -101,7 +101,7 @@ fn plates_that_meet_are_told_with_time_and_pair() {
         assert!((30..=32).contains(&warning.count), "{warning:?}");
         assert!(warning.message.contains("lay where they meet"), "{}", warning.message);
     }
-    // Nodes that are held lie where they are led, which is no fault of the plates.
+    // Pinned nodes are where the pins put them, which is not a fault of the plates.
     let mut held = press(
         1.2,
         "[[body]]\nname = \"c\"\nfixed = true\nshape = { kind = \"ring\", radius = 0.5, vertices = 24, center = [9, 0.6] }\n",
@@ -111,7 +111,7 @@ fn plates_that_meet_are_told_with_time_and_pair() {
     assert!(held.warnings().iter().all(|w| w.code != "contact.no_room"), "{:?}", held.warnings());
 }
 
-/// Row 68: a million nodes meet a floor in one step; none is left out.
+/// Row 68: a million nodes collide with a floor in one step; none is missed.
 #[test]
 fn a_million_contacts_in_one_step_are_all_held() {
     let text = format!(
@@ -130,13 +130,13 @@ fn a_million_contacts_in_one_step_are_all_held() {
     }
 }
 
-/// Row 72: a pointer of 10 km/s, one that stands still far away, one on the node itself.
+/// Row 72: a pointer at 10 km/s, one at rest far away, and one at the node itself.
 #[test]
 fn pointers_pull_within_bounds() {
     for (path, most) in [
         ("[[0, 0, 0], [0.5, 5000, 0], [1, -5000, 0]]", "largest_force = 40.0"),
         ("[[0, 1e9, 1e9], [1, 1e9, 1e9]]", "largest_force = 40.0"),
-        // Without a limit of its own a pull is that of a spring stretched by ten sizes of the body, and numbers have an end.
+        // Without an explicit limit, the force of a pull is limited to that of a spring stretched by ten sizes of the body, and numbers stay finite.
         ("[[0, 0, 0], [1, 10000, 0]]", "# limited"),
         ("[[0, 1e300, -1e300], [1e-3, -1e300, 1e300]]\nuntil = 1", "# limited"),
         ("[[0, 0.5, 0.6], [1, 0.5, 0.6]]", ""),
@@ -155,7 +155,7 @@ fn pointers_pull_within_bounds() {
     assert!(said(&text).contains("error[scene.not_finite]"), "{}", said(&text));
 }
 
-/// Row 72: several pulls at once, on one node and on neighbours in a batch; a body that is taken away ends its pull.
+/// Row 72: several pulls at once, on one node and on neighbours in a batch; removing a body ends its pull.
 #[test]
 fn several_pulls_act_at_once() {
     let pull = |body: usize, x: f64| {
@@ -165,10 +165,10 @@ fn several_pulls_act_at_once() {
     };
     let scene = |pulls: &str| {
         let copies = format!("copies = {{ count = [4], spacing = [2, 0] }}\n{pulls}");
-        // Without gas the rest shape is at rest.
+        // Without gas the rest shape is an equilibrium.
         plane(&ring(32, "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0 }", &copies).replace("-9.81", "0"))
     };
-    // Node 0 of ball k lies at 2k + 0.5; two equal pulls to both sides leave it there.
+    // Node 0 of ball k is at 2k + 0.5; two equal pulls to both sides leave it there.
     let mut world = built(scene(&(pull(0, 0.0) + &pull(0, 1.0) + &pull(2, 5.0))));
     frames(&mut world, 2);
     assert_eq!((world.islands(), world.pulls().len()), (1, 3));

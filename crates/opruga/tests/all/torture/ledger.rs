@@ -1,13 +1,12 @@
-//! The ledger of energy of bodies at rest, and of a rule that makes energy.
+//! The energy ledger of bodies at rest, and of an integrator that creates energy.
 
 use super::*;
 use opruga::core::spec::Value;
 
-/// A body at rest, with a load on it: what damping, loads and obstacles do to it takes and gives nothing, by every rule, and no
-/// ledger is open.
+/// A loaded body at rest: damping, loads and obstacles neither remove nor add energy, with every integrator, and every ledger is closed.
 #[test]
 fn a_body_that_lies_still_takes_and_gives_no_energy() {
-    // With stages, nodes beside those that lie keep velocities of some 1e-7 m/s without moving.
+    // With stages, nodes next to those at rest have velocities of about 1e-7 m/s without moving.
     for (rule, most) in [("symplectic_euler", 1e-8), ("verlet", 1e-5), ("runge_kutta", 1e-5), ("heun", 1e-5)] {
         let models =
             "{ kind = \"mass_spring\", stiffness = 600.0, damping = 0.5 }, { kind = \"pressure\", nRT = 30.0 }";
@@ -35,7 +34,7 @@ fn a_body_that_lies_still_takes_and_gives_no_energy() {
     }
 }
 
-/// A block of springs that friction holds on a slope: nothing flows, however long it lies there.
+/// A block of springs on a slope, held by friction: no energy flows, however long it stays there.
 #[test]
 fn a_block_held_by_friction_takes_and_gives_no_energy() {
     let mut world = built(plane(
@@ -54,7 +53,7 @@ fn a_block_held_by_friction_takes_and_gives_no_energy() {
     assert!((after.loss_integrator - before.loss_integrator).abs() < 1e-9, "{before:?} {after:?}");
 }
 
-/// Explicit Euler makes energy: the ledger stays open, and says so; symplectic Euler closes that of the same ball.
+/// Explicit Euler creates energy: the ledger stays open, which is reported; with symplectic Euler the ledger of the same ball is closed.
 #[test]
 fn a_ledger_that_stays_open_is_warned_of() {
     for (rule, closes) in [("symplectic_euler", true), ("explicit_euler", false)] {

@@ -1,13 +1,13 @@
-//! Row 62 for the other methods of the survey: bodies without shape, mirrored, stretched and twisted come back, or Opruga says why not.
+//! Row 62 for the other methods of the survey: bodies that are collapsed, mirrored, stretched or twisted recover, or Opruga reports why not.
 
 use super::*;
 use opruga::AnyWorld;
 use opruga::math::Lane;
 
-/// What a node of a body about the origin becomes, from its place and its number.
+/// The new position of a node of a body about the origin, from its position and its number.
 type Spoil = (&'static str, fn([f64; 3], usize) -> [f64; 3]);
 
-/// A number from −0.5 to 0.5 that belongs to a node and an axis.
+/// A number from −0.5 to 0.5 that depends on a node and an axis.
 fn random(node: usize, axis: usize) -> f64 {
     let mut number = (node * 3 + axis + 1) as u64;
     for _ in 0..3 {
@@ -16,7 +16,7 @@ fn random(node: usize, axis: usize) -> f64 {
     (number >> 11) as f64 / (1u64 << 53) as f64 - 0.5
 }
 
-/// So many turns from one end of the body to the other, about x.
+/// Twists a body about x by this number of turns from one end to the other.
 #[allow(clippy::disallowed_methods, reason = "the start of a test, compared with nothing")]
 fn twisted(x: [f64; 3], turns: f64) -> [f64; 3] {
     let (sine, cosine) = (core::f64::consts::TAU * turns * x[0]).sin_cos();
@@ -34,7 +34,7 @@ const SHAPES: &[Spoil] = &[
     ("twisted", |x, _| twisted(x, 0.5)),
 ];
 
-/// What becomes of slender bodies.
+/// The changes of slender bodies.
 const TWISTS: &[Spoil] = &[
     ("twisted once", |x, _| twisted(x, 1.0)),
     ("twisted twice", |x, _| twisted(x, 2.0)),
@@ -178,11 +178,11 @@ const BEAMS: &[Body] = &[
     ),
 ];
 
-/// Codes that say why a body is not in its shape.
+/// Codes that explain why a body does not have its shape.
 const REASONS: &[&str] =
     &["cells.inverted", "step.odd_rest", "shape_matching.mirrored", "finite_difference.folded", "cells.other_balance"];
 
-/// How far the edges of a body are from their rest lengths [m], or 1 where a solid is mirrored: its corners along the axes span no volume.
+/// The deviation of the edges of a body from their rest lengths [m], or 1 if a solid is mirrored: its corners along the axes span a negative volume.
 fn off(world: &dyn AnyWorld, dimension: usize, rest: &[[f64; 3]], edges: &[[usize; 2]]) -> f64 {
     let now = world.positions(0);
     let length = |a: [f64; 3], b: [f64; 3]| (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>().sqrt();
@@ -200,12 +200,12 @@ fn off(world: &dyn AnyWorld, dimension: usize, rest: &[[f64; 3]], edges: &[[usiz
         }
     };
     let at_rest = spanned(&|k| rest[k]);
-    // The mirror image of a curve or a surface in space is a turned one.
+    // The mirror image of a curve or a surface in space is a rotated one.
     let is_thin = at_rest == 0.0 || dimension == 3 && high[2] == low[2];
     if is_thin || spanned(&|k| now.at(k)) > 0.9 * at_rest { off.fold(0.0, Lane::larger) } else { 1.0 }
 }
 
-/// Within twenty seconds of damped motion, with steps that every body can take.
+/// Within twenty seconds of damped motion, with steps that are stable for every body.
 #[test]
 fn bodies_of_the_other_methods_come_back_or_opruga_says_why_not() {
     come_back(|number| number % 12 == 0);
@@ -217,7 +217,7 @@ fn bodies_of_the_other_methods_come_back_or_opruga_says_why_not_whole_sweep() {
     come_back(|number| number % 12 != 0);
 }
 
-/// The cases with chosen numbers.
+/// The cases with selected numbers.
 fn come_back(chosen: fn(usize) -> bool) {
     let of = |bodies: &'static [Body], shapes: &'static [Spoil]| {
         bodies.iter().flat_map(move |body| {
@@ -227,7 +227,7 @@ fn come_back(chosen: fn(usize) -> bool) {
             })
         })
     };
-    // What has no energy is refused by implicit rules.
+    // Implicit integrators refuse a model without an energy.
     let all = of(BODIES, SHAPES)
         .chain(of(BEAMS, TWISTS))
         .filter(|(body, rule, _)| has_energy(body) || *rule == "symplectic_euler");
@@ -243,10 +243,10 @@ fn has_energy(body: &Body) -> bool {
     !["finite volumes of quadrilaterals", "finite volumes of hexahedra"].contains(&body.0)
 }
 
-/// What is wrong where a body neither comes back nor Opruga says why not.
+/// Runs a case; returns an error if the body neither recovers nor Opruga reports why not.
 fn comes_back(body: &Body, rule: &str, (what, spoil): &Spoil) -> Option<String> {
     let (name, dimension, shape, model) = body;
-    // Thin bodies are far stiffer scattered than at rest.
+    // Thin bodies are far stiffer when scattered than at rest.
     let is_thin = model.contains("thickness");
     let explicit = if is_thin { 1024 } else { 64 };
     let (substeps, gravity) =
@@ -271,7 +271,7 @@ fn comes_back(body: &Body, rule: &str, (what, spoil): &Spoil) -> Option<String> 
         e.kinetic + e.elastic
     };
     let start = energy(&*world);
-    // What is said of the state, and not of the steps to it.
+    // Warnings about the state, not about the steps.
     let reasons = |world: &dyn AnyWorld| {
         let codes = world.warnings_at_the_end().into_iter().map(|warning| warning.code);
         codes.filter(|code| REASONS.contains(&code.as_str())).collect::<Vec<_>>()
@@ -291,7 +291,7 @@ fn comes_back(body: &Body, rule: &str, (what, spoil): &Spoil) -> Option<String> 
             end = Some("back".into());
             break;
         }
-        // The law of St. Venant and Kirchhoff has no energy against a mirrored cell, which stays.
+        // The law of St. Venant and Kirchhoff does not resist a mirrored cell, which stays mirrored.
         let stays = model.contains("finite_difference") && frame % 150 == 0;
         if stays && !reasons(&*world).is_empty() {
             break;
@@ -305,13 +305,13 @@ fn comes_back(body: &Body, rule: &str, (what, spoil): &Spoil) -> Option<String> 
     })
 }
 
-/// A bent curve is none that its law does not push back.
+/// A bent curve is reported only if its law does not push it back.
 #[test]
 fn a_folded_and_a_crushed_curve_are_reported_and_a_bent_one_is_not() {
     let text = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\nframe = 0.01\nsubsteps = 1\n[integrator]\nkind = \"verlet\"\n\
                 [[body]]\nname = \"b\"\nnode_mass = 1\nshape = { kind = \"line\", from = [0, 0], to = [3, 0], segments = 3 }\n\
                 models = [{ kind = \"finite_difference\", youngs_modulus = 200, thickness = 0.1 }]\n";
-    // Edges fold back where they turn by more than 120°, and give way below 0.577 of their length.
+    // Edges fold back if they turn by more than 120°, and yield below 0.577 of their length.
     for (end, count) in [([2.0, 1.0], 0), ([1.0, 0.1], 1), ([2.57, 0.0], 1), ([2.59, 0.0], 0)] {
         let mut world = read(text).unwrap_or_else(|e| panic!("{}", e[0])).build(Options::default()).expect("a world");
         world.set_node(0, 3, [end[0], end[1], 0.0], [0.0; 3]).expect("a node");

@@ -1,6 +1,6 @@
-//! Bad parameters and bad states, from the text of a scene to its frames. The numbers are rows of a list of torments:
-//! 43–58 parameters, 61–78 states and contact. (Rows that need shape matching or contact between bodies come with those;
-//! those of finite elements stand beside theirs, such as `robust_steps` and `falling_solids`.)
+//! Bad parameters and bad states, from the text of a scene to its frames. The numbers are rows of the torture list: 43–58 parameters, 61–78 states
+//! and contact. (Rows that need shape matching or contact between bodies are tested with those; those of finite elements are next to theirs, such as
+//! `robust_steps` and `falling_solids`.)
 
 use crate::common;
 mod contact;

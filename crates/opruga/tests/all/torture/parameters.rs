@@ -1,8 +1,8 @@
-//! Rows 43 to 58: parameters that make no sense, and odd ones that do.
+//! Rows 43 to 58: invalid parameters, and unusual valid ones.
 
 use super::*;
 
-/// A block of finite elements that falls, with these fields of their model.
+/// A falling block of finite elements with these fields of its model.
 fn solid(fields: &str) -> String {
     format!("{}{}", head(1.0 / 60.0, 64, -9.81, "symplectic_euler"), block(fields))
 }
@@ -15,7 +15,7 @@ fn block(fields: &str) -> String {
     )
 }
 
-/// Rows 43 to 58: what is said about parameters that make no sense.
+/// Rows 43 to 58: messages about invalid parameters.
 #[test]
 #[expect(clippy::too_many_lines, reason = "a table: one row for every parameter")]
 fn parameters_that_make_no_sense() {
@@ -27,7 +27,7 @@ fn parameters_that_make_no_sense() {
     };
     let springs = "{ kind = \"mass_spring\", stiffness = 10.0 }";
     let cases = [
-        // 43: springs without length
+        // 43: springs of zero length
         (chain("[[0, 0], [0, 0]]", springs), "error[scene.shape]: points 0 and 1 follow each other at the same place"),
         (
             chain("[[0, 0], [1, 0], [1, 0]]", springs),
@@ -59,7 +59,7 @@ fn parameters_that_make_no_sense() {
         (ring(16, "{ kind = \"bending\", stiffness = -0.1 }", ""), "error[scene.range]: `stiffness` is -0.1"),
         (ring(16, BALL, &FLOOR.replace("friction = 0.5", "friction = -0.5")), "error[scene.range]: `friction` is -0.5"),
         (ring(16, BALL, &FLOOR.replace("normal = [0, 1]", "normal = [0, 0]")), "normal"),
-        // 48, 50: steps that are too long, told before the run
+        // 48, 50: steps that are too long, reported before the run
         (
             ring(1, BALL, ""),
             "step.unstable: the step h = 0.0166667 s of `symplectic_euler` is unstable for body `b`; allowed: h <= ",
@@ -70,7 +70,7 @@ fn parameters_that_make_no_sense() {
              forces, stiffnesses and their ratios to the masses of nodes below 1e300; hint: the largest number of its models is \
              `stiffness` = 1e300 of `mass_spring`, and its lightest node has 0.0416667 kg",
         ),
-        // 58: pins that lead a node to two places
+        // 58: pins that prescribe two positions of a node
         (
             ring(
                 16,
@@ -87,12 +87,12 @@ fn parameters_that_make_no_sense() {
             ),
             "too, which leads it elsewhere along y at t = 1 s",
         ),
-        // 63: so far away that an element is a few roundings across
+        // 63: so far away that an element is a few rounding units wide
         (
             ring(64, BALL, "").replace("center = [0, 0.6]", "center = [1e12, 0.6]"),
             "scene.range: body `b`: position: it begins 1e12 m from the origin along an axis",
         ),
-        // as fast as to leave that place within a step
+        // so fast that it leaves that region within a step
         (
             ring(64, BALL, "velocity = [1e300, 0]"),
             "scene.range: body `b`: velocity: `velocity` and `angular_velocity` let it begin with 1e300 m/s along an axis, ",
@@ -106,7 +106,7 @@ fn parameters_that_make_no_sense() {
             ring(64, BALL, "scale = 1e-320"),
             "error[scene.range]: `scale` is 1e-320: products of lengths so small are zero",
         ),
-        // 72: a drag that would end when it begins
+        // 72: a drag that would end at its beginning
         (
             ring(16, BALL, "[[command]]\ndo = \"drag\"\nat = 1\nbody = \"b\"\npath = [[1, 0, 0]]"),
             "error[scene.missing]: `until` is missing: a path of one point does not say when the drag ends",
@@ -134,8 +134,8 @@ fn parameters_that_make_no_sense() {
     }
 }
 
-/// All that is wrong with a body is said at once: choices in its models, the direction of an obstacle, and every model that refuses
-/// the mesh; bodies that have errors of their own are not denied.
+/// All errors of a body are reported at once: choices in its models, the direction of an obstacle, and every model that refuses the mesh; bodies with
+/// errors of their own still count as existing.
 #[test]
 fn everything_that_is_wrong_is_said_at_once() {
     let text = ring(
@@ -155,7 +155,7 @@ fn everything_that_is_wrong_is_said_at_once() {
     let said = super::said(&broken.replace("radius = 0.5", "radius = -1"));
     assert!(said.contains("there is no body `c`") && !said.contains("has no bodies"), "{said}");
 
-    // Neither springs nor gas nor bending find in a cloud of one chain what they need.
+    // Springs, gas and bending all lack what they need in a point cloud of one chain.
     let chain = format!(
         "{}[[body]]\nname = \"c\"\nmass = 1\nshape = {{ kind = \"polyline\", points = [[0, 0], [1, 0]] }}\n\
          models = [{{ kind = \"mass_spring\", modulus = 1 }}, {{ kind = \"pressure\", nRT = 1 }}, {{ kind = \"bending\", stiffness = 1 }}]\n",
@@ -166,7 +166,7 @@ fn everything_that_is_wrong_is_said_at_once() {
     assert_eq!(codes, ["model.no_area", "model.open_surface", "model.no_hinges"], "{problems:?}");
 }
 
-/// Rows 44 to 58: what looks odd and runs.
+/// Rows 44 to 58: unusual parameters that work.
 #[test]
 fn parameters_that_are_odd_but_fine() {
     let heavy = |mass: &str, x: f64| {
@@ -175,9 +175,9 @@ fn parameters_that_are_odd_but_fine() {
         )
     };
     let cases = [
-        // 43: a rest length of nothing: the springs draw themselves together until their ends coincide
+        // 43: a rest length of zero: the springs contract until their ends coincide
         ring(64, "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0, rest_scale = 0 }", FLOOR),
-        // 47, 48: nothing is too soft; a body of 1 Pa beside one of 10¹² Pa
+        // 47, 48: no stiffness is too small; a body of 1 Pa next to one of 10¹² Pa
         solid("youngs_modulus = 1e-300"),
         solid("youngs_modulus = 1e5, poissons_ratio = 0.4999999")
             .replace("symplectic_euler", "backward_euler")
@@ -191,23 +191,23 @@ fn parameters_that_are_odd_but_fine() {
         )
         .replace("symplectic_euler", "backward_euler")
         .replace("substeps = 64", "substeps = 1"),
-        // 43: a rest length of nearly nothing, 45: masses of 1e-9 kg beside 1000 kg
+        // 43: a rest length of nearly zero, 45: masses of 1e-9 kg next to 1000 kg
         ring(64, "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0, rest_scale = 1e-6 }", FLOOR),
         ring(16, BALL, &format!("{}{}", heavy("1e-9", 3.0), heavy("1e3", 6.0))),
-        // 48: nothing is too soft
+        // 48: no stiffness is too small
         ring(16, "{ kind = \"mass_spring\", stiffness = 1e-300 }", FLOOR),
         ring(16, "{ kind = \"mass_spring\", stiffness = 0 }", FLOOR),
-        // 53: no ramp, hardly any gas, a vacuum that is pressed flat
+        // 53: no ramp, hardly any gas, a vacuum that is compressed flat
         ring(32, "{ kind = \"mass_spring\", stiffness = 600.0 }, { kind = \"pressure\", nRT = 1e-12 }", FLOOR),
         ring(
             64,
             "{ kind = \"mass_spring\", stiffness = 600.0, damping = 1.0 }, { kind = \"pressure\", nRT = 1, ambient = 200.0 }",
             FLOOR,
         ),
-        // 56: no gravity and a great deal
+        // 56: no gravity and very strong gravity
         ring(32, BALL, FLOOR).replace("-9.81", "0"),
         ring(32, BALL, FLOOR).replace("-9.81", "-1e6"),
-        // 58: all nodes held; neighbours forced apart; a node led through the floor
+        // 58: all nodes pinned; neighbours forced apart; a node moved through the floor
         ring(32, BALL, &format!("pin = [{{ select = {{ all = true }} }}]\n{FLOOR}")),
         ring(
             64,
@@ -220,7 +220,7 @@ fn parameters_that_are_odd_but_fine() {
         // 70: ice and glue
         ring(32, BALL, &FLOOR.replace("0.5", "0")),
         ring(32, BALL, &FLOOR.replace("0.5", "1e6")),
-        // 71: the same node pinned twice, loads that cancel
+        // 71: the same node pinned twice, loads that cancel each other
         ring(
             32,
             BALL,
@@ -236,7 +236,7 @@ fn parameters_that_are_odd_but_fine() {
     }
 }
 
-/// Row 50: integrators without any stable step say so, and how fast it grows.
+/// Row 50: integrators without any stable step report this, with the rate of growth.
 #[test]
 fn integrators_without_a_stable_step_warn() {
     for rule in ["explicit_euler", "heun"] {
@@ -253,7 +253,7 @@ fn integrators_without_a_stable_step_warn() {
     }
 }
 
-/// Row 54: a ring that is turned inside out is counted, and no energy is made of it.
+/// Row 54: an inverted ring is counted, and creates no energy.
 #[test]
 fn a_chamber_turned_inside_out_is_counted_and_makes_no_energy() {
     let models =
@@ -277,8 +277,8 @@ fn a_chamber_turned_inside_out_is_counted_and_makes_no_energy() {
     assert!(warning.count > 0 && warning.message.contains("inside out"), "{warning:?}");
 }
 
-/// Rows 54 and 72: a ball of gas that is flattened, by a wall or by a pointer that shakes it, stays within the energy that it was
-/// given. The gas once pushed a thousandfold there, and each passage through nothing gained what the step could not resolve.
+/// Rows 54 and 72: a ball of gas that is flattened, by a wall or by a shaking pointer, keeps within the energy that it was given. The gas once pushed
+/// a thousand times as hard there, and each passage of the volume through zero added energy that the step could not resolve.
 #[test]
 fn a_ball_of_gas_that_is_flattened_gains_no_energy_without_bound() {
     let ball = |substeps: u32, motion: &str, command: &str| {

@@ -1,9 +1,9 @@
-//! Rows 61 to 64: bodies without shape, far away, fast, or of numbers that are none.
+//! Rows 61 to 64: bodies that are collapsed, far away, fast, or contain NaN.
 
 use super::*;
 use opruga::WorldError;
 
-/// Row 43 and 62: nodes in one place, on a line, in a point, mirrored, at random: finite at every frame, and back in shape.
+/// Rows 43 and 62: nodes at one position, on a line, in a point, mirrored, at random: finite in every frame, and recovering their shape.
 #[test]
 fn collapsed_bodies_recover() {
     let mut number = 1u64;
@@ -37,13 +37,13 @@ fn collapsed_bodies_recover() {
         }
         let now = world.readings(0)[0].1;
         println!("{name}: {:.4} of its area", now / volume);
-        // What does not come back says why: it was inside out, or enclosed nothing.
+        // A body that does not recover reports why: it was inverted, or enclosed nothing.
         let told = world.warnings().iter().any(|w| w.code == "pressure.inverted" && w.count > 0);
         assert!((now / volume - 1.0).abs() < 1e-3 || !recovers && told, "{name}: {now} of {volume} m²");
     }
 }
 
-/// Row 62 in space: a balloon squeezed to a sheet, a needle, a point, mirrored, at random.
+/// Row 62 in space: a balloon collapsed to a sheet, a needle or a point, mirrored, at random.
 #[test]
 fn collapsed_balloons_recover_or_say_why_not() {
     let text = format!(
@@ -88,13 +88,13 @@ fn collapsed_balloons_recover_or_say_why_not() {
     }
 }
 
-/// Row 63: far away and falling for ever; row 64: no node goes through a floor, however fast.
+/// Row 63: far away and falling for ever; row 64: no node passes through a floor, however fast.
 #[test]
 fn far_and_fast() {
     let mut world = built(plane(&ring(64, BALL, "").replace("center = [0, 0.6]", "center = [1e6, -1e6]")));
     frames(&mut world, 30);
     assert!(finite(&world));
-    // Edges of 0.13 m are a million roundings long up to 5.9e8 m: what gets farther has diverged, whatever took it there.
+    // Edges of 0.13 m are a million rounding units long up to 5.9e8 m: a body farther away has diverged, whatever the cause.
     let mut world = built(plane(&ring(64, BALL, "velocity = [3e9, 0]")));
     frames(&mut world, 10);
     let hash = world.state_hash();
@@ -127,7 +127,7 @@ fn far_and_fast() {
     }
 }
 
-/// Row 61: a number that is none, from outside or from a user's law: refused with body and node, the world as it was.
+/// Row 61: NaN, from outside or from a user's law, is refused with body and node, and the world stays as it was.
 #[test]
 fn numbers_that_are_none_are_refused_and_leave_the_world_whole() {
     let two = ring(64, BALL, FLOOR).replace(FLOOR, "position = [3, 0]\n") + FLOOR;
@@ -164,7 +164,7 @@ fn numbers_that_are_none_are_refused_and_leave_the_world_whole() {
     }
 }
 
-/// Row 63: what falls for ever is taken away, counted, and the same on any number of threads and after a restored snapshot.
+/// Row 63: bodies that fall for ever are removed and counted, in the same way for any number of threads and after a restored snapshot.
 #[test]
 fn bodies_beyond_the_largest_distance_are_taken_away() {
     let text = ring(16, "", "velocity = [2, 0]\ncopies = { count = [9], spacing = [2, 0] }\n")
@@ -185,7 +185,7 @@ fn bodies_beyond_the_largest_distance_are_taken_away() {
         (counts, warning)
     };
     let (counts, warning) = end(1, false);
-    // 30 m below the start after √(2·30/9.81) = 2.47 s; the last of the row first, since it is farther away.
+    // 30 m below the start after √(2·30/9.81) = 2.47 s; the last of the row first, because it is farther away.
     let first = counts.iter().position(|c| c.0 < 9).expect("the row goes");
     assert!((125..150).contains(&first), "frame {first}");
     assert!(counts[first].0 > 0 && counts[179].0 == 0 && warning == Some(9), "{warning:?}");

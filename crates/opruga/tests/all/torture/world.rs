@@ -1,4 +1,4 @@
-//! Rows 73 and 78: bodies that come and go, threads that change.
+//! Rows 73 and 78: bodies that are added and removed, changing numbers of threads.
 
 use super::*;
 use opruga::math::Lane;
@@ -20,7 +20,7 @@ fn numbers_of_threads() {
     assert_eq!(hash(1), hash(256));
 }
 
-/// Row 78: threads change between frames, by way of a snapshot: the bits stay.
+/// Row 78: the number of threads changes between frames, by means of a snapshot, and the bits stay the same.
 #[test]
 fn threads_change_in_the_middle_of_a_run() {
     let scene = || plane(&ring(32, BALL, &format!("copies = {{ count = [5], spacing = [2, 0] }}\n{FLOOR}")));
@@ -38,8 +38,8 @@ fn threads_change_in_the_middle_of_a_run() {
     assert_eq!((last.state_hash(), last.energy()), (one.state_hash(), one.energy()));
 }
 
-/// Row 73: while a frame runs nobody can add or take bodies away: a law that wants to is no program
-/// (`World::add_force` shows it); between frames both are as good as in a scene.
+/// Row 73: while a frame runs, nobody can add or remove bodies: a law that tries to do so does not compile (`World::add_force` shows it). Between
+/// frames, both work as in a scene.
 #[test]
 fn bodies_come_and_go_between_frames_without_a_trace_on_others() {
     let scene = || plane(&ring(32, BALL, FLOOR));
@@ -65,7 +65,7 @@ fn bodies_come_and_go_between_frames_without_a_trace_on_others() {
     }
 }
 
-/// Bodies that a command adds are drawn from then on, in a resumed world too.
+/// Bodies that a command adds are drawn from then on, also in a resumed world.
 #[test]
 fn bodies_that_come_later_are_drawn() {
     let late = "[[command]]\ndo = \"add\"\nat = 0.05\nbody = { name = \"late\", mass = 1, position = [3, 1], \
@@ -85,7 +85,7 @@ fn bodies_that_come_later_are_drawn() {
     assert_eq!(drawn(&opruga::pictures::Scenery::new(&other), &mut other), 2);
 }
 
-/// A push moves the body unless the reader tells that it never acts: both bring times to frames in the same way.
+/// A push moves the body unless the reader reports that it never acts: both convert times to frames in the same way.
 #[test]
 fn commands_act_unless_it_is_told_that_they_never_will() {
     let sixtieth = 1.0 / 60.0;
@@ -118,8 +118,8 @@ fn commands_act_unless_it_is_told_that_they_never_will() {
     assert_eq!((moved, still), (5, 5));
 }
 
-/// Row 57: the estimate of `units.sag` for solids by their boundary alone, beside how far they sag by statics, on coarse and fine
-/// boundaries: what warns of mixed units has the right power of ten, and does not depend on the mesh.
+/// Row 57: the estimate of `units.sag` for boundary-element solids, compared with their sag in statics, on coarse and fine boundaries: the quantity
+/// that warns of mixed units has the right order of magnitude and does not depend on the mesh.
 #[test]
 fn the_sag_of_a_boundary_is_estimated_by_its_statics() {
     let ball = |s: u32| format!("{{ kind = \"icosphere\", radius = 0.5, subdivisions = {s} }}");
@@ -144,7 +144,7 @@ fn the_sag_of_a_boundary_is_estimated_by_its_statics() {
         };
         let build =
             |text: &str| read(text).unwrap_or_else(|e| panic!("{}", e[0])).build(Options::default()).expect("a world");
-        // Sag goes like 1/E: with little of it, and so much that it is warned of.
+        // The sag is proportional to 1/E: one with a small sag, and one large enough for the warning.
         let pin = format!("pin = [{{ select = {{ half_space = {{ point = {point}, normal = {below} }} }} }}]");
         let mut world = build(&scene(-9.81, 1e8, "equilibrium", &pin));
         let top = |world: &dyn opruga::AnyWorld| {
