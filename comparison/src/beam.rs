@@ -1,4 +1,4 @@
-//! A slender beam that one end holds and that is let go: 1 × 0.1 × 0.1 m, ρ = 1000 kg/m³, ν = 0.3.
+//! A slender beam, clamped at one end and released: 1 × 0.1 × 0.1 m, ρ = 1000 kg/m³, ν = 0.3.
 
 use crate::motion::Run;
 use crate::mujoco::Body;
@@ -8,14 +8,13 @@ use crate::{FRAME, Settings, mujoco};
 
 const SCENE: &str = "cantilever-beam";
 
-/// Frames after which a body that does not come to rest is left.
+/// The number of frames after which a body that does not come to rest is given up.
 const REST_FRAMES: usize = 3000;
 
-/// Of runs that are to come to rest [s]: with ten times as much, steps of the real-time setting keep trembling by 2e-4 of
-/// the way.
+/// The damping of runs that must come to rest [s]: with ten times as much, steps of the real-time setting keep vibrating by 2e-4 of the displacement.
 const DAMPING: f64 = 0.01;
 
-/// How far it hangs at rest by quadratic elements of other programs, converged in space [m]: by Young's modulus.
+/// The sag at rest according to quadratic elements of other programs, converged in space [m], for a Young's modulus.
 fn at_rest(modulus: f64) -> Option<f64> {
     [(1e8, 0.014686), (1e6, 0.747)].into_iter().find(|known| known.0 == modulus).map(|known| known.1)
 }
@@ -27,8 +26,8 @@ fn values(cells: [u32; 3], modulus: f64) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// All programs on the beam. The first swing is compared with that of a fine mesh of quadratic tetrahedra, by backward
-/// Euler of one step a frame solved to the last digits.
+/// Runs all programs on the beam. The first oscillation is compared with that of a fine mesh of quadratic tetrahedra, by backward Euler with one step
+/// per frame, solved to the last digits.
 pub fn compare(modulus: f64, settings: &Settings) -> Result<Table, String> {
     let rest = at_rest(modulus).ok_or_else(|| format!("{modulus:e} Pa: known are 1e8 and 1e6"))?;
     let fine = Held::new(SCENE, &values([24, 2, 2], modulus), EXACT, 1)?

@@ -1,4 +1,4 @@
-//! A cube of linear tetrahedra that one side holds and that is let go.
+//! A cube of linear tetrahedra, clamped at one side and released.
 
 use crate::motion::{Run, Swing};
 use crate::mujoco::Body;
@@ -10,10 +10,10 @@ use rapier3d::prelude::SoftBodySolver;
 
 const SCENE: &str = "cantilever-cube";
 
-/// Frames after which a body that does not come to rest is left.
+/// The number of frames after which a body that does not come to rest is given up.
 const REST_FRAMES: usize = 600;
 
-/// Frames of exact steps that are timed: they take long, and their motion is that of the reference.
+/// The number of timed frames of exact steps, which take long and whose motion is that of the reference.
 const EXACT_FRAMES: usize = 20;
 
 fn values(n: usize, modulus: f64, material: &str) -> Vec<(&'static str, String)> {
@@ -24,13 +24,13 @@ fn values(n: usize, modulus: f64, material: &str) -> Vec<(&'static str, String)>
     ]
 }
 
-/// The first swing by backward Euler, solved to the last digits.
+/// The first oscillation by backward Euler, solved to the last digits.
 fn exact_swing(values: &[(&str, String)], substeps: u32) -> Result<Option<Swing>, String> {
     let run = Held::new(SCENE, values, EXACT, substeps)?.run(300, |run| run.swing(FRAME).is_some())?;
     Ok(run.swing(FRAME))
 }
 
-/// All programs on the cube of n³ cells.
+/// Runs all programs on the cube of n³ cells.
 pub fn compare(n: usize, modulus: f64, settings: &Settings) -> Result<Table, String> {
     let corotated = values(n, modulus, "corotated");
     let exact = |values: &[(&str, String)], substeps| -> Result<Option<Swing>, String> {
@@ -42,7 +42,7 @@ pub fn compare(n: usize, modulus: f64, settings: &Settings) -> Result<Table, Str
     let (shape, nodes) = (world.shape(), world.nodes());
     let solvers = [SoftBodySolver::Fem, SoftBodySolver::Constraints];
 
-    // Turn by turn, so that a neighbour on the machine disturbs all alike.
+    // Alternately, so that other load on the machine affects all of them equally.
     let mut swinging: [Run; 5] = Default::default();
     for _ in 0..settings.repeats {
         for (part, solver) in swinging[..2].iter_mut().zip(solvers) {
@@ -90,7 +90,7 @@ pub fn compare(n: usize, modulus: f64, settings: &Settings) -> Result<Table, Str
     Ok(Table { title, base: 0, rows })
 }
 
-/// Adds the times of a repetition; the motion is that of the first.
+/// Adds the times of a repetition; the motion is that of the first one.
 fn gather(to: &mut Run, run: Run) {
     to.milliseconds.extend(&run.milliseconds);
     if to.heights.is_empty() {

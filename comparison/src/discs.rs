@@ -1,4 +1,4 @@
-//! A thousand discs of gas that fill a box, so that all of them touch: time, height, and how deep they are in one another.
+//! A thousand discs of gas that fill a box, so that all of them are in contact: time, height, and overlap.
 
 use crate::falling::{Depth, Row, Table, positions, run_and_measure};
 use crate::rapier;
@@ -10,7 +10,7 @@ use std::ops::Range;
 
 const SCENE: &str = include_str!("../../benches/scenes/heap.toml");
 
-/// The depth of a node inside another disc, in parts of the diameter.
+/// The depth of a node inside another disc, as a fraction of the diameter.
 const MEASURE: Depth<2> = Depth { of: &depth, unit: 2.0 * RADIUS };
 
 /// The walled box of the scene [m].
@@ -18,13 +18,13 @@ const BOX: [f32; 2] = [57.8, 40.0];
 const RADIUS: f64 = 0.5;
 const FRICTION: f32 = 0.3;
 
-/// The substeps of Opruga in a frame: near its limit of stability, and those of the scene.
+/// The numbers of substeps of Opruga per frame: near its limit of stability, and those of the scene.
 const SUBSTEPS: [u32; 3] = [8, 16, 32];
 
-/// The frames that are timed: from 0.5 to 1 s.
+/// The timed frames: from 0.5 to 1 s.
 const TIMED: Range<usize> = 30..60;
 
-/// The scene, with as many substeps.
+/// The scene with this number of substeps.
 fn world(substeps: u32) -> Result<World<2>, String> {
     let overrides = vec![("time.substeps".to_string(), substeps.to_string())];
     let reading = scene::Options { overrides, ..scene::Options::default() };
@@ -38,7 +38,7 @@ fn of_rapier(own: &World<2>) -> Result<Row, String> {
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::new(0.0, -9.81);
     world.integration_parameters.num_solver_iterations = rapier::SUBSTEPS as usize;
-    // Thick walls: the inside is that of Opruga's box.
+    // Thick walls: the inner size is that of Opruga's box.
     let [width, height] = BOX;
     for (center, half) in [
         ([0.5 * width, -5.0], [width, 5.0]),
@@ -77,7 +77,7 @@ fn of_rapier(own: &World<2>) -> Result<Row, String> {
     run_and_measure("Rapier, discs, 4 steps", TIMED, &mut world, step, place, &MEASURE)
 }
 
-/// Rapier and Opruga on the thousand discs.
+/// Runs Rapier and Opruga on the thousand discs.
 pub fn compare() -> Result<Table, String> {
     let own = world(SUBSTEPS[0])?;
     let mut rows = vec![of_rapier(&own)?];
@@ -97,7 +97,7 @@ fn minus(a: &Point, b: &Point) -> Point {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// Whether a point is inside a polygon, by how often a ray to the right crosses it.
+/// Whether a point is inside a polygon, by the number of crossings of a ray to the right.
 fn is_within(p: &Point, polygon: &[Point]) -> bool {
     let sides = polygon.iter().zip(polygon.iter().cycle().skip(1));
     let crossed = sides
@@ -105,7 +105,7 @@ fn is_within(p: &Point, polygon: &[Point]) -> bool {
     crossed.count() % 2 == 1
 }
 
-/// The distance of a point and the outline of a polygon.
+/// The distance of a point from the outline of a polygon.
 fn distance(p: &Point, polygon: &[Point]) -> f64 {
     let sides = polygon.iter().zip(polygon.iter().cycle().skip(1));
     let to_side = |(a, b): (&Point, &Point)| {
@@ -116,7 +116,7 @@ fn distance(p: &Point, polygon: &[Point]) -> f64 {
     sides.map(to_side).fold(f64::INFINITY, f64::min)
 }
 
-/// How deep a point is inside a polygon [m]; 0 outside.
+/// The depth of a point inside a polygon [m]; 0 outside.
 fn depth(p: &Point, polygon: &[Point]) -> f64 {
     if is_within(p, polygon) { distance(p, polygon) } else { 0.0 }
 }

@@ -1,4 +1,4 @@
-//! Bodies that fall on something: the same frames for every program, and a table of their times.
+//! Falling bodies: the same frames for every program, and a table of their times.
 
 use crate::processor_time;
 use opruga::World;
@@ -8,7 +8,7 @@ use std::ops::Range;
 /// One program with one setting.
 pub struct Row {
     name: String,
-    /// Of the frames that are timed, ascending [ms].
+    /// Times of the measured frames, ascending [ms].
     milliseconds: Vec<f64>,
     /// The mean height of all nodes at the end [m].
     height: f64,
@@ -27,13 +27,13 @@ pub struct Table {
 /// The positions of all nodes of every body [m].
 pub type Positions<const D: usize> = Vec<Vec<[f64; D]>>;
 
-/// Where the nodes of Opruga's bodies are [m].
+/// The positions of the nodes of Opruga's bodies [m].
 pub fn positions<const D: usize>(world: &World<D>) -> Positions<D> {
     let bodies = 0..world.blueprint().bodies.len();
     bodies.map(|body| (0..world.node_count(body) as u32).map(|node| world.position(body, node)).collect()).collect()
 }
 
-/// Steps through frames to the end of those that are timed: `step` makes one, and `look` says where all nodes are after it.
+/// Steps through all frames up to the last timed one: `step` computes one, and `look` returns the positions of all nodes after it.
 pub fn run<W, const D: usize>(
     name: &str,
     timed: Range<usize>,
@@ -57,17 +57,17 @@ pub fn run<W, const D: usize>(
     Ok(row)
 }
 
-/// The depth of a point [m] inside a body whose nodes are at these places; 0 outside.
+/// The depth of a point [m] inside a body with nodes at these positions; 0 outside.
 pub type DepthOf<'a, const D: usize> = dyn Fn(&[f64; D], &[[f64; D]]) -> f64 + 'a;
 
-/// How deep nodes of one body are inside another one.
+/// The measurement of how deep nodes of one body are inside another one.
 pub struct Depth<'a, const D: usize> {
     pub of: &'a DepthOf<'a, D>,
-    /// The length in hundredths of which it is given [m].
+    /// The length relative to which it is given in per cent [m].
     pub unit: f64,
 }
 
-/// The frames from one look at the depth to the next one.
+/// The number of frames from one measurement of the depth to the next.
 const LOOK: usize = 10;
 
 impl<const D: usize> Depth<'_, D> {
@@ -90,7 +90,7 @@ impl<const D: usize> Depth<'_, D> {
     }
 }
 
-/// The same as [`run`], with the largest depth in the frames that are timed as a further column.
+/// The same as [`run`], with the largest depth in the timed frames as an additional column.
 pub fn run_and_measure<W, const D: usize>(
     name: &str,
     timed: Range<usize>,
@@ -140,7 +140,7 @@ impl Table {
         out
     }
 
-    /// An object with all digits.
+    /// A JSON object with all digits.
     pub fn json(&self) -> Value {
         let row = |row: &Row| {
             let mut out = json!({

@@ -1,8 +1,7 @@
-//! Opruga beside its peers, on the same bodies in one run (docs/comparison.md).
+//! Compares Opruga with similar engines, on the same bodies in one run (docs/comparison.md).
 //!
-//! Everything on one thread, by its processor time. Errors stand beside times: at rest against the static solution, of
-//! the first swing (depth, and time until it is back) against backward Euler of the same step, solved to the last
-//! digits.
+//! Everything runs on one thread, measured by its processor time. Errors are given next to times: at rest against the static solution; for the first
+//! oscillation (depth, and time until the return) against backward Euler with the same step, solved to the last digits.
 
 mod beam;
 mod cube;

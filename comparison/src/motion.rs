@@ -1,6 +1,6 @@
-//! What a swing looks like: how deep it goes at first, and how long it takes.
+//! The properties of an oscillation: the depth of its first minimum, and its duration.
 
-/// The first swing of something that is let go and falls.
+/// The first oscillation of something that is released and falls.
 #[derive(Clone, Copy, Debug)]
 pub struct Swing {
     /// Depth of the first lowest point below the start [m].
@@ -9,7 +9,7 @@ pub struct Swing {
     pub period: f64,
 }
 
-/// What a run gives.
+/// The results of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
     /// Processor time of every frame [ms].
@@ -18,20 +18,19 @@ pub struct Run {
     pub heights: Vec<f64>,
 }
 
-/// The part of its sag by which the free end may still move where it counts as at rest.
+/// The free end counts as at rest if it moves by less than this fraction of its sag.
 const STILL: f64 = 1e-4;
 
-/// In so many frames.
+/// The number of frames for which this must hold.
 const STILL_FRAMES: usize = 60;
 
 impl Run {
-    /// How far the free end hangs below its start at the end [m].
+    /// How far the free end is below its initial position at the end [m].
     pub fn sag(&self) -> f64 {
         self.heights[0] - self.heights[self.heights.len() - 1]
     }
 
-    /// How far the free end hangs below its start once it has come to rest, on average over its last frames [m]; none
-    /// where it still moves.
+    /// How far the free end is below its initial position at rest, averaged over its last frames [m]; none if it still moves.
     pub fn at_rest(&self) -> Option<f64> {
         let count = self.heights.len();
         let last = (count > STILL_FRAMES).then(|| &self.heights[count - STILL_FRAMES..])?;
@@ -45,7 +44,7 @@ impl Run {
         self.at_rest().is_some()
     }
 
-    /// The first swing, of frames of a length; none where it has not come back by the end.
+    /// The first oscillation, for frames of a given length; none if the end has not returned before the end of the run.
     pub fn swing(&self, frame: f64) -> Option<Swing> {
         let lowest = turn(&self.heights, 1, |before, here, after| here <= before && here < after)?;
         let highest = turn(&self.heights, lowest.0 + 1, |before, here, after| here >= before && here > after)?;
@@ -60,8 +59,8 @@ impl Run {
     }
 }
 
-/// The first sample from `from` on that is a turning point: its number, and time in samples and height by the parabola
-/// through it and its neighbours.
+/// The first turning point among the samples from `from` on: its index, and its time in samples and height from the parabola through it and its
+/// neighbours.
 fn turn(heights: &[f64], from: usize, is_turn: fn(f64, f64, f64) -> bool) -> Option<(usize, f64, f64)> {
     (from..heights.len().saturating_sub(1)).find_map(|k| {
         let (before, here, after) = (heights[k - 1], heights[k], heights[k + 1]);

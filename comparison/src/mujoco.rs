@@ -1,4 +1,4 @@
-//! MuJoCo, by a program in Python that is asked and answers in JSON.
+//! MuJoCo, called through a Python program that answers in JSON.
 
 use crate::motion::Run;
 use crate::ours::Shape;
@@ -14,16 +14,16 @@ pub enum Body<'a> {
     Quadratic { size: [f64; 3], cells: [u32; 3], density: f64 },
 }
 
-/// What it answers.
+/// Its answer.
 pub struct Answer {
     pub version: String,
     pub nodes: usize,
     pub swinging: Run,
-    /// The sag of a run that came to rest.
+    /// The sag at rest of a run that came to rest.
     pub resting: Option<f64>,
 }
 
-/// Lets a body swing through some frames of one step each, and come to rest.
+/// Lets a body oscillate for some frames of one step each, and then come to rest.
 pub fn run(
     python: &str,
     body: &Body,
@@ -46,7 +46,7 @@ pub fn run(
     let failed = |e: &dyn std::fmt::Display| format!("{python} {script}: {e}");
     let mut child = Command::new(python)
         .arg(script)
-        // It writes its warnings into a file where it runs.
+        // It writes its warnings to a file in its working directory.
         .current_dir(std::env::temp_dir())
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

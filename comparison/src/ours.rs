@@ -1,4 +1,4 @@
-//! Scenes of Opruga: a body that one side holds, with some of its values replaced.
+//! Scenes of Opruga: a body clamped at one side, with some of its values replaced.
 
 use crate::motion::Run;
 use crate::processor_time;
@@ -8,19 +8,19 @@ use opruga::{Options, World, catalogue, scenes};
 
 /// Steps that are solved to the last digits.
 pub const EXACT: &str = "{ kind = \"backward_euler\", accuracy = \"exact\" }";
-/// Steps with a budget.
+/// Steps with a fixed budget.
 pub const REAL_TIME: &str = "{ kind = \"backward_euler\", accuracy = \"real_time\" }";
 
-/// Of runs that are to come to rest [s].
+/// The damping of runs that must come to rest [s].
 pub const DAMPING: f64 = 0.1;
 
-/// A body that its left side holds and whose right side hangs.
+/// A body that is clamped at its left side and hangs on the right.
 pub struct Held {
     world: World<3>,
     tip: Vec<u32>,
 }
 
-/// A body by its nodes, as other programs are given it.
+/// A body given by its nodes, for other programs.
 pub struct Shape {
     pub positions: Vec<[f64; 3]>,
     pub masses: Vec<f64>,
@@ -68,7 +68,7 @@ impl Held {
         }
     }
 
-    /// Steps through frames until `enough`, at most so many.
+    /// Steps through frames until `enough`, at most `frames`.
     pub fn run(&mut self, frames: usize, enough: impl Fn(&Run) -> bool) -> Result<Run, String> {
         let mut run = Run { milliseconds: Vec::new(), heights: vec![self.height()] };
         while run.milliseconds.len() < frames && !enough(&run) {
@@ -81,7 +81,7 @@ impl Held {
     }
 }
 
-/// How far the free side of a scene hangs below its start at rest [m].
+/// How far the free side of a scene is below its initial position at rest [m].
 pub fn sag_at_rest(scene: &str, overrides: &[(&str, String)]) -> Result<f64, String> {
     let rule = "{ kind = \"equilibrium\", load_steps = 4 }";
     Ok(Held::new(scene, overrides, rule, 1)?.run(1, |_| false)?.sag())

@@ -1,4 +1,4 @@
-//! Cubes of tetrahedra that fall on one another in a walled box: time, height, and how deep they are in one another.
+//! Cubes of tetrahedra that fall on one another in a walled box: time, height, and overlap.
 
 use crate::falling::{Depth, Row, Table, positions, run_and_measure};
 use crate::rapier;
@@ -13,16 +13,16 @@ const SCENE: &str = include_str!("../../benches/scenes/falling-cubes.toml");
 /// Edge of a cube [m].
 const EDGE: f64 = 0.8;
 
-/// Substeps in a frame of explicit steps: near their limit of stability, and those of the scene.
+/// The numbers of substeps per frame of explicit steps: near their limit of stability, and those of the scene.
 const EXPLICIT: [u32; 3] = [8, 12, 20];
 
-/// The same of implicit steps in real time.
+/// The same for implicit steps in real time.
 const IMPLICIT: [u32; 2] = [1, 2];
 
-/// The frames that are timed: from 1.5 to 2.5 s.
+/// The timed frames: from 1.5 to 2.5 s.
 const TIMED: Range<usize> = 90..150;
 
-/// What the programs share.
+/// The data that the programs share.
 struct Cubes {
     positions: Vec<Vec<[f64; 3]>>,
     masses: Vec<f64>,
@@ -30,7 +30,7 @@ struct Cubes {
     facets: Vec<[u32; 3]>,
 }
 
-/// The scene, with as many cubes along every axis and as many substeps, and with further settings.
+/// The scene with this number of cubes along every axis and of substeps, and with further settings.
 fn world(along: usize, substeps: u32, more: &[(&str, &str)]) -> Result<World<3>, String> {
     let count = format!("[{along}, {along}, {along}]");
     let settings = [("body.cube.copies.count", count.as_str()), ("time.substeps", &substeps.to_string())];
@@ -61,7 +61,7 @@ fn of_rapier(cubes: &Cubes, along: usize, name: &str, solver: SoftBodySolver) ->
     world.integration_parameters.num_solver_iterations = rapier::SUBSTEPS as usize;
     let far = along as f32 + 0.5;
     let middle = 0.5 * (far - 0.5);
-    // Thick walls: the inside is that of Opruga's box.
+    // Thick walls: the inner size is that of Opruga's box.
     for (center, half) in [
         ([middle, -2.0, middle], [far + 4.0, 2.0, far + 4.0]),
         ([-2.5, 20.0, middle], [2.0, 30.0, far + 4.0]),
@@ -107,7 +107,7 @@ fn of_rapier(cubes: &Cubes, along: usize, name: &str, solver: SoftBodySolver) ->
     run_and_measure(name, TIMED, &mut world, step, place, &Depth { of: &depth, unit: EDGE })
 }
 
-/// Rapier and Opruga on so many cubes along every axis.
+/// Runs Rapier and Opruga with this number of cubes along every axis.
 pub fn compare(along: usize) -> Result<Table, String> {
     let own = world(along, EXPLICIT[0], &[])?;
     let cubes = cubes(&own);
@@ -153,7 +153,7 @@ fn is_within(p: &Point, corners: [&Point; 4]) -> bool {
     [volume(p, b, c, d), volume(a, p, c, d), volume(a, b, p, d), volume(a, b, c, p)].iter().all(|v| v * whole >= 0.0)
 }
 
-/// The distance of a point and a triangle, by its plane, its sides and its corners.
+/// The distance of a point from a triangle, by its plane, its sides and its corners.
 fn distance(p: &Point, corners: [&Point; 3]) -> f64 {
     let mut least = f64::INFINITY;
     for k in 0..3 {
@@ -174,7 +174,7 @@ fn distance(p: &Point, corners: [&Point; 3]) -> f64 {
     least
 }
 
-/// How deep a point is inside a cube whose nodes are at these places [m]; 0 outside.
+/// The depth of a point inside a cube with nodes at these positions [m]; 0 outside.
 fn depth(cubes: &Cubes, p: &Point, nodes: &[Point]) -> f64 {
     let at = |k: &u32| &nodes[*k as usize];
     if !cubes.tetrahedra.iter().any(|cell| is_within(p, cell.each_ref().map(at))) {

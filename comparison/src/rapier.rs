@@ -1,4 +1,4 @@
-//! Rapier: bodies of linear tetrahedra, with the nodes, cells and masses of Opruga's.
+//! Rapier: bodies of linear tetrahedra, with Opruga's nodes, cells and masses.
 
 use crate::motion::Run;
 use crate::ours::Shape;
@@ -8,19 +8,19 @@ use rapier3d::prelude::*;
 /// Its version.
 pub const VERSION: &str = "0.36";
 
-/// Steps of its solver in a frame, as it comes.
+/// The default number of steps of its solver per frame.
 pub const SUBSTEPS: u32 = 4;
 
-/// How the cells damp, as a part of critical damping.
+/// The damping of the cells, as a fraction of critical damping.
 #[derive(Clone, Copy, Debug)]
 pub enum Damping {
-    /// Not at all, but by the rule that steps.
+    /// None, except for the numerical damping of the integrator.
     None,
-    /// As it comes: critically.
+    /// The default: critical damping.
     Full,
 }
 
-/// Runs a body through frames until `enough`, at most so many.
+/// Runs a body through frames until `enough`, at most `frames`.
 pub fn run(
     shape: &Shape,
     modulus: f64,

@@ -1,4 +1,4 @@
-//! Two solids that fall on a floor: Spot and a ring of tetrahedra.
+//! Two solids that fall on a floor: Spot and a ring, both of tetrahedra.
 
 use crate::falling::{Row, Table, positions, run};
 use crate::rapier;
@@ -13,13 +13,13 @@ const SCENE: &str = "spot-solid";
 /// The friction of the scene's floor.
 const FRICTION: f32 = 0.6;
 
-/// The frames that are timed: both solids lie on the floor.
+/// The timed frames, in which both solids lie on the floor.
 const TIMED: Range<usize> = 60..120;
 
-/// The frames in which nothing touches anything.
+/// The frames without any contact.
 const FLIGHT: Range<usize> = 2..18;
 
-/// The scene, with as many substeps.
+/// The scene with this number of substeps.
 fn world(substeps: u32) -> Result<World<3>, String> {
     let text = scenes::find(SCENE).ok_or_else(|| format!("the scene `{SCENE}` is missing"))?;
     let overrides = vec![("time.substeps".to_string(), substeps.to_string())];
@@ -96,12 +96,12 @@ fn of_rapier(own: &World<3>, name: &str, solver: SoftBodySolver) -> Result<Row, 
     measure(name, &mut world, step, place)
 }
 
-/// Rapier and Opruga on both solids.
+/// Runs Rapier and Opruga on both solids.
 pub fn compare(times_only: bool) -> Result<Table, String> {
     let own = world(3)?;
     let cells: usize = own.blueprint().bodies.iter().map(|body| body.mesh.cells.tetrahedra.len()).sum();
     let mut rows = vec![of_rapier(&own, "Rapier, constraints, 4 steps", SoftBodySolver::Constraints)?];
-    // Exact steps do not end where cells of this material are turned inside out: finer ones stand for them.
+    // Exact steps do not converge if cells of this material are inverted; finer steps take their place.
     for substeps in if times_only { vec![1, 3] } else { vec![1, 3, 12] } {
         let mut own = world(substeps)?;
         let step = |world: &mut World<3>| world.frame().map(|_| ()).map_err(|e| e.to_string());

@@ -1,14 +1,14 @@
-//! Rows of the comparison, as a table and for programs.
+//! Rows of the comparison, as a table for people and as data for programs.
 
 use crate::motion::{Run, Swing};
 use serde_json::{Value, json};
 
-/// What the motion of a body is compared with.
+/// The reference for the motion of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Reference {
-    /// How far the free end hangs at rest [m].
+    /// The sag of the free end at rest [m].
     pub rest: f64,
-    /// Its first swing.
+    /// Its first oscillation.
     pub swing: Option<Swing>,
     /// The length of a frame [s].
     pub frame: f64,
@@ -20,7 +20,7 @@ pub struct Row {
     pub name: String,
     pub nodes: usize,
     pub milliseconds: f64,
-    /// Errors relative to the reference; none where there is no number.
+    /// Errors relative to the reference; none if there is no value.
     pub rest: Option<f64>,
     pub amplitude: Option<f64>,
     pub period: Option<f64>,
@@ -30,13 +30,13 @@ pub struct Row {
 #[derive(Clone, Debug)]
 pub struct Table {
     pub title: String,
-    /// The number of the row whose time is one.
+    /// The index of the row whose time is the unit.
     pub base: usize,
     pub rows: Vec<Row>,
 }
 
 impl Row {
-    /// A run that swings and the sag of a run that came to rest (none: it did not), against their references.
+    /// Compares an oscillating run, and the sag of a run that came to rest (none: it did not), with their references.
     pub fn new(name: &str, nodes: usize, swinging: &Run, resting: Option<f64>, reference: &Reference) -> Row {
         let swings = swinging.swing(reference.frame).zip(reference.swing);
         let relative = |value: f64, expected: f64| value / expected - 1.0;
@@ -52,7 +52,7 @@ impl Row {
 }
 
 fn percent(error: Option<f64>) -> String {
-    // Without a sign before zero.
+    // Zero has no sign.
     let text = |error: f64| format!("{:+.2} %", 100.0 * error).replace("-0.00", "0.00").replace("+0.00", "0.00");
     error.map_or("–".into(), text)
 }
@@ -79,7 +79,7 @@ impl Table {
         out
     }
 
-    /// An object with all digits.
+    /// A JSON object with all digits.
     pub fn json(&self) -> Value {
         let rows: Vec<Value> = self
             .rows

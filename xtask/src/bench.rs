@@ -1,18 +1,19 @@
-//! The thesis's algorithm as a student would write it in C++, and Opruga, in one run on one machine: every figure that Opruga
-//! promises of its explicit rules, with its target.
+//! Compares the thesis's algorithm, as a student would write it in C++, with Opruga, in one run on one machine: all figures that Opruga promises for
+//! its explicit integrators, with their targets.
 //!
-//! The two programs run by turns, some tenths of a second each, all rows once and then all rows again: the median of the ratios
-//! of neighbouring runs counts, so that what else the machine does meets both, and what it does for a minute meets no row alone.
+//! The two programs run alternately, some tenths of a second each; all rows are run once, and then all rows again. The result is the median of the
+//! ratios of consecutive runs, so that other load of the machine affects both programs, and load that lasts a minute does not affect a single row
+//! only.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// How often every pair of runs is measured; a ratio is their median.
+/// How often every pair of runs is measured; the result is the median of their ratios.
 const ROUNDS: usize = 7;
 /// Processor time of one run [s].
 const SECONDS: f64 = 0.3;
-/// Rings and vertices of the rows that are compared with the baseline.
+/// The rings and vertices of the rows that are compared with the baseline.
 const ROWS: [(usize, usize); 7] = [(1, 36), (1, 1_024), (1, 16_384), (1, 100_000), (1, 1_048_576), (1_000, 36), MANY];
 /// A million vertices.
 const MANY: (usize, usize) = (27_778, 36);
@@ -26,10 +27,10 @@ struct Programs {
     opruga: PathBuf,
 }
 
-/// A run that is timed: nanoseconds per vertex and step.
+/// A measured run: nanoseconds per vertex and step.
 type Timed<'a> = Box<dyn Fn() -> Result<f64, String> + 'a>;
 
-/// Two runs that are measured by turns, and what they gave: times, and first over second, of every round.
+/// Two runs that are measured alternately, and their results for every round: the times, and the first divided by the second.
 struct Pair<'a> {
     runs: [Timed<'a>; 2],
     found: [Vec<f64>; 3],
@@ -48,7 +49,7 @@ impl<'a> Pair<'a> {
         Ok(())
     }
 
-    /// Medians of the two times, and of their ratios.
+    /// The medians of the two times, and of their ratios.
     fn medians(&self) -> [f64; 3] {
         self.found.each_ref().map(|list| median(list.clone()))
     }
@@ -132,7 +133,7 @@ pub(crate) fn compare() -> Result<(), String> {
     Ok(())
 }
 
-/// How many times faster than the baseline rings are to be; `best`: with the best instructions of this machine.
+/// The target of the factor by which rings are faster than the baseline; `best` means with the best instructions of this machine.
 fn target(bodies: usize, vertices: usize, simd: &str, best: bool) -> Option<f64> {
     match (bodies, vertices) {
         (1, 1_024 | 16_384 | 100_000) => match simd {
@@ -147,7 +148,7 @@ fn target(bodies: usize, vertices: usize, simd: &str, best: bool) -> Option<f64>
     }
 }
 
-/// What is said of a figure that reaches so much of its target.
+/// The verdict on a figure that reaches this fraction of its target.
 fn verdict(share: f64) -> String {
     if share >= 1.0 { "met".into() } else { format!("{:.0} % short", 100.0 * (1.0 - share)) }
 }
@@ -156,7 +157,7 @@ fn say(what: &str, measured: &str, target: &str, share: f64) {
     println!("| {what} | {measured} | {target} | {} |", verdict(share));
 }
 
-/// Programs at work in the last minute, by processor, where the system says so.
+/// The load of the last minute per processor, if the system reports it.
 fn load() -> String {
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     match std::fs::read_to_string("/proc/loadavg") {
@@ -174,7 +175,7 @@ fn number(row: &Value, name: &str) -> Result<f64, String> {
     row[name].as_f64().ok_or_else(|| format!("`opruga` says nothing of {name}: {row}"))
 }
 
-/// What a program prints; what it says where it fails.
+/// The output of a program, or its error message if it fails.
 fn output(command: &mut Command) -> Result<Vec<u8>, String> {
     let output = command.output().map_err(|e| format!("{command:?}: {e}"))?;
     if !output.status.success() {
@@ -183,7 +184,7 @@ fn output(command: &mut Command) -> Result<Vec<u8>, String> {
     Ok(output.stdout)
 }
 
-/// The first row of what `opruga bench … --json` prints.
+/// The first row of the output of `opruga bench … --json`.
 fn first_row(call: &mut Command) -> Result<Value, String> {
     let mut report: Value = serde_json::from_slice(&output(call)?).map_err(|e| format!("opruga bench: {e}"))?;
     match report["rows"].get_mut(0) {
@@ -249,7 +250,7 @@ impl Programs {
         Ok(number(&row, "milliseconds_per_frame")? * 1e6 / (nodes * steps))
     }
 
-    /// Whether the volume of the sphere in balance depends on its triangles.
+    /// Checks whether the equilibrium volume of the sphere depends on its triangles.
     fn balances(&self) -> Result<(), String> {
         let scene = self.root.join(SPHERE);
         let mut ratios = Vec::new();
@@ -264,7 +265,7 @@ impl Programs {
         Ok(())
     }
 
-    /// Spot as a balloon, against the clock.
+    /// Times Spot as a balloon in real time.
     fn spot(&self, simd: &str) -> Result<(), String> {
         let scene = self.root.join("benches/scenes/spot.toml");
         let mut call = Command::new(&self.opruga);
@@ -279,7 +280,7 @@ impl Programs {
         Ok(())
     }
 
-    /// A surface as scanners write it becomes a body.
+    /// Times how a surface as written by scanners becomes a body.
     fn triangles(&self) -> Result<(), String> {
         let mut call = Command::new(&self.opruga);
         let row = first_row(call.args(["bench", "load", "--json"]))?;
@@ -290,7 +291,7 @@ impl Programs {
         Ok(())
     }
 
-    /// The volume of the sphere once drag has brought it to rest, over that of its polyhedron at the start.
+    /// The volume of the sphere once drag has brought it to rest, divided by that of its polyhedron at the start.
     fn balance(&self, scene: &Path, subdivisions: u32) -> Result<f64, String> {
         let folder = scratch("balance");
         let set = [
@@ -316,7 +317,7 @@ impl Programs {
         ratio.ok_or_else(|| format!("{} has no volume", table.display()))
     }
 
-    /// How long the program takes until a body of 100,000 vertices could make its first step [s].
+    /// The time of the program until a body of 100,000 vertices is ready for its first step [s].
     fn start_time(&self) -> Result<f64, String> {
         let folder = scratch("start");
         let mut best = f64::INFINITY;
@@ -332,7 +333,7 @@ impl Programs {
     }
 }
 
-/// A folder for what a run writes.
+/// A folder for the output of a run.
 fn scratch(name: &str) -> PathBuf {
     std::env::temp_dir().join(format!("opruga-{name}-{}", std::process::id()))
 }

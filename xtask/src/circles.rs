@@ -1,19 +1,19 @@
-//! Import circles: groups of files of one crate that all import each other, directly or through other files of the group.
+//! Import cycles: groups of files of one crate that all import each other, directly or through other files of the group.
 //!
-//! An import is a `use`, or a path in code that begins with `crate::` or `super::`. Tests are left out, and so are imports
-//! between a module and the modules that hold it.
+//! An import is a `use`, or a path in code that begins with `crate::` or `super::`. Tests are ignored, and so are imports between a module and the
+//! modules that contain it.
 
 use crate::workspace;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// The most circles, and the most files in one of them. Whoever removes a circle lowers these numbers.
+/// The largest number of cycles, and the largest number of files in one of them. Lower these numbers when a cycle is removed.
 const ALLOWED: [usize; 2] = [1, 3];
 
-/// The path of a module in its crate; that of the crate's root is empty.
+/// The path of a module in its crate; empty for the crate's root.
 type Module = Vec<String>;
 
-/// `cargo xtask circles`: lists all circles; an error where there are more, or larger ones, than are allowed.
+/// `cargo xtask circles`: lists all cycles; returns an error if there are more, or larger ones, than allowed.
 pub(crate) fn check() -> Result<(), String> {
     let mut sizes = Vec::new();
     for folder in workspace::entries(&workspace::root()?.join("crates"))? {
@@ -32,7 +32,7 @@ pub(crate) fn check() -> Result<(), String> {
     Ok(())
 }
 
-/// The modules of a crate with their text, tests left out.
+/// The modules of a crate with their text, without tests.
 fn modules(source: &Path) -> Result<BTreeMap<Module, String>, String> {
     let mut out = BTreeMap::new();
     for path in workspace::rust_files(source)? {
@@ -48,7 +48,7 @@ fn modules(source: &Path) -> Result<BTreeMap<Module, String>, String> {
     Ok(out)
 }
 
-/// The circles, each with its modules in the order of their names.
+/// The cycles, each with its modules sorted by name.
 fn circles(modules: &BTreeMap<Module, String>) -> Vec<Vec<&Module>> {
     let mut imports: BTreeMap<&Module, BTreeSet<&Module>> = BTreeMap::new();
     for (module, text) in modules {
@@ -62,7 +62,7 @@ fn circles(modules: &BTreeMap<Module, String>) -> Vec<Vec<&Module>> {
     for module in modules.keys() {
         let mutual = |other: &&Module| reached[module].contains(other) && reached[other].contains(module);
         let circle: Vec<&Module> = modules.keys().filter(mutual).collect();
-        // A module that reaches itself without others does not exist: no module imports itself.
+        // A module cannot reach itself without others: no module imports itself.
         if circle.first() == Some(&module) {
             out.push(circle);
         }
@@ -70,7 +70,7 @@ fn circles(modules: &BTreeMap<Module, String>) -> Vec<Vec<&Module>> {
     out
 }
 
-/// All modules that one imports, also through others.
+/// All modules that a module imports, directly or through others.
 fn reach<'m>(from: &'m Module, imports: &BTreeMap<&'m Module, BTreeSet<&'m Module>>) -> BTreeSet<&'m Module> {
     let (mut found, mut open) = (BTreeSet::new(), vec![from]);
     while let Some(module) = open.pop() {
@@ -79,7 +79,7 @@ fn reach<'m>(from: &'m Module, imports: &BTreeMap<&'m Module, BTreeSet<&'m Modul
     found
 }
 
-/// The modules of the crate that the text of one names.
+/// The modules of the crate that the text of a module names.
 fn imported<'m>(
     module: &Module,
     text: &str,
@@ -90,7 +90,7 @@ fn imported<'m>(
     paths.into_iter().filter_map(|path| resolve(module, &path, modules)).collect::<Vec<_>>().into_iter()
 }
 
-/// The module that a path names, or that holds what it names.
+/// The module that a path names, or that contains what it names.
 fn resolve<'m>(module: &Module, path: &str, modules: &'m BTreeMap<Module, String>) -> Option<&'m Module> {
     let mut parts = path.split("::").map(str::trim).peekable();
     let mut full = match *parts.peek()? {
@@ -122,7 +122,7 @@ fn resolve<'m>(module: &Module, path: &str, modules: &'m BTreeMap<Module, String
     modules.get_key_value(&full).map(|(module, _)| module)
 }
 
-/// The text before its module of tests.
+/// The text before its test module.
 fn without_tests(text: &str) -> &str {
     const MARK: &str = "#[cfg(test)]";
     let is_module = |rest: &str| {
@@ -133,7 +133,7 @@ fn without_tests(text: &str) -> &str {
     &text[..cut.unwrap_or(text.len())]
 }
 
-/// The text without what stands behind `//`.
+/// The text without comments that begin with `//`.
 fn without_comments(text: &str) -> String {
     text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
 }
@@ -142,7 +142,7 @@ fn is_word(letter: char) -> bool {
     letter.is_alphanumeric() || letter == '_'
 }
 
-/// The first word of a text from a place on: where it begins and ends.
+/// The first word of a text from a position on: where it begins and ends.
 fn next_word(text: &str, from: usize) -> Option<(usize, usize)> {
     let begin = from + text[from..].find(is_word)?;
     Some((begin, text[begin..].find(|letter| !is_word(letter)).map_or(text.len(), |length| begin + length)))
@@ -180,7 +180,7 @@ fn named(text: &str) -> Vec<String> {
     out
 }
 
-/// Every path of a tree: `a::{b, c::{d, e}}` holds `a::b`, `a::c::d` and `a::c::e`.
+/// Every path of a tree: `a::{b, c::{d, e}}` contains `a::b`, `a::c::d` and `a::c::e`.
 fn expand(tree: &str, before: &str, out: &mut Vec<String>) {
     let Some((head, rest)) = tree.split_once('{') else {
         let path = tree.split(" as ").next().unwrap_or_default();

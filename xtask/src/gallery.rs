@@ -1,4 +1,4 @@
-//! The pictures of the documentation, drawn again by the program: written, or compared with those that lie there.
+//! Draws the pictures of the documentation again, and writes them or compares them with the existing ones.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -9,13 +9,13 @@ use std::sync::Mutex;
 struct Made {
     /// The file in `docs/pictures`.
     file: &'static str,
-    /// How the program is called.
+    /// The arguments of the program.
     call: &'static [&'static str],
-    /// Which of the files that it writes.
+    /// The one of its output files to use.
     from: &'static str,
 }
 
-/// Pictures that are not the film strip of the scene after which they are named.
+/// Pictures that are not the film strip of the scene with the same name.
 const OTHERS: [Made; 5] = [
     Made { file: "side-by-side.gif", call: &["run", "docs/scenes/side-by-side.toml", "--gif"], from: "video.gif" },
     Made {
@@ -42,7 +42,7 @@ const OTHERS: [Made; 5] = [
         ],
         from: "plots.svg",
     },
-    // Of the sweep that the first lines of its scene call, what the vertices do; the speeds of machines are in tables.
+    // From the sweep in the first lines of its scene, the results for the vertices; the speeds of machines are in tables.
     Made {
         file: "sweep-vertices.svg",
         call: &[
@@ -63,7 +63,7 @@ const OTHERS: [Made; 5] = [
     },
 ];
 
-/// Pictures that this does not draw, and what does: windows on a screen, speeds of a machine, a report that takes minutes.
+/// Pictures that are not drawn here, and how they are made: windows on a screen, speeds of a machine, a report that takes minutes.
 const ELSEWHERE: [(&str, &str); 3] = [
     ("studio", ".ci/studio and cargo xtask web-trial"),
     ("speed.svg", "opruga bench vertices --plot"),
@@ -134,7 +134,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether somebody means a picture by its name, with or without its ending.
+/// Whether a name, with or without ending, means a picture.
 fn is_called(task: &Task, name: &str) -> bool {
     task.file == name || task.file.rsplit_once('.').is_some_and(|(stem, _)| stem == name)
 }
@@ -152,7 +152,7 @@ fn scenes(root: &Path) -> Result<BTreeSet<String>, String> {
     Ok(files.iter().filter_map(|file| file.strip_suffix(".toml")).map(String::from).collect())
 }
 
-/// How every picture is drawn; a picture of which nobody knows that is an error.
+/// The task for every picture; a picture of unknown origin is an error.
 fn tasks(pictures: &BTreeSet<String>, scenes: &BTreeSet<String>) -> Result<Vec<Task>, String> {
     let mut tasks = Vec::new();
     for file in pictures {
@@ -170,7 +170,7 @@ fn tasks(pictures: &BTreeSet<String>, scenes: &BTreeSet<String>) -> Result<Vec<T
     Ok(tasks)
 }
 
-/// Builds the program; where it lies.
+/// Builds the program; returns its path.
 fn program(root: &Path) -> Result<PathBuf, String> {
     let built =
         Command::new(env!("CARGO")).args(["build", "--workspace", "--bin", "opruga"]).current_dir(root).status();
@@ -181,7 +181,7 @@ fn program(root: &Path) -> Result<PathBuf, String> {
     Ok(target.join("debug/opruga"))
 }
 
-/// Draws a picture, with paths from the root; where it lies.
+/// Draws a picture, with paths relative to the root; returns its path.
 fn draw(root: &Path, opruga: &Path, task: &Task, folder: &Path) -> Result<PathBuf, String> {
     let out = folder.join(&task.file);
     let mut call = Command::new(opruga);
@@ -193,7 +193,7 @@ fn draw(root: &Path, opruga: &Path, task: &Task, folder: &Path) -> Result<PathBu
     Ok(out.join(task.from))
 }
 
-/// Says how a picture differs from the new one, and unless it is only checked, puts the new one in its place.
+/// Reports how a picture differs from the new one and, unless it is only checked, replaces it.
 fn compare(old: &Path, new: PathBuf, check: bool) -> Result<Option<String>, String> {
     let read = |path: &Path| std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()));
     let (before, after) = (read(old)?, read(&new)?);
@@ -220,7 +220,7 @@ fn pixels(bytes: &[u8], path: &Path) -> Result<Pixels, String> {
     Ok(([info.width, info.height], found))
 }
 
-/// How two pictures differ.
+/// The difference of two pictures.
 fn difference((size, before): &Pixels, (other, after): &Pixels) -> Option<String> {
     if size != other {
         return Some(format!("{} x {} pixels instead of {} x {}", other[0], other[1], size[0], size[1]));

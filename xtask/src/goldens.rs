@@ -1,10 +1,10 @@
-//! The golden hashes of the scenes, written anew.
+//! Writes the golden hashes of the scenes.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// Runs the test that compares the hashes and lets it write them instead; says which have changed.
+/// Runs the test that compares the hashes so that it writes them instead; reports which ones have changed.
 pub(crate) fn write() -> Result<(), String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("the workspace has no folder")?;
     let file = root.join("scenes/golden.txt");
@@ -43,7 +43,7 @@ fn hashes(text: &str) -> BTreeMap<String, String> {
     lines.filter_map(|l| l.trim().split_once(' ')).map(|(name, rest)| (name.into(), rest.into())).collect()
 }
 
-/// What is new, gone or other than before, one line each.
+/// Added, removed and changed entries, one line each.
 fn changes(before: &BTreeMap<String, String>, after: &BTreeMap<String, String>) -> Vec<String> {
     let mut out = Vec::new();
     for (name, now) in after {

@@ -1,9 +1,9 @@
-//! Every dependency must have a licence that goes together with MIT or Apache-2.0.
+//! Checks that every dependency has a licence that is compatible with MIT or Apache-2.0.
 
 use serde_json::Value;
 use std::process::Command;
 
-/// Licences that may appear; of alternatives (`OR`) one is enough, of sums (`AND`) all are needed.
+/// Permitted licences; of alternatives (`OR`) one is sufficient, of conjunctions (`AND`) all are required.
 const ALLOWED: [&str; 15] = [
     "MIT",
     "MIT-0",
@@ -19,7 +19,7 @@ const ALLOWED: [&str; 15] = [
     "0BSD",
     "BSL-1.0",
     "OFL-1.1",
-    // A font of the window's toolkit: free to pass on, as the fonts under OFL-1.1 are.
+    // A font of the window's toolkit, which may be redistributed like the fonts under OFL-1.1.
     "Ubuntu-font-1.0",
 ];
 
@@ -45,7 +45,7 @@ pub(crate) fn check() -> Result<(), String> {
     Err(format!("licences that are not permitted:\n{}", refused.join("\n")))
 }
 
-/// Whether an expression of licences can be met with permitted ones.
+/// Whether a licence expression can be satisfied with permitted licences.
 fn permitted(expression: &str) -> bool {
     let plain = expression.replace(['(', ')'], " ").replace('/', " OR ");
     plain.split(" AND ").all(|sum| sum.split(" OR ").any(|one| ALLOWED.contains(&one.trim())))

@@ -1,4 +1,4 @@
-//! Chores of the workspace: licences, results, sizes, pictures, speeds, the page of the studio; `cargo xtask --help` lists them.
+//! Maintenance tasks of the workspace: licences, results, sizes, pictures, speeds, the web page of the studio; `cargo xtask --help` lists them.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 mod bench;
@@ -15,7 +15,7 @@ mod workspace;
 
 use std::process::ExitCode;
 
-/// A chore: its word, what may stand behind it, what it does, the most words behind it, and its work.
+/// A task: its word, its arguments, its description, the largest number of arguments, and its function.
 struct Chore {
     word: &'static str,
     arguments: &'static str,
@@ -117,13 +117,13 @@ impl Chore {
     }
 }
 
-/// All chores, for people.
+/// All tasks, for people.
 fn help() -> String {
     let rows: Vec<String> = CHORES.iter().map(|chore| format!("  {:<68} {}", chore.usage(), chore.about)).collect();
     format!("Chores of the workspace\n{}", rows.join("\n"))
 }
 
-/// Does what the words say; help is text to print.
+/// Executes the task that the arguments name, or returns help to be printed.
 fn chore(arguments: &[String]) -> Result<Option<String>, String> {
     let is_help = |word: &String| word == "--help" || word == "-h" || word == "help";
     let chore = arguments.first().and_then(|word| CHORES.iter().find(|chore| chore.word == word));

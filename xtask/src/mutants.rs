@@ -1,7 +1,7 @@
-//! Ten faults that a person could make, one for each part of the engine and what stands around it: do the tests notice?
+//! Ten plausible faults, one for each part of the engine and its surroundings: do the tests detect them?
 //!
-//! Every fault is put alone into a work tree of the last commit below `target/mutants`, and the tests that must fail are run there,
-//! before and after. By hand, for minutes: each fault compiles its crate anew.
+//! Each fault is put separately into a work tree of the last commit below `target/mutants`, and the tests that must fail are run there, before and
+//! after. To be run by hand; it takes minutes, because each fault compiles its crate again.
 
 use crate::workspace;
 use std::path::Path;
@@ -11,15 +11,15 @@ use std::process::{Command, Output};
 struct Mutant {
     name: &'static str,
     file: &'static str,
-    /// Stands in the file exactly once.
+    /// It occurs exactly once in the file.
     text: &'static str,
     instead: &'static str,
-    /// The tests that must fail, as `cargo test` takes them.
+    /// The tests that must fail, as arguments of `cargo test`.
     tests: &'static [&'static str],
 }
 
 const MUTANTS: [Mutant; 10] = [
-    // Damping drives the spring.
+    // Damping has the wrong sign.
     Mutant {
         name: "springs",
         file: "crates/opruga-models/src/mass_spring/law.rs",
@@ -27,7 +27,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "thrust += drag;",
         tests: &["--package", "opruga-models", "--test", "all", "mass_spring_in_the_plane"],
     },
-    // The energy of an adiabatic gas forgets γ.
+    // The energy of an adiabatic gas lacks γ.
     Mutant {
         name: "gas",
         file: "crates/opruga-models/src/pressure/gas.rs",
@@ -35,7 +35,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "(pressure, pressure * v / gamma, gamma)",
         tests: &["--package", "opruga-models", "--test", "all", "gas_laws"],
     },
-    // The second derivative of a material has a wrong sign.
+    // The second derivative of a material has the wrong sign.
     Mutant {
         name: "fem",
         file: "crates/opruga-models/src/materials/neo_hookean.rs",
@@ -43,7 +43,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "let factor = p.lambda * log + p.mu;",
         tests: &["--package", "opruga-models", "--test", "all", "every_material_on_every_element_in_the_plane"],
     },
-    // Friction lets a node slide on that it should stop.
+    // Friction lets a node slide although it should stop it.
     Mutant {
         name: "contact",
         file: "crates/opruga-collide/src/response.rs",
@@ -51,7 +51,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "let keep = S::select(pace.less_or_equal(most), S::one(), S::one() - most / pace);",
         tests: &["--package", "opruga-collide", "--test", "all", "friction::"],
     },
-    // The iteration along a curve of equilibria takes the load of the last point for that of the next.
+    // The iteration along a curve of equilibria uses the load of the last point for the next one.
     Mutant {
         name: "statics",
         file: "crates/opruga-integrators/src/equilibrium/arc.rs",
@@ -67,7 +67,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "record[0..36].chunks_exact(12)",
         tests: &["--package", "opruga-io", "--test", "all", "every_format_gives_the_same_cube"],
     },
-    // Nodes have other numbers than the file gives them.
+    // Nodes have other numbers than in the file.
     Mutant {
         name: "reader of TetGen",
         file: "crates/opruga-io/src/meshes/tetgen.rs",
@@ -75,7 +75,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "found.node(number + 1, position, offset);",
         tests: &["--package", "opruga-io", "--test", "all", "mesh_round_trips::"],
     },
-    // The differences between states lose their sign.
+    // The differences between states lose their signs.
     Mutant {
         name: "recording",
         file: "crates/opruga-io/src/recording/codec.rs",
@@ -83,7 +83,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "let folded = (difference << 1) as u64;",
         tests: &["--package", "opruga-io", "--lib", "recording::codec"],
     },
-    // The upper end of a range is left out.
+    // The upper end of a range is excluded.
     Mutant {
         name: "sweep",
         file: "crates/opruga/src/sweep/grid.rs",
@@ -91,7 +91,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "k as f64 / count as f64",
         tests: &["--package", "opruga", "--lib", "ranges_reach_both_ends"],
     },
-    // Going back in the studio keeps the future that was given up.
+    // Going back in the studio keeps the future that should be dropped.
     Mutant {
         name: "studio",
         file: "crates/opruga-studio/src/keyframes.rs",
@@ -101,14 +101,14 @@ const MUTANTS: [Mutant; 10] = [
     },
 ];
 
-/// What came of a fault.
+/// The result for a fault.
 #[derive(Debug, PartialEq)]
 enum Verdict {
     Caught,
     Missed,
 }
 
-/// `cargo xtask mutants [NAME …]`: an error where the tests miss one of the faults, or where one cannot be tried.
+/// `cargo xtask mutants [NAME …]`: returns an error if the tests miss one of the faults, or if one cannot be tried.
 pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
     if let Some(unknown) = arguments.iter().find(|name| !MUTANTS.iter().any(|mutant| mutant.name == **name)) {
         let names: Vec<&str> = MUTANTS.iter().map(|mutant| mutant.name).collect();
@@ -130,7 +130,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
     if failed == 0 { Ok(()) } else { Err(format!("{failed} of {count} mutants are not caught")) }
 }
 
-/// Runs the tests without a fault and with it.
+/// Runs the tests without and with a fault.
 fn attempt(mutant: &Mutant, tree: &Path) -> Result<Verdict, String> {
     let path = tree.join(mutant.file);
     let sound = workspace::read(&path)?;
@@ -141,7 +141,7 @@ fn attempt(mutant: &Mutant, tree: &Path) -> Result<Verdict, String> {
         return Err("without it the tests fail, or there are none".into());
     }
     write(&faulty)?;
-    // What is not compiled is no test that fails.
+    // A compilation error is not a failing test.
     let built = test(tree, mutant.tests, true);
     let after = test(tree, mutant.tests, false);
     write(&sound)?;
@@ -151,7 +151,7 @@ fn attempt(mutant: &Mutant, tree: &Path) -> Result<Verdict, String> {
     verdict(after?.status.code())
 }
 
-/// What the exit code of the tests says. Cargo ends with 101 where a test fails; a killed one says nothing.
+/// The verdict for the exit code of the tests. Cargo exits with 101 if a test fails; the exit of a killed process has no meaning.
 fn verdict(code: Option<i32>) -> Result<Verdict, String> {
     match code {
         Some(0) => Ok(Verdict::Missed),
@@ -168,7 +168,7 @@ fn mutated(mutant: &Mutant, text: &str) -> Result<String, String> {
     }
 }
 
-/// Compiles tests, and runs them unless they are only to be compiled.
+/// Compiles tests, and also runs them unless `only_built`.
 fn test(tree: &Path, tests: &[&str], only_built: bool) -> Result<Output, String> {
     let mut cargo = Command::new(env!("CARGO"));
     let target = workspace::target()?.join("mutants/build");
@@ -179,7 +179,7 @@ fn test(tree: &Path, tests: &[&str], only_built: bool) -> Result<Output, String>
     cargo.output().map_err(|e| format!("cargo test: {e}"))
 }
 
-/// How many tests have passed.
+/// The number of tests that passed.
 fn passed(output: &Output) -> usize {
     let text = String::from_utf8_lossy(&output.stdout);
     let counts = text

@@ -1,13 +1,13 @@
-//! Words that the glossary replaces, in names of items, fields and locals.
+//! Finds words that the glossary replaces, in names of items, fields and locals.
 //!
-//! A name is an identifier behind `fn`, `struct`, `enum`, `trait`, `type`, `const`, `static`, `mod` or `let`, one before a single
-//! colon (a field, an argument), or an argument of a closure. Words of a name are its parts between underlines and capitals.
-//! Tests are left out: their names are sentences.
+//! A name is an identifier after `fn`, `struct`, `enum`, `trait`, `type`, `const`, `static`, `mod` or `let`, one before a single colon (a field, an
+//! argument), or an argument of a closure. The words of a name are its parts between underscores and capitals. Tests are ignored, because their names
+//! are sentences.
 
 use crate::{tokens, workspace};
 use std::collections::BTreeMap;
 
-/// `cargo xtask names`: refuses names that have a replaced word.
+/// `cargo xtask names`: refuses names that contain a replaced word.
 pub(crate) fn check() -> Result<(), String> {
     let root = workspace::root()?;
     let glossary = workspace::read(&root.join("docs/glossary.md"))?;
@@ -43,7 +43,7 @@ pub(crate) fn check() -> Result<(), String> {
     Ok(())
 }
 
-/// The words in the last column of the tables of the glossary that are written as code: those are refused in names.
+/// The words written as code in the last column of the tables of the glossary, which are refused in names.
 fn replaced(glossary: &str) -> Vec<String> {
     let mut out = Vec::new();
     for line in glossary.lines().filter(|line| line.starts_with('|')) {
@@ -55,7 +55,7 @@ fn replaced(glossary: &str) -> Vec<String> {
     out
 }
 
-/// The names that a text of code defines, each as often as it does.
+/// The names that some code defines, each as often as it is defined.
 fn defined(code: &str) -> Vec<String> {
     const WORDS: [&str; 9] = ["fn", "struct", "enum", "trait", "type", "const", "static", "mod", "let"];
     let mut out = Vec::new();
@@ -76,7 +76,7 @@ fn defined(code: &str) -> Vec<String> {
         }
         let is_name = first == '_' || first.is_alphabetic();
         if first == '|' {
-            // A closure begins where an expression may; `a | b` and `a || b` come behind a name or a bracket.
+            // A closure begins where an expression may begin; `a | b` and `a || b` follow a name or a bracket.
             let begins = matches!(before.as_str(), "(" | "," | "=" | "{" | ";" | "move" | ">" | "&");
             in_closure = !in_closure && begins && !rest.starts_with('|');
         }
@@ -92,7 +92,7 @@ fn defined(code: &str) -> Vec<String> {
     out
 }
 
-/// The length of a text in quotes at the beginning of some code.
+/// The length of a quoted text at the beginning of some code.
 fn text_length(code: &str) -> usize {
     let mut escaped = false;
     for (at, letter) in code.char_indices().skip(1) {
@@ -104,7 +104,7 @@ fn text_length(code: &str) -> usize {
     code.len()
 }
 
-/// The words of a name in small letters.
+/// The words of a name in lower case.
 fn parts(name: &str) -> Vec<String> {
     let mut out = Vec::new();
     for piece in name.split('_').filter(|piece| !piece.is_empty()) {

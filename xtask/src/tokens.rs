@@ -1,6 +1,6 @@
-//! The size of the product code: Rust tokens outside tests and comments, and long functions, crate by crate.
+//! Measures the size of the product code: Rust tokens outside tests and comments, and long functions, per crate.
 //!
-//! The text is not parsed: a token is what a few rules of spelling cut off. What counts is the change from commit to commit.
+//! The text is not parsed: a few lexical rules separate tokens. Only the change from commit to commit matters.
 
 use crate::workspace;
 use std::collections::BTreeMap;
@@ -8,7 +8,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Lines from which on a function is long: its head and the lines of its body, the last brace left out.
+/// The number of lines from which a function counts as long: its head and the lines of its body, without the last brace.
 const LONG: usize = 60;
 
 /// The size of a crate, or of all.
@@ -44,7 +44,7 @@ pub(crate) fn report(arguments: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// A row for every crate, and one for all; beside the figures their change since a commit.
+/// A row for every crate, and one for all; next to the figures, their change since a commit.
 fn table(now: &BTreeMap<String, Size>, before: Option<&BTreeMap<String, Size>>) -> String {
     let with_sum = |sizes: &BTreeMap<String, Size>| {
         let mut sum = Size::default();
@@ -53,7 +53,7 @@ fn table(now: &BTreeMap<String, Size>, before: Option<&BTreeMap<String, Size>>) 
     };
     let before: Option<BTreeMap<String, Size>> = before.map(|before| with_sum(before).into_iter().collect());
     let mut rows = with_sum(now);
-    // Crates that are gone stand before the sum.
+    // Removed crates come before the sum.
     let gone = before.iter().flat_map(BTreeMap::keys).filter(|name| *name != "all" && !now.contains_key(*name));
     let gone: Vec<_> = gone.map(|name| (name.clone(), Size::default())).collect();
     rows.splice(now.len()..now.len(), gone);
@@ -72,7 +72,7 @@ fn table(now: &BTreeMap<String, Size>, before: Option<&BTreeMap<String, Size>>) 
     text
 }
 
-/// The sizes of the crates of which these are the files.
+/// The sizes of the crates that contain these files.
 fn sizes(files: &[(String, String)]) -> BTreeMap<String, Size> {
     let mut out: BTreeMap<String, Size> = BTreeMap::new();
     for (path, text) in files {
@@ -95,7 +95,7 @@ fn counted(path: &str) -> Option<&str> {
     }
 }
 
-/// The files as they lie there.
+/// The files of the working tree.
 fn present() -> Result<Vec<(String, String)>, String> {
     let root = workspace::root()?;
     let text = |path: &Path| {
@@ -120,7 +120,7 @@ fn of_commit(commit: &str) -> Result<Vec<(String, String)>, String> {
         .map_err(failed)?;
     let input = git.stdin.take();
     let asked: String = paths.iter().map(|path| format!("{commit}:{path}\n")).collect();
-    // Git answers while it is asked: who only asked would wait for git, which waits for its answers to be read.
+    // Git answers while it receives requests: without a second thread, both sides would wait for each other.
     let asking = std::thread::spawn(move || input.map_or(Ok(()), |mut input| input.write_all(asked.as_bytes())));
     let answer = git.wait_with_output().map_err(failed)?.stdout;
     asking.join().map_err(|_| "git cat-file was not asked")?.map_err(failed)?;
@@ -134,7 +134,7 @@ fn of_commit(commit: &str) -> Result<Vec<(String, String)>, String> {
     Ok(out)
 }
 
-/// One answer of `git cat-file --batch`, `HASH blob BYTES`, the bytes and an end of line; and what follows it.
+/// One answer of `git cat-file --batch`, `HASH blob BYTES`, the bytes and a line end; and what follows it.
 fn answered(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
     let head = std::str::from_utf8(&bytes[..end]).ok()?;
@@ -160,7 +160,7 @@ fn size(text: &str) -> Size {
     Size { tokens, long: long_functions(&body) }
 }
 
-/// The text without comments. In a line with quotes `//` may stand in a text: only a line that begins with it goes.
+/// The text without comments. In a line with quotes, `//` may be part of a text, so only lines that begin with it are removed.
 fn without_comments(text: &str) -> String {
     let (mut out, mut rest) = (String::with_capacity(text.len()), text);
     while let Some((before, inside)) = rest.split_once("/*") {
@@ -197,7 +197,7 @@ fn without_tests(text: &str) -> String {
     out + rest
 }
 
-/// The length of further attributes, of `pub` and of the word of an item, where a text begins with that.
+/// The length of further attributes, of `pub` and of the keyword of an item at the beginning of a text.
 fn item(text: &str) -> Option<usize> {
     let mut rest = text.trim_start();
     while let Some(attribute) = rest.strip_prefix("#[") {
@@ -212,7 +212,7 @@ fn item(text: &str) -> Option<usize> {
     items.contains(&&rest[..length]).then(|| text.len() - rest.len() + length)
 }
 
-/// The length of an item behind its word: up to its semicolon or the end of its braces.
+/// The length of an item after its keyword: up to its semicolon or the end of its braces.
 fn item_body(text: &str) -> usize {
     let mut depth = 0;
     for (at, letter) in text.char_indices() {
@@ -239,7 +239,7 @@ fn begins_word(text: &str) -> bool {
     text.starts_with(|letter: char| letter.is_ascii_alphabetic() || letter == '_')
 }
 
-/// The length of the token with which a text begins; 0 where it begins with none.
+/// The length of the token at the beginning of a text; 0 if there is none.
 fn token(text: &str) -> usize {
     let Some(first) = text.chars().next() else { return 0 };
     let word = |from: usize, ends: fn(char) -> bool| text[from..].find(ends).map_or(text.len(), |length| from + length);
@@ -297,7 +297,7 @@ fn letter(text: &str) -> Option<usize> {
     letters.as_str().strip_prefix('\'').map(|rest| text.len() - rest.len())
 }
 
-/// Names and lines of the functions that are long; the text is formatted: a body ends at the brace below its beginning.
+/// Names and lines of the long functions. The text is formatted, so a body ends at the brace below its beginning.
 fn long_functions(text: &str) -> Vec<(String, usize)> {
     let lines: Vec<&str> = text.split('\n').collect();
     let mut out = Vec::new();
@@ -317,7 +317,7 @@ fn long_functions(text: &str) -> Vec<(String, usize)> {
     out
 }
 
-/// Indentation and name of the function whose head begins in a line.
+/// Indentation and name of the function whose head begins on a line.
 fn function(line: &str) -> Option<(&str, &str)> {
     let mut rest = line.trim_start();
     let indent = &line[..line.len() - rest.len()];

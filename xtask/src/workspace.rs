@@ -1,4 +1,4 @@
-//! Where the workspace and its sources lie, and what git says of it.
+//! The paths of the workspace and its sources, and calls of git.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,7 +11,7 @@ pub(crate) fn root() -> Result<PathBuf, String> {
         .ok_or_else(|| "the workspace has no folder".into())
 }
 
-/// Where cargo puts what it builds.
+/// The folder of cargo's output.
 pub(crate) fn target() -> Result<PathBuf, String> {
     Ok(std::env::var_os("CARGO_TARGET_DIR").map_or(root()?.join("target"), PathBuf::from))
 }
@@ -22,7 +22,7 @@ pub(crate) fn read(path: &Path) -> Result<String, String> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// The entries of a folder, in the order of their names.
+/// The entries of a folder, sorted by name.
 pub(crate) fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let failed = |e: std::io::Error| format!("{}: {e}", folder.display());
     let entries = std::fs::read_dir(folder).map_err(failed)?;
@@ -52,7 +52,7 @@ pub(crate) fn name(path: &Path) -> String {
     path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned())
 }
 
-/// What a git command prints; what git says where it fails.
+/// The output of a git command, or git's error message if it fails.
 pub(crate) fn git(arguments: &[&str]) -> Result<String, String> {
     let output = Command::new("git").args(arguments).current_dir(root()?).output().map_err(|e| format!("git: {e}"))?;
     if !output.status.success() {
@@ -67,7 +67,7 @@ pub(crate) fn commit(name: &str) -> Result<String, String> {
         .map_err(|_| format!("`{name}` is no commit of this repository"))
 }
 
-/// Makes a folder a work tree of a commit, or takes the one that lies there to it. What was changed in it is lost.
+/// Makes a folder a work tree of a commit, or switches an existing one to it. Changes in it are lost.
 pub(crate) fn check_out(folder: &Path, commit: &str) -> Result<(), String> {
     let tree = folder.display().to_string();
     if folder.join(".git").exists() {

@@ -1,4 +1,4 @@
-//! Files of a crate import each other in no more circles than are allowed: `ALLOWED` in `xtask/src/circles.rs`.
+//! The files of a crate have no more import cycles than allowed: `ALLOWED` in `xtask/src/circles.rs`.
 
 use std::process::Command;
 

@@ -1,11 +1,11 @@
-//! Which crate may see which:
-//! unpack stands alone; math ← {mesh, video, words}, mesh ← core ← solve ← {models, integrators, collide} ← world ← io ← draw ← opruga ← {studio, verify} ← cli.
+//! The allowed dependencies between crates: unpack depends on none; math ← {mesh, video, words}, mesh ← core ← solve ← {models, integrators, collide}
+//! ← world ← io ← draw ← opruga ← {studio, verify} ← cli.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// The layer of each crate: a crate may depend on lower layers alone, so siblings cannot see one another.
+/// The layer of each crate: a crate may depend only on lower layers, so siblings cannot depend on one another.
 fn layers() -> BTreeMap<&'static str, u32> {
     BTreeMap::from([
         ("opruga-math", 0),
@@ -46,7 +46,7 @@ fn crates_depend_on_lower_layers_only() {
         let layer =
             layers.get(name).unwrap_or_else(|| panic!("{name} has no layer: add it here and to ARCHITECTURE.md"));
         for dependency in package["dependencies"].as_array().expect("dependencies") {
-            // Tests may look anywhere.
+            // Tests may depend on anything.
             if dependency["kind"].as_str() == Some("dev") {
                 continue;
             }
@@ -87,7 +87,8 @@ fn physics_crates_do_no_input_or_output() {
     }
 }
 
-/// Layers above models, integrators and obstacles ask for a role (`Spec::has_role`) or a capability, and know no kind by its word. Benchmarks choose theirs by name.
+/// Layers above models, integrators and obstacles ask for a role (`Spec::has_role`) or a capability, and do not compare the names of kinds.
+/// Benchmarks choose theirs by name.
 #[test]
 fn layers_above_compare_no_model_and_no_integrator_by_name() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace");
@@ -109,7 +110,7 @@ fn layers_above_compare_no_model_and_no_integrator_by_name() {
             }
             let product = text.split("#[cfg(test)]").next().unwrap_or("");
             for kind in &kinds {
-                // Words of selectors, commands, loads, readings and fields of `[world]` too.
+                // Words of selectors, commands, loads, readings and fields of `[world]` as well.
                 let selects = kind == "half_space" && path.ends_with("selectors.rs");
                 if selects || ["drag", "pressure"].contains(&kind.as_str()) {
                     continue;
@@ -127,8 +128,8 @@ fn layers_above_compare_no_model_and_no_integrator_by_name() {
     }
 }
 
-/// Programs choose the models and integrators of their scenes and hand them on; no layer between takes those of the library by itself. What
-/// offers them as a default can be given others.
+/// Programs choose the models and integrators of their scenes and pass them on; no layer in between uses those of the library by itself. Functions
+/// that use them by default can be given others.
 #[test]
 fn registries_are_passed_in() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace");

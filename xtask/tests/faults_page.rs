@@ -1,4 +1,4 @@
-//! The page of faults names tests that are there: whoever reads a row can run what shows it.
+//! The tests named on the page of faults exist, so that a reader of a row can run them.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace has a folder").to_path_buf()
 }
 
-/// The file of a name that begins with its crate.
+/// The file for a name that begins with its crate.
 fn file_of(name: &str) -> PathBuf {
     if name.starts_with("xtask/") { root().join(name) } else { root().join("crates").join(name) }
 }
@@ -19,13 +19,13 @@ fn has_test(source: &str, name: &str) -> bool {
     let head = format!("fn {name}(");
     let lines: Vec<&str> = source.lines().map(str::trim).collect();
     lines.iter().enumerate().filter(|(_, line)| line.starts_with(&head)).any(|(at, _)| {
-        // Attributes and comments stand between.
+        // Attributes and comments are in between.
         let above = lines[..at].iter().rev().take_while(|line| line.starts_with("#[") || line.starts_with("//"));
         above.into_iter().any(|line| line.starts_with("#[test]"))
     })
 }
 
-/// What stands between backticks.
+/// The texts between backticks.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }
@@ -59,7 +59,7 @@ fn rows_of_faults_found_from_outside_name_their_tests_in_full() {
     assert!(rows.len() > 60, "{} rows", rows.len());
     for row in rows {
         let last = row.trim_end_matches('|').trim().rsplit(" | ").next().unwrap_or(row);
-        // What no test can show says so.
+        // A fault that no test can show is marked as such.
         if last == "–" {
             continue;
         }

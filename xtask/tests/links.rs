@@ -1,4 +1,4 @@
-//! README.md is short, and every relative link of the documentation leads to a file and a heading that exist.
+//! README.md is short, and every relative link of the documentation has an existing target, file and heading.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -27,17 +27,17 @@ fn pages() -> Vec<PathBuf> {
     pages
 }
 
-/// A page without its blocks of code, which hold no links and no headings.
+/// A page without its code blocks, which contain no links and no headings.
 fn prose(text: &str) -> String {
     text.split("```").step_by(2).collect()
 }
 
-/// Where the links of a text lead: what stands between `](` and the next `)`.
+/// The targets of the links of a text: the parts between `](` and the next `)`.
 fn links(text: &str) -> Vec<&str> {
     text.split("](").skip(1).filter_map(|rest| rest.split_once(')').map(|(link, _)| link)).collect()
 }
 
-/// The anchors of the headings of a page, as GitHub and GitLab make them.
+/// The anchors of the headings of a page, as made by GitHub and GitLab.
 fn anchors(text: &str) -> BTreeSet<String> {
     let headings = text.lines().filter(|line| line.starts_with('#'));
     headings
@@ -49,7 +49,7 @@ fn anchors(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// What is wrong with the relative links of a page that lies in a folder.
+/// The errors in the relative links of a page in a folder.
 fn broken(folder: &Path, own: &Path, text: &str) -> Vec<String> {
     let text = prose(text);
     let mut broken = Vec::new();

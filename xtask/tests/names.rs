@@ -1,4 +1,4 @@
-//! No name has a word that the glossary replaces.
+//! No name contains a word that the glossary replaces.
 
 use std::process::Command;
 

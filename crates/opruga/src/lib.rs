@@ -1,7 +1,6 @@
 //! # Opruga
 //!
-//! Elastically deformable bodies in 2D and 3D: springs, gas, bending and more, stepped by any integrator, chosen by a
-//! word in a scene file.
+//! Elastically deformable bodies in 2D and 3D: springs, gas, bending and more, with any integrator, which a word in the scene file selects.
 //!
 //! ```
 //! use opruga::{Options, catalogue, io::scene};

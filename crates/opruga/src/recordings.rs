@@ -1,4 +1,4 @@
-//! Recording a world while a program steps it, and playing the recording: what the program did comes with it.
+//! Records a world while a program steps it, and plays the recording, which includes the actions of the program.
 //!
 //! ```
 //! use opruga::io::recording::{Header, Recording};

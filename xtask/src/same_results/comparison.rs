@@ -1,14 +1,14 @@
-//! What differs between two runs of a scene, and between two reports of `verify`.
+//! The differences between two runs of a scene, and between two reports of `verify`.
 
 use std::collections::BTreeMap;
 
 /// Figures of a case of `verify`, by name.
 pub(super) type Row = BTreeMap<String, String>;
 
-/// The most figures that are told of a scene or a case.
+/// The largest number of figures that are reported for a scene or a case.
 const MOST: usize = 6;
 
-/// What came of a run.
+/// The result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Outcome {
     /// How it ended.
@@ -19,32 +19,32 @@ pub(super) struct Outcome {
     rows: Vec<Vec<String>>,
 }
 
-/// A figure that is not the same on both sides.
+/// A figure that differs between the two sides.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Difference {
     /// The scene, or the case of `verify`.
     pub(super) subject: String,
-    /// The first frame that differs; of other figures than those of frames none.
+    /// The first frame that differs; none if the figure does not belong to a frame.
     frame: Option<usize>,
     figure: String,
     values: [String; 2],
 }
 
 impl Outcome {
-    /// How two runs have ended that ended in the same way, and before their time.
+    /// How two runs ended, if both ended in the same way and too early.
     pub(super) fn early(&self, other: &Outcome) -> Option<String> {
         let same = self.ending == other.ending && self.ending != "exit code 0";
         same.then(|| format!("{} after {} frames", self.ending, self.rows.len().saturating_sub(1)))
     }
 
-    /// From the lines of hashes and the table of figures.
+    /// Reads the lines of hashes and the table of figures.
     pub(super) fn new(ending: String, hashes: &str, table: &str) -> Outcome {
         let mut lines = table.lines();
         let mut columns = vec!["hash of the state".to_string()];
         columns.extend(lines.next().map(cells).unwrap_or_default());
         let (mut hashes, mut rows) = (hashes.lines(), Vec::new());
         loop {
-            // A frame without a hash or a row has empty cells, which no other cell is equal to.
+            // A frame without a hash or a row has empty cells, which differ from every other cell.
             let (hash, line) = (hashes.next(), lines.next());
             if hash.is_none() && line.is_none() {
                 return Outcome { ending, columns, rows };
@@ -56,7 +56,7 @@ impl Outcome {
     }
 }
 
-/// The cells of a line; names in quotes may hold commas.
+/// The cells of a line; names in quotes may contain commas.
 fn cells(line: &str) -> Vec<String> {
     let (mut out, mut quoted) = (vec![String::new()], false);
     for letter in line.chars() {
@@ -75,13 +75,13 @@ impl Difference {
         Difference { subject: subject.into(), frame, figure: figure.into(), values: values.map(shown) }
     }
 
-    /// A scene, a case, a figure that not both sides know.
+    /// A scene, a case or a figure that only one side has.
     pub(super) fn unknown(subject: &str, known: [bool; 2]) -> Difference {
         Difference::new(subject, None, "", known.map(|known| if known { "known" } else { "unknown" }))
     }
 }
 
-/// What differs between two runs of a scene: how they ended, their figures, and the values of the first frame that differs.
+/// The differences between two runs of a scene: how they ended, their figures, and the values of the first frame that differs.
 pub(super) fn of_scene(scene: &str, base: &Outcome, present: &Outcome) -> Vec<Difference> {
     let mut out = Vec::new();
     if base.ending != present.ending {
@@ -115,7 +115,7 @@ pub(super) fn of_scene(scene: &str, base: &Outcome, present: &Outcome) -> Vec<Di
     out
 }
 
-/// What differs between two reports of `verify`.
+/// The differences between two reports of `verify`.
 pub(super) fn of_rows(base: &BTreeMap<String, Row>, present: &BTreeMap<String, Row>) -> Vec<Difference> {
     let mut out = Vec::new();
     for name in union(base, present) {
@@ -134,13 +134,13 @@ pub(super) fn of_rows(base: &BTreeMap<String, Row>, present: &BTreeMap<String, R
     out
 }
 
-/// The names that either side knows.
+/// The names that occur on either side.
 fn union<'a, T>(base: &'a BTreeMap<String, T>, present: &'a BTreeMap<String, T>) -> Vec<&'a String> {
     let others = present.keys().filter(|name| !base.contains_key(*name));
     base.keys().chain(others).collect()
 }
 
-/// The first of the figures that differ, and how many others there are.
+/// The first of the figures that differ, and the number of the others.
 fn told<'a>(
     subject: &str,
     frame: Option<usize>,
@@ -173,7 +173,7 @@ pub(super) fn table(differences: &[Difference], sides: [&str; 2]) -> String {
     rows.iter().map(line).collect()
 }
 
-/// Long values, such as lists of all levels of a case, by their beginning.
+/// Shortens long values, such as lists of all levels of a case, to their beginning.
 fn shortened(value: String) -> String {
     const WIDTH: usize = 60;
     if value.chars().count() <= WIDTH { value } else { value.chars().take(WIDTH - 1).chain(['…']).collect() }
@@ -208,10 +208,10 @@ mod tests {
     fn a_changed_bit_is_named_with_its_frame() {
         assert_eq!(found("0a\n0b\n0d\n", TABLE), [difference(2, "hash of the state", ["0c", "0d"])]);
         let [then, now] = ["1.2500000000000000e0", "1.2500000000000002e0"];
-        // The columns may stand in another order.
+        // The columns may have another order.
         let other = TABLE.replace(then, now);
         assert_eq!(found(HASHES, &other), [difference(1, "energy", [then, now])]);
-        // Of a run that goes apart only the first frame is told.
+        // For runs that diverge from each other, only the first differing frame is reported.
         let apart = found("0a\n0e\n0f\n", &other);
         assert_eq!(apart, [difference(1, "hash of the state", ["0b", "0e"]), difference(1, "energy", [then, now])]);
     }
@@ -232,7 +232,7 @@ mod tests {
         assert_eq!(shorter, [(None, "rows".to_string(), ["3".to_string(), "2".to_string()])]);
         let failed = Outcome { ending: "exit code 1, step.not_finite".into(), ..outcome(HASHES, TABLE) };
         assert_eq!(of_scene("ball", &outcome(HASHES, TABLE), &failed)[0].figure, "ending");
-        // A hash without a row is no row.
+        // A hash without a row does not count as a row.
         assert_eq!(found(HASHES, "time,energy,\"volume, ball\"\n").len(), 3);
     }
 

@@ -1,14 +1,14 @@
-//! The hashes of the frames of a recording. Only the heads of the file's chunks are read, so that xtask needs no part of the engine.
+//! Reads the hashes of the frames of a recording. Only the heads of the file's chunks are read, so that xtask needs no part of the engine.
 
 use std::collections::BTreeMap;
 
-/// Bytes before the header, and of the head of a chunk.
+/// Bytes before the header, and bytes of the head of a chunk.
 const HEAD: usize = 24;
 const CHUNK: usize = 48;
-/// The versions whose chunks are known.
+/// The versions whose chunks are supported.
 const VERSIONS: [u32; 2] = [5, 6];
 
-/// The hash of every frame that the bytes of a recording hold.
+/// The hash of every frame in the bytes of a recording.
 pub(super) fn hashes(bytes: &[u8]) -> Result<BTreeMap<u64, u64>, String> {
     let cut = || "the recording is cut off".to_string();
     let number = |at: usize| Some(u64::from_le_bytes(bytes.get(at..)?.first_chunk().copied()?));
@@ -29,7 +29,7 @@ pub(super) fn hashes(bytes: &[u8]) -> Result<BTreeMap<u64, u64>, String> {
                 let frame = number(at + 8).ok_or_else(cut)?;
                 // The state of the last frame may follow the hash of that frame: both have the same hash.
                 out.insert(frame, number(at + 32).ok_or_else(cut)?);
-                // Frames without a state share a chunk: the payload holds the hashes of all but the first.
+                // Frames without a state share a chunk: the payload has the hashes of all but the first.
                 if kind == 4 {
                     let others = payload.as_chunks().0.iter().map(|hash| u64::from_le_bytes(*hash));
                     out.extend((frame + 1..).zip(others));
@@ -59,7 +59,7 @@ mod tests {
         let every = of("every-state");
         assert_eq!(every.keys().copied().collect::<Vec<_>>(), (0..8).collect::<Vec<_>>());
         assert_eq!([every[&0], every[&3]], [0xf8ad_f087_caa5_47bb, 0xfe6e_7f36_499f_621b]);
-        // Frames without a state, several in a chunk; and the state of the last frame behind its hash.
+        // Frames without states, several in a chunk, and the state of the last frame after its hash.
         assert_eq!(of("one-in-three"), every);
         let killed = of("killed");
         assert!(killed.len() == 6 && killed.iter().all(|(frame, hash)| every[frame] == *hash));

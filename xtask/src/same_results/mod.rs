@@ -1,11 +1,11 @@
-//! Two commits on one machine: does the present tree compute the same bits as another commit?
+//! Compares two commits on one machine: does the present tree compute the same bits as another commit?
 //!
-//! Both are built, and both run every scene that lies in files: those that come with the program, those of the benchmarks and of the
-//! sweeps, and those of the fuzz corpus. Compared are the hash of every frame, every figure of `diagnostics.csv`, how the run
-//! ended, and every row of `opruga verify`. What a commit has computed is kept below `target/same-results`.
+//! Both are built, and both run every scene that is a file: those that come with the program, those of the benchmarks and of the sweeps, and those of
+//! the fuzz corpus. The hash of every frame, every figure of `diagnostics.csv`, the end of the run, and every row of `opruga verify` are compared.
+//! The results of a commit are kept below `target/same-results`.
 //!
-//! Scenes that only the code of tests holds are left out, such as those of `crates/opruga/tests/torture`; `--also FOLDER` runs the
-//! scene files of any folder.
+//! Scenes that exist only in the code of tests, such as those of `crates/opruga/tests/torture`, are not run; `--also FOLDER` runs the scene files of
+//! any folder.
 
 mod comparison;
 mod hashes;
@@ -20,15 +20,15 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// The frames of every scene, and those of `--quick`.
+/// The number of frames of every scene, without and with `--quick`.
 const FRAMES: [u64; 2] = [120, 20];
-/// The scenes of `--quick`: explicit and implicit rules, gas, contact, cloth, solids, and a static rule with factorised solves.
+/// The scenes of `--quick`: explicit and implicit integrators, gas, contact, cloth, solids, and statics with factorised solves.
 const QUICK: [&str; 7] =
     ["ball", "integrators", "implicit-integrators", "two-chambers", "cloth-over-ball", "drawings", "hanging-chain"];
 /// The family of `opruga verify` that `--quick` runs.
 const QUICK_FAMILY: &str = "materials";
 
-/// What is asked.
+/// The requested comparison.
 #[derive(Debug, PartialEq)]
 struct Question {
     base: String,
@@ -68,7 +68,7 @@ impl Question {
         Ok(question)
     }
 
-    /// Whether a scene is asked for.
+    /// Whether a scene is requested.
     fn wants(&self, scene: &str) -> bool {
         match (&self.scenes[..], self.quick) {
             ([], false) => true,
@@ -127,8 +127,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
     Err(format!("{scenes} of {} scenes differ, and {cases} of {rows} verify rows", names.len()))
 }
 
-/// The scenes of a tree: what they are called, and how the program is told of them. A scene that comes with the program goes by its
-/// name.
+/// The scenes of a tree: their names, and the argument that names each for the program. A scene that comes with the program is called by its name.
 fn scenes_of(root: &Path, also: &[PathBuf]) -> Result<BTreeMap<String, String>, String> {
     let mut out = BTreeMap::new();
     let mut folders = vec![root.join("scenes")];
@@ -151,7 +150,7 @@ fn scenes_of(root: &Path, also: &[PathBuf]) -> Result<BTreeMap<String, String>, 
     Ok(out)
 }
 
-/// Runs scenes side by side, one on each processor; what came of them, by side and scene.
+/// Runs scenes in parallel, one on each processor; returns the results by side and scene.
 fn run_scenes<'a>(
     jobs: &[(&'a Side, &'a String, &'a String)],
     frames: u64,

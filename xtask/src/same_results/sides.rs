@@ -1,4 +1,4 @@
-//! The two programs, and what came of their runs. Both are called by their command line alone: a commit may be old.
+//! The two programs and the results of their runs. Both are called only through their command line, because a commit may be old.
 
 use super::comparison::{Outcome, Row};
 use super::hashes::hashes;
@@ -12,21 +12,21 @@ use std::process::{Command, Output};
 /// A commit, or the present tree, with its program.
 #[derive(Debug)]
 pub(super) struct Side {
-    /// The beginning of the commit's hash; `present`.
+    /// The beginning of the commit's hash, or `present`.
     pub(super) name: String,
     /// Its sources.
     pub(super) root: PathBuf,
     program: PathBuf,
-    /// Where its results lie.
+    /// The folder of its results.
     folder: PathBuf,
-    /// Whether results that lie there are those that the program would compute.
+    /// Whether existing results are those that the program would compute.
     keeps: bool,
 }
 
 impl Side {
-    /// A commit. Its sources lie in a work tree of their own, one for all commits: only what differs from the last commit is
-    /// compiled. What cargo builds of it lies apart from that of the present tree: cargo takes a crate for built where an equal
-    /// path in another work tree was built later than the file was changed, whatever the file holds.
+    /// A commit. Its sources are in a separate work tree, which is shared by all commits, so that only the differences from the last commit are
+    /// compiled. Cargo's build folder for it is separate from that of the present tree: cargo considers a crate built if the same path in another
+    /// work tree was built after the file was changed, whatever the file contains.
     pub(super) fn of_commit(folder: &Path, commit: &str) -> Result<Side, String> {
         let root = folder.join("base");
         workspace::check_out(&root, commit)?;
@@ -38,7 +38,7 @@ impl Side {
         Ok(side)
     }
 
-    /// The present tree, as it lies there.
+    /// The present tree as it is.
     pub(super) fn present(folder: &Path) -> Result<Side, String> {
         let (own, name) = (folder.join("present"), "present".to_string());
         let side = Side { program: program(&own), root: workspace::root()?, folder: own, name, keeps: false };
@@ -46,7 +46,7 @@ impl Side {
         Ok(side)
     }
 
-    /// Builds the program and keeps it, so that nothing that is compiled meanwhile changes it.
+    /// Builds the program and keeps a copy of it, so that later compilations do not change it.
     fn build(&self, target: &Path) -> Result<(), String> {
         eprintln!("building {}", self.name);
         let status = Command::new(env!("CARGO"))
@@ -63,23 +63,23 @@ impl Side {
         std::fs::copy(&built, &self.program).map(drop).map_err(|e| format!("{}: {e}", built.display()))
     }
 
-    /// A call of the program, in a folder where no file has the name of a scene.
+    /// Calls the program in a folder in which no file has the name of a scene.
     fn call(&self, arguments: &[&str]) -> Result<Output, String> {
         let mut call = Command::new(&self.program);
-        // What is kept was computed with the best instructions of this machine.
+        // The kept results were computed with the best instructions of this machine.
         call.args(arguments).current_dir(&self.folder).env_remove("OPRUGA_SIMD");
         call.output().map_err(|e| format!("{}: {e}", self.program.display()))
     }
 
-    /// Runs a scene for some frames, or reads what came of it before.
+    /// Runs a scene for some frames, or reads the earlier result.
     pub(super) fn run(&self, name: &str, call: &str, frames: u64) -> Result<Outcome, String> {
         let folder = self.folder.join(format!("{frames}-frames")).join(name.replace('/', "-"));
         let file = |name: &str| folder.join(name).display().to_string();
         let [ending, table, hashes] = ["ending", "diagnostics.csv", "hashes"].map(|name| folder.join(name));
-        // Of a file that lies elsewhere nobody knows whether it is still the same.
+        // A file elsewhere may have changed.
         let own = !Path::new(call).is_absolute()
             || self.root.canonicalize().is_ok_and(|root| Path::new(call).starts_with(root));
-        // The ending is written last: where it lies, the others are whole.
+        // The ending is written last: if it exists, the others are complete.
         if !(self.keeps && own && ending.is_file()) {
             let _ = std::fs::remove_dir_all(&folder);
             std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
@@ -96,7 +96,7 @@ impl Side {
     fn compute(&self, call: &str, frames: u64, file: &dyn Fn(&str) -> String) -> Result<Found, String> {
         let [probe, recording, output] = ["probe", "recording", "output"].map(file);
         let common = ["run", call, "--no-pictures", "--json", "--allow-outside", "--force"];
-        // The length of a frame is what the program takes it to be.
+        // The length of a frame is read from the program.
         let begun = self.call(&[&common[..], &["--seconds", "0", "--out", &probe]].concat())?;
         let length = serde_json::from_slice::<Value>(&begun.stdout).ok().and_then(|summary| summary["frame"].as_f64());
         let Some(length) = length else {
@@ -113,13 +113,13 @@ impl Side {
             hashes: lines.values().map(|hash| format!("{hash:016x}\n")).collect(),
             table: workspace::read(&Path::new(&output).join("diagnostics.csv"))?,
         };
-        // What is compared is kept, the rest may be large.
+        // The compared data are kept, the rest may be large.
         let _ = std::fs::remove_file(&recording);
         [probe, output].iter().for_each(|folder| drop(std::fs::remove_dir_all(folder)));
         Ok(found)
     }
 
-    /// The rows of `opruga verify`, all or those of a family; or what came of it before.
+    /// The rows of `opruga verify`, all or those of a family, or the earlier result.
     pub(super) fn verify(&self, family: Option<&str>) -> Result<BTreeMap<String, Row>, String> {
         let path = self.folder.join(format!("verify-{}.json", family.unwrap_or("all")));
         if !(self.keeps && path.is_file()) {
@@ -127,7 +127,7 @@ impl Side {
             let mut arguments = vec!["verify", "--json"];
             family.iter().for_each(|family| arguments.extend(["--filter", *family]));
             let output = self.call(&arguments)?;
-            // Cases that fail are rows too.
+            // Failing cases are rows as well.
             rows(&output.stdout).map_err(|e| format!("verify, {}: {e}: {}", self.name, ending(&output)))?;
             std::fs::write(&path, &output.stdout).map_err(|e| format!("{}: {e}", path.display()))?;
         }
@@ -135,7 +135,7 @@ impl Side {
     }
 }
 
-/// What a run has left.
+/// The files of a run.
 #[derive(Default)]
 struct Found {
     ending: String,
@@ -148,7 +148,7 @@ fn program(folder: &Path) -> PathBuf {
     folder.join(format!("opruga{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// How a call has ended: its exit code, and the codes of its errors.
+/// How a call ended: its exit code, and the codes of its errors.
 fn ending(output: &Output) -> String {
     let said: Value = serde_json::from_slice(&output.stderr).unwrap_or_default();
     let mut codes: Vec<&str> =
@@ -158,7 +158,7 @@ fn ending(output: &Output) -> String {
     if codes.is_empty() { exit } else { format!("{exit}, {}", codes.join(" ")) }
 }
 
-/// The rows of `verify --json` by case, the seconds left out. Numbers stay the text that they are: nothing is rounded.
+/// The rows of `verify --json` by case, without the times. Numbers stay text, so that nothing is rounded.
 fn rows(bytes: &[u8]) -> Result<BTreeMap<String, Row>, String> {
     let report: BTreeMap<String, Box<RawValue>> = serde_json::from_slice(bytes).map_err(|e| e.to_string())?;
     let rows = report.get("rows").ok_or("there are no rows")?;

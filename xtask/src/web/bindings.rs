@@ -1,4 +1,4 @@
-//! What stands between the program and the browser: JavaScript that calls the one for the other.
+//! The layer between the program and the browser: JavaScript through which they call each other.
 
 use std::path::{Path, PathBuf};
 use wasm_bindgen_cli_support::Bindgen;
@@ -9,7 +9,7 @@ pub(super) struct Made {
     pub(super) script: Vec<u8>,
 }
 
-/// Makes them of a compiled program.
+/// Makes them from a compiled program.
 ///
 /// # Errors
 /// What cannot be read or translated.

@@ -1,4 +1,4 @@
-//! Chromium without a screen, led by its DevTools protocol through two pipes: JSON, each message ended by a zero byte.
+//! Headless Chromium, controlled by its DevTools protocol through two pipes: JSON messages, each ended by a zero byte.
 
 use serde_json::{Value, json};
 use std::io::{BufRead as _, BufReader, Write as _};
@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 /// How long an answer may take on a slow machine.
 const PATIENCE: Duration = Duration::from_secs(300);
 const NAMES: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
-/// What lets it draw with the processor.
+/// The arguments for WebGL on the processor.
 const WEBGL: &str = "--use-angle=swiftshader --enable-unsafe-swiftshader";
-/// What gives it an adapter of WebGPU, drawn with the processor, whose pictures are seen.
+/// The arguments for a WebGPU adapter on the processor whose pictures can be seen.
 const WEBGPU: &str =
     "--enable-unsafe-webgpu --use-webgpu-adapter=swiftshader --enable-features=Vulkan --use-vulkan=swiftshader";
 
@@ -23,7 +23,7 @@ pub(super) struct Browser {
     messages: Receiver<Value>,
     page: Option<String>,
     number: u64,
-    /// What went wrong on the page.
+    /// The errors of the page.
     pub(super) troubles: Vec<String>,
 }
 
@@ -45,14 +45,14 @@ fn program() -> Option<&'static str> {
 }
 
 impl Browser {
-    /// Starts it with an empty page, with WebGPU beside WebGL or without; what it keeps and downloads goes into a folder.
+    /// Starts it with an empty page, with WebGL and, if requested, WebGPU; its data and downloads go to a folder.
     ///
     /// # Errors
-    /// Where there is none, or it does not answer.
+    /// There is no browser, or it does not answer.
     pub(super) fn start(folder: &Path, webgpu: bool) -> Result<Browser, String> {
         let program = program().ok_or_else(|| format!("there is no browser: none of {}", NAMES.join(", ")))?;
         let drawing = if webgpu { format!("{WEBGL} {WEBGPU}") } else { WEBGL.to_string() };
-        // The browser reads orders from its file 3 and answers into its file 4.
+        // The browser reads commands from file descriptor 3 and writes answers to file descriptor 4.
         let script = format!(
             "exec {program} --headless=new --no-sandbox --no-first-run --disable-dev-shm-usage --mute-audio --hide-scrollbars \
              {drawing} --remote-debugging-pipe --user-data-dir=\"$0\" \
@@ -89,15 +89,15 @@ impl Browser {
         Ok(browser)
     }
 
-    /// Orders something and waits for the answer.
+    /// Sends a command and waits for the answer.
     ///
     /// # Errors
-    /// What the browser refuses.
+    /// Those of the browser.
     pub(super) fn call(&mut self, method: &str, parameters: Value) -> Result<Value, String> {
         self.number += 1;
         let number = self.number;
         let mut order = json!({ "id": number, "method": method, "params": parameters });
-        // What concerns the whole browser is asked of it and not of its page.
+        // Commands for the whole browser are not sent to its page.
         if let Some(page) = self.page.as_ref().filter(|_| !method.starts_with("Browser.")) {
             order["sessionId"] = page.as_str().into();
         }
@@ -117,7 +117,7 @@ impl Browser {
         Err(format!("{method}: no answer within {} s", PATIENCE.as_secs()))
     }
 
-    /// Notes what went wrong on the page.
+    /// Collects errors of the page.
     fn hear(&mut self, message: &Value) {
         let parameters = &message["params"];
         match message["method"].as_str() {
@@ -138,7 +138,7 @@ impl Browser {
     /// The value of an expression on the page.
     ///
     /// # Errors
-    /// What the page throws.
+    /// Exceptions of the page.
     pub(super) fn value(&mut self, expression: &str) -> Result<Value, String> {
         let parameters = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
         let outcome = self.call("Runtime.evaluate", parameters)?;
@@ -148,7 +148,7 @@ impl Browser {
         }
     }
 
-    /// The size of the page, and whether it is touched by fingers.
+    /// Sets the size of the page, and whether it has a touch screen.
     pub(super) fn size(&mut self, [width, height]: [u32; 2], fine: f64, phone: bool) -> Result<(), String> {
         let size = json!({ "width": width, "height": height, "deviceScaleFactor": fine, "mobile": phone });
         self.call("Emulation.setDeviceMetricsOverride", size)?;
@@ -165,7 +165,7 @@ impl Browser {
         }
     }
 
-    /// The mouse at a place: `mouseMoved`, `mousePressed`, `mouseReleased`.
+    /// A mouse event at a position: `mouseMoved`, `mousePressed`, `mouseReleased`.
     pub(super) fn mouse(&mut self, what: &str, [x, y]: [f64; 2], pressed: bool) -> Result<(), String> {
         let button = if what == "mouseMoved" && !pressed { "none" } else { "left" };
         let event = json!({ "type": what, "x": x, "y": y, "button": button, "buttons": u8::from(pressed),
@@ -173,13 +173,13 @@ impl Browser {
         self.call("Input.dispatchMouseEvent", event).map(|_| ())
     }
 
-    /// The wheel at a place.
+    /// A wheel event at a position.
     pub(super) fn wheel(&mut self, [x, y]: [f64; 2], down: f64) -> Result<(), String> {
         let event = json!({ "type": "mouseWheel", "x": x, "y": y, "deltaX": 0.0, "deltaY": down });
         self.call("Input.dispatchMouseEvent", event).map(|_| ())
     }
 
-    /// Fingers at places: `touchStart`, `touchMove`, `touchEnd`.
+    /// A touch event at positions: `touchStart`, `touchMove`, `touchEnd`.
     pub(super) fn fingers(&mut self, what: &str, at: &[[f64; 2]]) -> Result<(), String> {
         let points: Vec<Value> =
             at.iter().enumerate().map(|(id, [x, y])| json!({ "x": x, "y": y, "id": id })).collect();

@@ -1,18 +1,18 @@
-//! The compiler for browsers: that of rustup with the target installed, or that of Debian, which builds the standard library.
+//! The compiler for browsers: that of rustup with the target installed, or that of Debian, which also builds the standard library.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const TARGET: &str = "wasm32-unknown-unknown";
-/// The folder of Debian's cargo; its compiler is found there alone.
+/// The folder of Debian's cargo, which finds its compiler only there.
 const DEBIAN: &str = "/usr/bin";
 const HINT: &str = "`rustup target add wasm32-unknown-unknown` installs one; on Debian `apt-get install rustc-web cargo-web \
                     rust-web-src rust-web-llvm lld-22` does too";
 
-/// Compiles the library of a package for browsers; the file of the program.
+/// Compiles the library of a package for browsers; returns the file of the program.
 ///
 /// # Errors
-/// No compiler, or what it refuses.
+/// There is no compiler, or the errors of the compiler.
 pub(super) fn compile(root: &Path, package: &str) -> Result<PathBuf, String> {
     let target = super::target()?.join("web");
     let mut cargo = if rustup_has_target() {
@@ -36,7 +36,7 @@ fn rustup_has_target() -> bool {
     installed.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).lines().any(|line| line == TARGET))
 }
 
-/// Debian's cargo with Debian's compiler: nothing of the cargo that runs this may reach them.
+/// Debian's cargo with Debian's compiler, isolated from the cargo that runs this.
 fn debian() -> Command {
     let mut cargo = Command::new(format!("{DEBIAN}/cargo"));
     for (name, _) in std::env::vars_os() {
@@ -47,9 +47,9 @@ fn debian() -> Command {
             cargo.env_remove(&name);
         }
     }
-    // The standard library is built from its sources, which the compiler does only where it is told that it may.
+    // The standard library is built from its sources, which the compiler does only with explicit permission.
     cargo.env("PATH", format!("{DEBIAN}:/bin")).env("RUSTC_BOOTSTRAP", "1");
-    // Browsers show no backtraces: what reads debugging information stays out.
+    // Browsers show no backtraces, so code that reads debugging information is omitted.
     cargo.args(["-Zbuild-std=std,panic_abort", "-Zbuild-std-features="]);
     cargo
 }

@@ -1,4 +1,4 @@
-//! The studio as a page: compiles it for browsers and lays the files of the page into a folder that any static server serves.
+//! The studio as a web page: compiles it for browsers and writes the files of the page to a folder for any static server.
 
 #[cfg(feature = "web")]
 mod bindings;
@@ -34,8 +34,8 @@ pub(crate) fn build(arguments: &[String]) -> Result<(), String> {
     }
 }
 
-/// `cargo xtask web-trial [PROFILE] [--built]`: the page in Chromium, beside the native program that was built with this profile. With
-/// `--built` it is the page that was built last.
+/// `cargo xtask web-trial [PROFILE] [--built]`: tests the page in Chromium, together with the native program that was built with this profile. With
+/// `--built`, it is the page that was built last.
 pub(crate) fn trial(arguments: &[String]) -> Result<(), String> {
     let (options, rest): (Vec<_>, Vec<_>) = arguments.iter().partition(|argument| argument.starts_with("--"));
     let profile = rest.first().map_or("debug", |profile| profile.as_str());
@@ -46,7 +46,7 @@ pub(crate) fn trial(arguments: &[String]) -> Result<(), String> {
     trial::run(&if options.is_empty() { page()? } else { folder()? }, native)
 }
 
-/// `cargo xtask web-measure [PICTURES]`: how long pictures of the page take in Chromium.
+/// `cargo xtask web-measure [PICTURES]`: measures how long pictures of the page take in Chromium.
 pub(crate) fn measure(arguments: &[String]) -> Result<(), String> {
     let pictures = match arguments.first() {
         None => 100,
@@ -57,8 +57,7 @@ pub(crate) fn measure(arguments: &[String]) -> Result<(), String> {
     trial::measure(&page()?, pictures)
 }
 
-/// Builds the page; its folder. What translates between the languages of the page is built for this alone: it stays away from
-/// the other chores.
+/// Builds the page; returns its folder. The translator between the languages of the page is built only for this, and is not part of the other tasks.
 #[cfg(not(feature = "web"))]
 fn page() -> Result<PathBuf, String> {
     let mut cargo = std::process::Command::new(env!("CARGO"));
@@ -67,7 +66,7 @@ fn page() -> Result<PathBuf, String> {
     if status.success() { Ok(folder()?) } else { Err("the page was not built".into()) }
 }
 
-/// Builds the page; its folder.
+/// Builds the page; returns its folder.
 #[cfg(feature = "web")]
 fn page() -> Result<PathBuf, String> {
     let root = root()?;

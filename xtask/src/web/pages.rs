@@ -6,20 +6,19 @@ use lzma_rust2::{LzmaOptions, LzmaWriter};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The most that the page may take on its way [bytes].
+/// The largest transfer size of the page [bytes].
 const MOST_BYTES: usize = 4_000_000;
-/// How far back repetitions are looked for [bytes]: the whole program. The browser needs as much memory to unpack it.
+/// The distance over which repetitions are found [bytes]: the whole program. The browser needs the same amount of memory to unpack it.
 const DICTIONARY: u32 = 16 << 20;
 
-/// Lays the page into a folder: the program packed, the module that unpacks it, their JavaScript, and what is written by hand
-/// with the names filled in.
+/// Writes the page to a folder: the packed program, the module that unpacks it, their JavaScript, and the handwritten files with the names filled in.
 ///
 /// # Errors
-/// What cannot be written, and a page that is too large.
+/// Files that cannot be written, and a page that is too large.
 pub(super) fn lay_out(root: &Path, studio: &Made, unpacker: &Made, folder: &Path) -> Result<(), String> {
     let sources = root.join("crates/opruga-studio/web");
     let packed = packed(&studio.program).map_err(|e| format!("the program cannot be packed: {e}"))?;
-    // Files of one version have one name, so that no browser mixes versions.
+    // The files of one version have the version in their names, so that no browser mixes versions.
     let version = format!("{:016x}", fingerprint(&[&packed, &studio.script, &unpacker.program, &unpacker.script]));
     let [program, glue, unpack_program, unpack] = ["studio.wasm.lzma", "studio.js", "unpack.wasm", "unpack.js"]
         .map(|name| name.replacen('.', &format!("-{version}."), 1));
@@ -32,7 +31,7 @@ pub(super) fn lay_out(root: &Path, studio: &Made, unpacker: &Made, folder: &Path
     let page = page.replace("{{unpack}}", &unpack).replace("{{unpack_program}}", &unpack_program);
     let page = page.replace("{{packed_bytes}}", &packed.len().to_string());
     let credits = credits(&[root.join("scenes/shapes"), root.join("crates/opruga-studio/font")])?;
-    // Credits are not among them: some servers make pages of such texts, and a file that is missing would hinder the others.
+    // Credits are not among them: some servers convert such texts to pages, and a missing file would prevent the others from being kept.
     let kept = ["./", "icon.svg", "manifest.webmanifest", &program, &glue, &unpack_program, &unpack];
     let version = format!("{:016x}", fingerprint(&[version.as_bytes(), page.as_bytes()]));
     let worker = source("worker.js")?.replace("{{version}}", &version);
@@ -71,8 +70,7 @@ pub(super) fn lay_out(root: &Path, studio: &Made, unpacker: &Made, folder: &Path
     Ok(())
 }
 
-/// Where the shapes of the scenes and the letters come from, and the licences of those who made them: name and text of every
-/// such file.
+/// The origins of the shapes of the scenes and of the fonts, and the licences of their authors: name and text of every such file.
 ///
 /// # Errors
 /// What cannot be read.
@@ -94,7 +92,7 @@ fn credits(folders: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, String> {
 
 fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
     let mut options = LzmaOptions::with_preset(9);
-    // Instructions of WebAssembly are not aligned, and one depends on more of what stands before it than letters do.
+    // Instructions of WebAssembly are not aligned, and depend on more of the preceding data than the characters of a text.
     (options.lc, options.lp, options.pb) = (4, 0, 0);
     options.dict_size = DICTIONARY;
     options.nice_len = 273;
@@ -103,14 +101,14 @@ fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
     writer.finish()
 }
 
-/// What a server that packs sends of a file.
+/// The number of bytes that a compressing server sends for a file.
 fn gzipped_size(bytes: &[u8]) -> usize {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     let packed = encoder.write_all(bytes).and_then(|()| encoder.finish());
     packed.map_or(bytes.len(), |packed| packed.len())
 }
 
-/// A 64-bit hash (Fowler, Noll, Vo 1a): a name for what lies in files.
+/// A 64-bit hash (Fowler, Noll, Vo 1a) of the contents of files.
 fn fingerprint(parts: &[&[u8]]) -> u64 {
     let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
     parts.iter().flat_map(|part| part.iter()).fold(0xcbf2_9ce4_8422_2325, step)

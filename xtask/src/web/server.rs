@@ -1,4 +1,4 @@
-//! A static server as plain as there can be: the page needs no more.
+//! A minimal static server: the page needs no more.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::net::{TcpListener, TcpStream};
@@ -11,16 +11,16 @@ use std::time::Duration;
 pub(super) struct Server {
     listener: TcpListener,
     folder: Arc<PathBuf>,
-    /// Where it is.
+    /// Its address.
     pub(super) address: String,
-    /// Whether it answers: a server that is away shows how the page does without.
+    /// Whether it answers: without answers, it shows how the page works offline.
     pub(super) answers: Arc<AtomicBool>,
 }
 
-/// Serves a folder at a port of this machine; at any free one where that is 0.
+/// Serves a folder at a port of this machine; at any free one if the port is 0.
 ///
 /// # Errors
-/// A port that is taken.
+/// A port that is in use.
 pub(super) fn serve(folder: PathBuf, port: u16) -> Result<Server, String> {
     let failed = |e: std::io::Error| format!("127.0.0.1:{port}: {e}; `--port` takes another");
     let listener = TcpListener::bind(("127.0.0.1", port)).map_err(failed)?;
@@ -39,7 +39,7 @@ impl Server {
             let (folder, answers) = (Arc::clone(&self.folder), Arc::clone(&self.answers));
             std::thread::spawn(move || {
                 if answers.load(Ordering::Relaxed) {
-                    // Who asked may have gone.
+                    // The client may have closed the connection.
                     let _ = answer(stream, &folder);
                 }
             });
@@ -59,11 +59,11 @@ fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
     stream.set_read_timeout(Some(Duration::from_secs(10)))?;
     let mut lines = BufReader::new(stream.try_clone()?).lines();
     let first = lines.next().transpose()?.unwrap_or_default();
-    // What else the browser says changes nothing.
+    // The other headers of the browser are ignored.
     while lines.next().transpose()?.is_some_and(|line| !line.is_empty()) {}
     let asked = first.split(' ').nth(1).unwrap_or("/").split(['?', '#']).next().unwrap_or("/");
     let name = if asked == "/" { "index.html" } else { asked.trim_start_matches('/') };
-    // The folder has no folders in it: a name with a way in it leads elsewhere.
+    // The folder has no subfolders: a name with a path leads elsewhere.
     let bytes =
         if name.contains(['/', '\\']) || name.contains("..") { None } else { std::fs::read(folder.join(name)).ok() };
     let Some(bytes) = bytes else {
@@ -75,7 +75,7 @@ fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
         Some("svg") => "image/svg+xml",
         Some("wasm") => "application/wasm",
         Some("webmanifest") => "application/manifest+json",
-        // The credits, and licences without an ending.
+        // The credits, and licences without a file name extension.
         Some("md" | "txt") => "text/plain; charset=utf-8",
         Some(whole) if whole == name => "text/plain; charset=utf-8",
         _ => "application/octet-stream",

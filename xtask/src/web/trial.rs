@@ -1,5 +1,5 @@
-//! The page tried as a person uses it: it is loaded, the ball is dragged, its model changed, a body drawn, the scene saved
-//! and opened again from its link, on a screen and on a phone; and it comes to the bits of the native program.
+//! Tests the page as a user works with it: it is loaded, the ball is dragged, its model changed, a body drawn, the scene saved and opened again from
+//! its link, on a screen and on a phone; and it reaches the same bits as the native program.
 
 mod devices;
 
@@ -15,18 +15,18 @@ use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// How long anything may take on a slow machine that draws with its processor.
+/// The longest time for anything on a slow machine that draws on the processor.
 const PATIENCE: Duration = Duration::from_secs(240);
-/// How long a press may take until it is seen to hold the ball; after that it is tried anew.
+/// The longest time until a press is seen to hold the ball; after that it is repeated.
 const HOLD: Duration = Duration::from_secs(20);
-/// How often the ball is pressed, which may have moved on before the press came.
+/// How often the ball is pressed; it may have moved on before the press arrives.
 const PRESSES: u32 = 4;
-/// After so much simulated time nothing comes any more [s].
+/// After this simulated time nothing more happens [s].
 const LATEST: f64 = 60.0;
-/// Scenes that take too long without a compiler for the machine at hand.
+/// Scenes that take too long if they are not compiled for this machine.
 const LARGE: [&str; 3] = ["million-vertices", "thousand-balls", "giant-ring"];
 
-/// Tries the page; pictures of it go into the folder that `PICTURES` names.
+/// Tests the page; pictures of it are saved in the folder that `PICTURES` names.
 ///
 /// # Errors
 /// What does not hold.
@@ -37,7 +37,7 @@ pub(super) fn run(page: &Path, native: PathBuf) -> Result<(), String> {
     let folder = std::env::temp_dir().join(format!("opruga-web-{}", std::process::id()));
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let (address, answers) = server::serve(page.to_path_buf(), 0)?.start();
-    // First the browser with WebGPU: the server is away in the end.
+    // The browser with WebGPU comes first, because the server is switched off at the end.
     let rounds: [(bool, Round<'_>); 2] = [(true, &Trial::on_webgpu), (false, &|trial| trial.all(&answers))];
     let outcome = rounds.into_iter().try_for_each(|(webgpu, round)| {
         let browser = Browser::start(&folder, webgpu)?;
@@ -65,7 +65,7 @@ struct Trial {
 }
 
 type Outcome = Result<(), String>;
-/// What is tried in one browser.
+/// The tests in one browser.
 type Round<'a> = &'a dyn Fn(&mut Trial) -> Outcome;
 
 impl Trial {
@@ -96,7 +96,7 @@ impl Trial {
         self.browser.open(&address)?;
         self.until("the page begins", |state| state["frames"].as_u64() > Some(5))?;
         println!("the ball moves {:.1} s after the page was opened", begin.elapsed().as_secs_f64());
-        // Between two moments that are gone to, so that it does not matter how quick the page is.
+        // The positions are compared at two fixed frames, so that the speed of the page does not matter.
         self.until("half a second", |state| state["time"].as_f64() > Some(0.5))?;
         let mut at = [[0.0; 2]; 2];
         for (place, frame) in at.iter_mut().zip([0, 30]) {
@@ -108,7 +108,7 @@ impl Trial {
         holds(at[1][1] > at[0][1] + 5.0, || format!("the ball does not fall: {at:?}"))
     }
 
-    /// Scenes of the program end with the bits that the native program ends with. A second browser takes a part of them.
+    /// Scenes of the program end with the same bits as in the native program. A second browser runs a part of them.
     fn same_bits_as_golden(&mut self) -> Outcome {
         let root = super::root()?;
         let golden = std::fs::read_to_string(root.join("scenes/golden.txt")).map_err(|e| e.to_string())?;
@@ -135,7 +135,7 @@ impl Trial {
         holds(compared >= 10, || format!("only {compared} scenes were compared"))
     }
 
-    /// The ball is pulled with the mouse, where nothing else pulls it.
+    /// The ball is pulled with the mouse, and by nothing else.
     fn drags(&mut self) -> Outcome {
         self.quiet_ball()?;
         self.hold("mouse", |trial, top| {
@@ -160,7 +160,7 @@ impl Trial {
             .map(|_| ())
     }
 
-    /// Takes hold of the ball near its highest node by a press that is tried anew where it missed.
+    /// Grabs the ball near its highest node by a press, which is repeated if it missed.
     fn hold(&mut self, what: &str, press: impl Fn(&mut Trial, [f64; 2]) -> Outcome) -> Outcome {
         for _ in 0..PRESSES {
             let top = self.top()?;
@@ -206,7 +206,7 @@ impl Trial {
         self.keep_picture("web-desktop")
     }
 
-    /// The saved file holds what was done, and the native program comes to the same bits with it.
+    /// The saved file contains all actions, and the native program reaches the same bits with it.
     fn saves(&mut self) -> Result<String, String> {
         self.click("Pause")?;
         let state = self.until("time stands", |state| state["playing"] == false)?;
@@ -221,7 +221,7 @@ impl Trial {
         Ok(saved)
     }
 
-    /// The link is opened anew, and after ten seconds the bits are those of the native program.
+    /// The link is opened again, and after ten seconds the bits are those of the native program.
     fn link_holds_the_scene(&mut self, saved: &str) -> Outcome {
         self.click("Export")?;
         self.click("Copy a link with the whole scene")?;
@@ -260,7 +260,7 @@ impl Trial {
         holds(bytes.starts_with(b"GIF89a"), || "no animation was handed over".into())
     }
 
-    /// Held upright, a finger drags the ball, two zoom, and nothing scrolls.
+    /// On a phone held upright, a finger drags the ball, two fingers zoom, and nothing scrolls.
     fn phone(&mut self) -> Outcome {
         self.browser.size([390, 844], 2.0, true)?;
         let address = self.address.clone();
@@ -298,7 +298,7 @@ impl Trial {
         holds(self.browser.value("scrollX + scrollY")? == 0, || "the page was scrolled".into())
     }
 
-    /// No memory is shared with workers, and a scene for which a page has too little leaves the one that is there.
+    /// No memory is shared with workers, and a scene that needs too much memory for a page leaves the present one unchanged.
     fn refuses_what_no_memory_holds(&mut self) -> Outcome {
         holds(self.browser.value("crossOriginIsolated")? == false, || "the page has memory to share".into())?;
         let before = self.state()?["name"].clone();
@@ -315,14 +315,14 @@ impl Trial {
         self.browser.size([1280, 720], 1.0, false)?;
         let address = self.address.clone();
         self.browser.open("about:blank")?;
-        // The server is away.
+        // The server is switched off.
         self.browser.open(&address)?;
         self.until("the page without a network", |state| state["frames"].as_u64() > Some(5))?;
         println!("it works without a network");
         Ok(())
     }
 
-    /// What the page says of itself; null before it begins.
+    /// The state of the page; null before it starts.
     fn state(&mut self) -> Result<Value, String> {
         let state =
             self.browser.value("window.opruga ? opruga.state() : document.querySelector('#about').innerText")?;
@@ -330,17 +330,17 @@ impl Trial {
         Ok(serde_json::from_str(state).unwrap_or(Value::String(state.into())))
     }
 
-    /// Waits until something holds of what the page says.
+    /// Waits until a condition on the state of the page holds.
     fn until(&mut self, what: &str, is: impl Fn(&Value) -> bool) -> Result<Value, String> {
         let mut begin = Instant::now();
         let mut last = Value::Null;
         loop {
-            // Between two pages there is nobody to ask.
+            // Between two pages nothing answers.
             let state = self.state().unwrap_or(Value::Null);
             if is(&state) {
                 return Ok(state);
             }
-            // A slow machine has time as long as the simulation goes forward.
+            // A slow machine is given time as long as the simulation advances.
             if state["frames"].as_u64() > last["frames"].as_u64() && state["time"].as_f64() < Some(LATEST) {
                 begin = Instant::now();
             }
@@ -352,7 +352,7 @@ impl Trial {
         }
     }
 
-    /// Where the highest node of the first body is.
+    /// The position of the highest node of the first body.
     fn top(&mut self) -> Result<[f64; 2], String> {
         let spot = self.browser.value("Array.from(opruga.top_of(0))")?;
         match numbers(&spot)[..] {
@@ -361,7 +361,7 @@ impl Trial {
         }
     }
 
-    /// Where something of this name is: left, top, width, height.
+    /// The bounds of a control of this name: left, top, width, height.
     fn place(&mut self, name: &str) -> Result<[f64; 4], String> {
         let begin = Instant::now();
         while begin.elapsed() < PATIENCE {
@@ -374,7 +374,7 @@ impl Trial {
         Err(format!("nothing is called `{name}`"))
     }
 
-    /// Presses something of this name; what is below the window is brought into it by the wheel.
+    /// Presses a control of this name; if it is below the window, the wheel scrolls it into view.
     fn click(&mut self, name: &str) -> Outcome {
         let height = self.browser.value("innerHeight")?.as_f64().unwrap_or(0.0);
         let begin = Instant::now();
@@ -391,11 +391,11 @@ impl Trial {
             }
             if below {
                 let above = [middle[0], 0.5 * height];
-                // The wheel turns what the pointer is over.
+                // The wheel scrolls what is under the pointer.
                 self.browser.mouse("mouseMoved", above, false)?;
                 self.browser.wheel(above, 200.0)?;
             }
-            // It is pressed where it has come to rest.
+            // It is pressed when it no longer moves.
             last = middle;
             if begin.elapsed() > PATIENCE {
                 return Err(format!("`{name}` does not come to rest in the window"));
@@ -404,7 +404,7 @@ impl Trial {
         }
     }
 
-    /// A file that is being downloaded.
+    /// A downloaded file.
     fn file(&mut self, path: &Path) -> Result<Vec<u8>, String> {
         let begin = Instant::now();
         while begin.elapsed() < PATIENCE {
@@ -419,7 +419,7 @@ impl Trial {
         Err(format!("{} was not handed over; the page says {said}", path.display()))
     }
 
-    /// The hash to which the native program comes with a scene.
+    /// The hash that the native program reaches with a scene.
     fn native(&self, scene: &Path, seconds: Option<&str>) -> Result<String, String> {
         let out = self.folder.join("run");
         let mut run = Command::new(&self.native);
@@ -433,7 +433,7 @@ impl Trial {
         told["state_hash"].as_str().map(String::from).ok_or_else(|| format!("no hash in {told}"))
     }
 
-    /// Keeps a picture of the page where pictures are wanted.
+    /// Saves a picture of the page, if pictures are requested.
     fn keep_picture(&mut self, name: &str) -> Outcome {
         let Some(folder) = std::env::var_os("PICTURES") else { return Ok(()) };
         let letters = self.browser.picture()?;
@@ -446,7 +446,7 @@ impl Trial {
     }
 }
 
-/// Compares the ends of scenes with those of the native program, as long as any is left.
+/// Compares the ends of scenes with those of the native program until none is left.
 fn compare_bits(browser: &mut Browser, left: &Mutex<std::slice::Iter<'_, [&str; 3]>>) -> Outcome {
     loop {
         let next = left.lock().map_err(|_| "a browser was lost")?.next();

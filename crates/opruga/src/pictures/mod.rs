@@ -160,7 +160,7 @@ impl Scenery {
     /// Draws every spring and every node that it connects, and the body itself instead of a skin.
     pub fn show_springs(&mut self, world: &dyn AnyWorld) {
         for (number, fixed) in self.bodies.iter_mut().enumerate() {
-            // A body that none of its models accepts is reported when it is added.
+            // A body that a model refuses is reported when it is added.
             fixed.springs = world.springs_of(number);
         }
     }

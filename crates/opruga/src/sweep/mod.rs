@@ -1,4 +1,4 @@
-//! Sweeps: one scene run at many values of its parameters, and what was measured of every run.
+//! Sweeps: one scene run with many values of its parameters, and the quantities measured in every run.
 //!
 //! ```
 //! use opruga::sweep::{Axis, Design, Metric, Status, Sweep};

@@ -1,5 +1,5 @@
-//! Contact where it is hardest: bodies that are squeezed, crushed, twisted, hit fast, or begin inside one another, from starts that differ a
-//! little. A check that shares no code with the detection of contact looks after every frame. One failure is a failure.
+//! The hardest contact: bodies that are squeezed, crushed, twisted, hit fast, or begin inside one another, from initial states that differ a little.
+//! After every frame the result is checked by code that is independent of the detection of contact. Every failure counts.
 //!
 //! ```sh
 //! cargo test -p opruga --test all -- --ignored --nocapture hard_contact_from_ten_starts

@@ -1,4 +1,4 @@
-//! What draws the page: WebGPU, WebGL 2 or nothing; a device that is lost; how long pictures take.
+//! The renderers of the page: WebGPU, WebGL 2 or none; a lost device; the time of pictures.
 
 use super::super::server;
 use super::{Browser, Outcome, PATIENCE, Trial, holds};
@@ -6,15 +6,15 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Takes the device away from the page, as drivers do.
+/// Makes the page lose its device, as drivers do.
 const LOSE: &str =
     "document.querySelector('canvas').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()";
-/// A browser that gives no device.
+/// A browser without a device.
 const NONE: &str = "Object.defineProperty(navigator, 'gpu', { value: undefined }); \
                     const get = HTMLCanvasElement.prototype.getContext; \
                     HTMLCanvasElement.prototype.getContext = function (kind, ...rest) { \
                       return kind.startsWith('webgl') ? null : get.call(this, kind, ...rest); }";
-/// How long the pictures of one scene may take.
+/// The longest time for the pictures of one scene.
 const LONGEST_MEASURE: Duration = Duration::from_secs(3600);
 /// Faults of WebGPU that a browser may have.
 const FAULTS: [(&str, &str); 4] = [
@@ -26,7 +26,7 @@ const FAULTS: [(&str, &str); 4] = [
     ),
     ("with a device that shows nothing", "if (window.GPUQueue) GPUQueue.prototype.submit = () => {};"),
 ];
-/// By how much two pictures differ below the line with the numbers: the share of pixels of visibly another colour.
+/// The difference of two pictures below the status line: the fraction of pixels with a visibly different colour.
 const DIFFER: &str = "async (first, second) => { \
     const pixels = async (letters) => { \
       const image = await createImageBitmap(await (await fetch('data:image/png;base64,' + letters)).blob()); \
@@ -54,12 +54,11 @@ mass = 1.0
 shape = { kind = "grid", corner = [0.0, 0.0], size = [1.0, 1.0], cells = [40, 40] }
 models = [{ kind = "fem", youngs_modulus = 100.0, poissons_ratio = 0.3 }]
 "#;
-/// The letters of a picture in which nothing is drawn are fewer.
+/// A picture in which nothing is drawn has fewer letters than this.
 const FEWEST_LETTERS: usize = 60_000;
 
 impl Trial {
-    /// A device that is lost is replaced, and everything goes on as it was; where that happens again and again, the page says so
-    /// and keeps the scene.
+    /// A lost device is replaced, and everything continues as before. If that happens repeatedly, the page reports it and keeps the scene.
     pub(super) fn goes_on_on_another_device(&mut self) -> Outcome {
         self.fresh("?graphics=webgl")?;
         self.click("Add a model")?;
@@ -94,8 +93,8 @@ impl Trial {
         Ok(())
     }
 
-    /// WebGPU draws where there is one that works, WebGL 2 where there is none, where it fails, or where somebody insists on it;
-    /// both draw the same, and the page says which one it is.
+    /// WebGPU is used if it works, and WebGL 2 if there is no WebGPU, if it fails, or if the user insists on WebGL 2. Both draw the same, and the
+    /// page names the one in use.
     pub(super) fn on_webgpu(&mut self) -> Outcome {
         self.browser.size([1280, 720], 1.0, false)?;
         self.fresh("")?;
@@ -126,7 +125,7 @@ impl Trial {
         Ok(())
     }
 
-    /// The picture of one and the same moment, by what shall draw it, which the title and the line with the numbers name.
+    /// The picture of a fixed moment, drawn by a given renderer, which the title and the status line name.
     fn picture_by(&mut self, drawn_by: &str, named: &str) -> Result<String, String> {
         let by = self.browser.value("opruga_drawn_by.name")?;
         holds(by == drawn_by, || format!("it is drawn by {by} and not by {drawn_by}"))?;
@@ -136,15 +135,15 @@ impl Trial {
         self.until("frame 20", |state| state["frames"].as_u64() >= Some(20))?;
         self.browser.value("opruga.seek(20)")?;
         self.until("back at frame 20", |state| state["frames"].as_u64() == Some(20))?;
-        // The line with the numbers is that of the machine: it is left out.
+        // The status line depends on the machine, so it is left out.
         self.drawn("at frame 20")?;
         self.browser.picture()
     }
 
-    /// The process of the graphics driver ends, and the page goes on with another one.
+    /// The process of the graphics driver ends, and the page continues with another one.
     fn goes_on_after_the_driver_has_ended(&mut self) -> Outcome {
         let before = self.state()?;
-        // Whether the answer comes before the process has ended is left to chance.
+        // It is a matter of chance whether the answer comes before the process has ended.
         let _ = self.browser.call("Browser.crashGpuProcess", json!({}));
         self.until_value("opruga_losses.length === 1 && document.querySelector('#cover').className === 'gone'")?;
         let frames = before["frames"].as_u64().unwrap_or(0);
@@ -155,7 +154,7 @@ impl Trial {
         Ok(())
     }
 
-    /// Where nothing can be drawn, the page says so and loads nothing.
+    /// If nothing can be drawn, the page reports it and loads nothing.
     pub(super) fn says_where_nothing_draws(&mut self) -> Outcome {
         let added = self.browser.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": NONE }))?;
         self.browser.open("about:blank")?;
@@ -169,7 +168,7 @@ impl Trial {
         Ok(())
     }
 
-    /// A scene that is too much for the browser goes more slowly, and what the page says of that is so.
+    /// A scene that is too demanding for the browser runs more slowly, and the page reports the true ratio.
     pub(super) fn slows_down_honestly(&mut self) -> Outcome {
         self.fresh("")?;
         self.browser.value("location.hash = '#thousand-balls'")?;
@@ -191,7 +190,7 @@ impl Trial {
         holds((measured - told).abs() < 0.1 + 0.25 * measured, || format!("{measured} is told as {told}"))
     }
 
-    /// A frame of minutes stands in nobody's way: the page gives it up, says so, and hears what comes next.
+    /// A frame of minutes blocks nothing: the page interrupts it, reports it, and handles the next requests.
     pub(super) fn asks_about_long_frames(&mut self) -> Outcome {
         self.fresh("")?;
         self.browser.value(&format!("opruga.show('long', {})", json!(LONG)))?;
@@ -209,7 +208,7 @@ impl Trial {
         Ok(())
     }
 
-    /// Opens the page anew, without what the last one kept.
+    /// Opens the page again, without the stored data of the last one.
     fn fresh(&mut self, query: &str) -> Outcome {
         let address = format!("{}{query}", self.address);
         self.browser.open("about:blank")?;
@@ -217,7 +216,7 @@ impl Trial {
         self.until("the page begins", |state| state["frames"].as_u64() > Some(5)).map(|_| ())
     }
 
-    /// Something is seen.
+    /// Asserts that something is visible.
     fn drawn(&mut self, when: &str) -> Outcome {
         let begin = Instant::now();
         loop {
@@ -245,7 +244,7 @@ impl Trial {
 /// Measures how long pictures of the page take with scenes of growing size.
 ///
 /// # Errors
-/// Where there is no browser, or the page does not begin.
+/// There is no browser, or the page does not start.
 pub(in super::super) fn measure(page: &Path, pictures: u32) -> Outcome {
     let folder = std::env::temp_dir().join(format!("opruga-measure-{}", std::process::id()));
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
@@ -262,7 +261,7 @@ pub(in super::super) fn measure(page: &Path, pictures: u32) -> Outcome {
             trial.fresh(&format!("?graphics={by}"))?;
             trial.browser.value(&format!("opruga.show({name:?}, {})", json!(text)))?;
             trial.until(name, |state| state["name"] == name && state["frames"].as_u64() > Some(2))?;
-            // Large scenes are slow on a processor that draws as well.
+            // Large scenes are slow if the processor also draws.
             let count = if scene.ends_with("ball") || scene.ends_with("10000") { pictures } else { pictures / 4 };
             let begin = format!(
                 "window.told = null; opruga_measure({}).then((told) => (window.told = told)); 0",
@@ -271,7 +270,7 @@ pub(in super::super) fn measure(page: &Path, pictures: u32) -> Outcome {
             trial.browser.value(&begin)?;
             let begin = Instant::now();
             let said = loop {
-                // A page that is busy answers late, but it answers.
+                // A busy page answers late, but it answers.
                 if let Some(said) = trial.browser.value("window.told")?.as_str() {
                     break said.to_string();
                 }

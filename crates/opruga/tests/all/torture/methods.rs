@@ -182,7 +182,8 @@ const BEAMS: &[Body] = &[
 const REASONS: &[&str] =
     &["cells.inverted", "step.odd_rest", "shape_matching.mirrored", "finite_difference.folded", "cells.other_balance"];
 
-/// The deviation of the edges of a body from their rest lengths [m], or 1 if a solid is mirrored: its corners along the axes span a negative volume.
+/// The largest deviation of the edges of a body from their rest lengths [m], or 1 if a solid is mirrored or collapsed: its corners along the axes
+/// span less than 0.9 of their volume at rest.
 fn off(world: &dyn AnyWorld, dimension: usize, rest: &[[f64; 3]], edges: &[[usize; 2]]) -> f64 {
     let now = world.positions(0);
     let length = |a: [f64; 3], b: [f64; 3]| (0..3).map(|d| (a[d] - b[d]) * (a[d] - b[d])).sum::<f64>().sqrt();
