@@ -418,8 +418,8 @@ impl Document {
     }
 }
 
-/// Errors in the text of a scene that nobody sees, without its lines, which would mean nothing to the user. They are replaced by the subject of the
-/// error or, if there is one, the file; lines of other files are kept.
+/// Removes the lines from errors in the text of a scene that nobody sees, because they would mean nothing to the user. These errors name `file`
+/// instead, or nothing if it is empty; lines of other files are kept.
 pub(crate) fn without_lines(errors: Vec<SceneError>, scene: &str, file: &str) -> Vec<SceneError> {
     let own = format!("{scene}.toml");
     let without_own_lines = |error: SceneError| match error.file == own {

@@ -82,7 +82,7 @@ fn a_held_body_is_not_called_loose_because_of_another_error() {
 
 /// A square of St. Venant–Kirchhoff in plane stress is stretched to 1.5 times its length in eight steps. If a model refuses the whole displacement of
 /// the pins at once, they are moved in parts. Without transverse stress, E_y = −ν E_x. Beyond √(1 + 1/ν), which is 1.795, no thickness satisfies
-/// that; the model reports this, and the limit of halving the steps.
+/// that; the model reports this, and its hint says how halving the steps helps.
 #[test]
 fn statics_follows_pins_as_far_as_a_model_goes_and_says_where_it_ends() {
     let square = "[[body]]\nname = \"b\"\nthickness = 0.5\nshape = { kind = \"grid\", size = [1.0, 1.0], cells = [2, 2] }\n\

@@ -10,7 +10,7 @@ use egui::{
 };
 use opruga::draw::format_value;
 
-/// How long a notice stays on the screen, and how much longer for every letter after the first sixty [s].
+/// How long a notice stays on the screen, and the additional time `TO_READ` for every letter after the first sixty [s].
 const SHOWN_FOR: f64 = 6.0;
 const TO_READ: f64 = 0.05;
 

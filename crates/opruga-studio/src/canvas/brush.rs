@@ -5,10 +5,11 @@ use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Vec2};
 use std::sync::Arc;
 
-/// Points of a line closer together than this are merged; with hard borders, in a crowd, the second value applies [points of the screen].
+/// Points of a line closer together than this are merged; with hard borders, in a crowd, `JOINED_HARD` applies [points of the screen].
 const JOINED: f32 = 0.4;
 const JOINED_HARD: f32 = 1.5;
-/// Longer lines are searched for straight pieces; the second value is the largest deviation [points of the screen].
+/// A line with more points than this is searched for straight pieces; `BESIDE`, or `BESIDE_HARD` with hard borders, is the largest deviation of its
+/// points from them [points of the screen].
 const LONG: usize = 256;
 const BESIDE: f32 = 0.1;
 const BESIDE_HARD: f32 = 0.4;

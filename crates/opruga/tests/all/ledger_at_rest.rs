@@ -183,7 +183,7 @@ fn balances_that_are_led_have_a_closed_ledger() {
         println!("{gas}: {first:?} {energy:?}");
         let given = energy.work_gas - first.work_gas;
         assert!(given.abs() > 1.0 && closure < 1e-9, "{gas}: {closure:e} {energy:?}");
-        // After its first equilibrium this ring does not move, except for remaining small corrections.
+        // After its first equilibrium no pin moves this ring, so only the error of the finite steps remains.
         let led = energy.work_user - first.work_user;
         assert!(led.abs() < 0.2 * given.abs(), "{gas}: {led} J of {given} J");
     }

@@ -36,7 +36,7 @@ fn tight(frame: f64, substeps: u32, gravity: f64, rule: &str) -> String {
     head(frame, substeps, gravity, rule).replace("[world]", &format!("{TIGHT}[world]"))
 }
 
-/// A soft square that spins about its centre and oscillates in length because of that, with ten steps per revolution.
+/// A soft square that spins about its centre and therefore oscillates in size, with ten steps per revolution.
 const SPINNING: &str = "[[body]]\nname = \"square\"\nshape = { kind = \"grid\", size = [1, 1], cells = [3, 3] }\n\
     density = 1000\nangular_velocity = 10.0\nvelocity = [1.0, 2.0]\n\
     models = [ { kind = \"fem\", youngs_modulus = 1e6, poissons_ratio = 0.3MORE } ]\n";
