@@ -1,6 +1,6 @@
 //! # Opruga
 //!
-//! Elastically deformable bodies in 2D and 3D: springs, gas, bending and more, with any integrator, which a word in the scene file selects.
+//! Elastically deformable bodies in 2D and 3D: springs, gas, bending and more, stepped by any integrator that the scene file names.
 //!
 //! ```
 //! use opruga::{Options, catalogue, io::scene};

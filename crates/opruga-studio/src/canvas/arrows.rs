@@ -1,4 +1,4 @@
-//! Arrows over a scene of the plane, and the key of the arrows in both dimensions: an arrow that is as long as one for a round value.
+//! Arrows over a scene of the plane, and the key of the arrows in both dimensions, which shows an arrow with the length of a round value.
 
 use super::camera::Flat;
 use super::look::{Look, Paper, colour, on_paper};

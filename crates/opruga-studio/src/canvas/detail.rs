@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn tips_corners_and_colours_are_kept_and_points_on_one_another_and_numbers_that_are_none_do_no_harm() {
         let at = |x: f32, y: f32| (Pos2::new(x, y), RED);
-        // Forth and back along one line: the tip must be kept.
+        // There and back along one line: the tip must be kept.
         let spike: Vec<_> = (0..=100).chain((0..100).rev()).map(|k| at(k as f32, 100.0)).collect();
         let tip = kept(&detail(), &spike);
         assert!(tip.iter().any(|index| (*index as i32 - 100).abs() <= 1), "{tip:?}");

@@ -127,7 +127,7 @@ mod tests {
         assert_eq!(body(&line(|t| [t.sin(), (2.0 * t).sin()]), 0.02).err(), Some("crossing"));
         assert_eq!(body(&line(|t| [0.01 * t.cos(), 0.01 * t.sin()]), 0.02).err(), Some("too_small"));
         assert_eq!(body(&[[0.0, 0.0], [9.0, 0.0]], 0.02).err(), Some("too_small"));
-        // Forth and back on one line.
+        // There and back on one line.
         assert_eq!(body(&[[0.0, 0.0], [9.0, 0.0], [2.0, 0.0]], 0.02).err(), Some("crossing"));
     }
 

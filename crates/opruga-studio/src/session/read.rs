@@ -74,12 +74,12 @@ impl Session {
         self.messages
     }
 
-    /// Whether it is going to another moment.
+    /// Whether it is seeking another moment.
     pub fn is_seeking(&self) -> bool {
         self.goal.is_some()
     }
 
-    /// Whether anything moves: time passes, or the session is going to another moment.
+    /// Whether anything moves: time passes, or the session is seeking another moment.
     pub fn is_moving(&self) -> bool {
         self.playing || self.goal.is_some()
     }

@@ -271,7 +271,7 @@ const PUBLISHED: [(&str, f64, f64); 9] = [
     ("Brazil", 8_515_770.0, 0.01),
 ];
 
-/// A country drawn in its real size has its published area: the projection is equal-area at the central latitude, and the areas of countries that
+/// A country drawn at its real size has its published area: the projection is equal-area at the central latitude, and the areas of countries that
 /// extend over less than 40° of latitude differ by a few per cent at most.
 #[test]
 fn countries_have_the_areas_that_are_published_for_them() {
@@ -282,7 +282,7 @@ fn countries_have_the_areas_that_are_published_for_them() {
         let (_, polygons) = features.iter().find(|(own, _)| own == name).expect(name);
         let [low, high] = bounds(polygons);
         let narrow = (0.5 * (low[1] + high[1])).to_radians().cos();
-        // In its real size, with kilometres instead of metres.
+        // At its real size, with kilometres instead of metres.
         let size = degree * ((high[0] - low[0]) * narrow).max(high[1] - low[1]);
         let mesh = plane(&format!(
             "kind = \"map\", file = \"shapes/countries-110m.json\", layer = \"countries\", feature = \"{name}\", \
@@ -341,7 +341,7 @@ fn all_countries_have_the_pieces_and_areas_of_their_raw_corners() {
         };
         let raw = total(&polygons, flat);
         assert!((found / raw - 1.0).abs() < 0.01, "{name}: {found}, not {raw} square degrees");
-        // At this scale a few islands have shrunk to nothing: forth and back.
+        // At this scale a few islands have shrunk to nothing: their outlines run there and back.
         let is_there = |ring: &Vec<[f64; 2]>| flat(ring) > 1e-6 * raw;
         let rings = polygons.iter().flatten().filter(|ring| is_there(ring)).count();
         assert_eq!(mesh.components().expect("closed").len(), rings, "{name}");
