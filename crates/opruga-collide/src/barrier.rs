@@ -35,7 +35,7 @@ use crate::rows::{key, meeting_time};
 use crate::surface::Surface;
 use crate::touching::{Touching, Trouble};
 use crate::vector::{add, dot, length, scaled, subtract};
-use opruga_math::Lane;
+use opruga_math::{Lane, Simd};
 
 /// The smallest fraction of its gap that a pair keeps in one iteration: the value of the source (2020, section 5).
 const KEPT: f64 = 0.1;
@@ -166,9 +166,11 @@ pub struct Barrier<const D: usize> {
 const MARGIN: f64 = 0.25;
 
 impl<const D: usize> Barrier<D> {
-    /// Makes a barrier with a reach [m].
-    pub fn new(reach: f64) -> Barrier<D> {
-        Barrier { reach, ..Barrier::default() }
+    /// Makes a barrier with a reach [m]. The bits of its results do not depend on the vector instructions.
+    pub fn new(reach: f64, simd: Simd) -> Barrier<D> {
+        let mut barrier = Barrier { reach, ..Barrier::default() };
+        barrier.candidates.simd = simd;
+        barrier
     }
 
     /// Discards the pairs that may come within reach, because the surface may be another one.

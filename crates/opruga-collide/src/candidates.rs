@@ -1,11 +1,12 @@
 //! Pairs of features that may meet.
 
 use crate::grid::Grid;
+use crate::overlaps::{Columns, Overlaps};
 use crate::reach::around;
 use crate::surface::Surface;
-use opruga_math::Lane;
+use opruga_math::{Lane, Simd};
 
-type Bounds<const D: usize> = [[f64; D]; 2];
+pub(crate) type Bounds<const D: usize> = [[f64; D]; 2];
 
 /// Pairs of a vertex and a facet, and in 3D of two edges, whose boxes are closer than a distance; ascending, each once.
 ///
@@ -16,6 +17,8 @@ pub struct Candidates<const D: usize> {
     pub vertex_facet: Vec<[u32; 2]>,
     /// Two edges, the one with the lower number first; empty in 2D.
     pub edge_edge: Vec<[u32; 2]>,
+    /// The vector instructions. The pairs that a search finds do not depend on them.
+    pub simd: Simd,
     /// Pairs that a search adds, and the merged list.
     fresh: Vec<[u32; 2]>,
     merged: Vec<[u32; 2]>,
@@ -26,6 +29,7 @@ pub struct Candidates<const D: usize> {
     close_bodies: Vec<[u32; 2]>,
     first: Vec<(u32, Bounds<D>)>,
     second: Vec<(u32, Bounds<D>)>,
+    columns: Columns,
 }
 
 /// A box, enlarged by a distance [m] on all sides.
@@ -58,9 +62,9 @@ fn merge(pairs: &mut Vec<[u32; 2]>, fresh: &mut [[u32; 2]], merged: &mut Vec<[u3
     std::mem::swap(pairs, merged);
 }
 
-/// Up to this product of counts, all pairs of features of two bodies are compared: sorting them into cells costs as much as some
-/// thousand comparisons.
-const FEW: usize = 4096;
+/// If a body has up to this number of features, each of the other body is compared with all of them, eight at a time: finding the cells of a
+/// feature takes as long as a thousand comparisons.
+const FEW: usize = 1024;
 
 impl<const D: usize> Candidates<D> {
     /// Finds all pairs of features with boxes closer than a distance [m] along every axis, given the boxes of the points [m]. The
@@ -212,15 +216,10 @@ impl<const D: usize> Candidates<D> {
 
     /// Calls `visit` with the features of both lists whose boxes overlap.
     fn join(&mut self, mut visit: impl FnMut(u32, u32)) {
-        if self.first.len() * self.second.len() <= FEW {
-            for (a, box_a) in &self.first {
-                for (b, box_b) in &self.second {
-                    if meet_boxes(box_a, box_b) {
-                        visit(*a, *b);
-                    }
-                }
-            }
-            return;
+        if self.second.len() <= FEW {
+            let Candidates { first, second, columns, simd, .. } = self;
+            columns.fill(second);
+            return simd.run(Overlaps { first, second, columns, visit });
         }
         self.grid.fill(self.second.iter().map(|(_, bounds)| *bounds));
         for (a, bounds) in &self.first {
@@ -246,5 +245,6 @@ impl<const D: usize> Candidates<D> {
             + 4 * self.found.capacity()
             + 16 * D * (self.bodies.capacity() + self.first.capacity() + self.second.capacity())
             + self.grid.heap_bytes()
+            + self.columns.heap_bytes()
     }
 }

@@ -86,6 +86,7 @@ mod law;
 mod motion;
 mod newton;
 mod outline;
+mod overlaps;
 mod pass;
 mod passages;
 mod picture;

@@ -4,7 +4,7 @@ use crate::gap::Gap;
 use crate::row::Row;
 use crate::rows::{impact, key, meeting_time};
 use crate::touching::{Touching, Trouble};
-use crate::vector::dot;
+use crate::vector::{dot, subtract};
 use crate::zones::{Led, PointsOfPair, ROUNDING, Zone};
 use opruga_math::Lane;
 
@@ -18,7 +18,10 @@ impl<const D: usize> Touching<D> {
         let mut found = false;
         for with_facet in [true, false] {
             for k in 0..self.close[usize::from(!with_facet)].len() {
-                let pair @ [a, b] = self.close[usize::from(!with_facet)][k];
+                let (pair @ [a, b], distance) = self.close[usize::from(!with_facet)][k];
+                if self.is_out_of_reach(pair, with_facet, distance) {
+                    continue;
+                }
                 let [first, second] = if with_facet {
                     [self.path(&[a]), self.path(&self.surface.facets[b as usize])]
                 } else {
@@ -30,6 +33,23 @@ impl<const D: usize> Touching<D> {
             }
         }
         found
+    }
+
+    /// Whether a pair cannot meet in the step because each of its points travels less than half of its distance at the start [m], with a
+    /// margin for rounding.
+    fn is_out_of_reach(&self, [a, b]: [u32; 2], with_facet: bool, distance: f64) -> bool {
+        let mut most: f64 = 0.0;
+        let mut travel = |p: u32| {
+            let displacement = subtract(&self.end[p as usize], &self.before[0][p as usize]);
+            most = dot(&displacement, &displacement).larger(most);
+        };
+        if with_facet {
+            travel(a);
+            self.surface.facets[b as usize].into_iter().for_each(travel);
+        } else {
+            [a, b].into_iter().flat_map(|e| self.surface.edges[e as usize]).for_each(travel);
+        }
+        distance * distance > 4.01 * most
     }
 
     /// The box around the motion of a feature to the end of the step [m].

@@ -46,21 +46,13 @@ impl<const D: usize> Touching<D> {
     /// axes; such pairs would be checked again in every step.
     fn measure_apart(&mut self) {
         let Touching {
-            surface,
-            before: [x, _],
-            candidates,
-            clearance,
-            apart,
-            apart_features: pairs,
-            distances,
-            simd,
-            ..
+            surface, before: [x, _], candidates, clearance, apart, apart_features: pairs, distances, ..
         } = self;
         for (list, apart) in apart.iter().enumerate() {
             let all = [&candidates.vertex_facet, &candidates.edge_edge][list];
             pairs.clear();
             pairs.extend(apart.iter().map(|k| all[*k as usize]));
-            simd.run(Distances { surface, x, pairs, with_facet: list == 0, distances });
+            candidates.simd.run(Distances { surface, x, pairs, with_facet: list == 0, distances });
             for (k, distance) in apart.iter().zip(distances.iter()) {
                 let [own, other] = clearance.bodies(list, *k as usize);
                 let holds_on_both_sides = own == other || list == 0 && !surface.closed[all[*k as usize][1] as usize];
@@ -109,12 +101,12 @@ impl<const D: usize> Touching<D> {
         if self.are_entangled(bodies) {
             return;
         }
-        self.close[1].push(pair);
-        let Some(mut gap) = Gap::of_edges(&self.surface, &self.before[0], a, b) else {
-            let distance = Gap::distance_of_edges(&self.surface, &self.before[0], a, b);
-            return self.clearance.note(1, candidate, distance);
-        };
-        self.clearance.note(1, candidate, gap.gap.abs());
+        let gap = Gap::of_edges(&self.surface, &self.before[0], a, b);
+        let between = || Gap::distance_of_edges(&self.surface, &self.before[0], a, b);
+        let separation = gap.map_or_else(between, |gap| gap.gap.abs());
+        self.close[1].push((pair, separation));
+        self.clearance.note(1, candidate, separation);
+        let Some(mut gap) = gap else { return };
         if bodies[0] == bodies[1] && gap.gap < 0.0 {
             (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
         }
@@ -174,10 +166,10 @@ impl<const D: usize> Touching<D> {
                 self.clearance.note(0, k, apart);
                 continue;
             }
-            if distance == 0.0 {
-                self.close[0].push(pair);
-            }
             let mut gap = Gap::of_vertex_and_facet(&self.surface, &self.before[0], vertex, facet);
+            if distance == 0.0 {
+                self.close[0].push((pair, gap.gap.abs()));
+            }
             if own == other && gap.gap < 0.0 {
                 // Contact of a body with itself acts on both sides.
                 (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));

@@ -60,8 +60,6 @@ pub struct Touching<const D: usize> {
     pub report: bool,
     /// The effects of contact since the beginning of the frame, sorted by bodies.
     pub reports: Vec<Report<D>>,
-    /// The vector instructions to use; the bits of the results do not depend on them.
-    pub simd: Simd,
     /// The margin of the search [m].
     pub margin: f64,
     /// The largest number of candidates.
@@ -103,8 +101,8 @@ pub struct Touching<const D: usize> {
     pub(crate) passing: Vec<(u64, Gap<D>)>,
     /// Those of them that the last check has found.
     pub(crate) fresh: Vec<u64>,
-    /// The pairs of a vertex and a facet, and of two edges, that may meet in the step.
-    pub(crate) close: [Vec<[u32; 2]>; 2],
+    /// The pairs of a vertex and a facet, and of two edges, that may meet in the step, and their distances at its start [m].
+    pub(crate) close: [Vec<([u32; 2], f64)>; 2],
     pub(crate) zones: Zones<D>,
     /// Whether the frame has begun without a check of which points are inside other bodies; and these points, ascending.
     pub(crate) looks_inside: bool,
@@ -194,6 +192,11 @@ impl<const D: usize> Touching<D> {
             self.reach.forget();
             self.clearance.forget_own();
         }
+    }
+
+    /// Chooses the vector instructions. The bits of the results do not depend on them.
+    pub fn use_simd(&mut self, simd: Simd) {
+        self.candidates.simd = simd;
     }
 
     /// Discards the impulses of the last step, if the state is no longer their result.

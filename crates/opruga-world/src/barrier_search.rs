@@ -19,7 +19,7 @@ use opruga_collide::{Barrier, Pressed, Rubbing, Touching, Trouble};
 use opruga_core::error::StepError;
 use opruga_core::open_step::OpenStep;
 use opruga_core::system::Workspace;
-use opruga_math::Lane;
+use opruga_math::{Lane, Simd};
 use opruga_solve::{Directions, Preconditioner, conjugate_gradients, dot};
 
 /// The tolerance of the linear solver in the first iteration, relative to its right-hand side. It falls with the residual, as for a single body.
@@ -60,8 +60,8 @@ pub(crate) struct Kept<const D: usize> {
 }
 
 impl<const D: usize> Kept<D> {
-    pub(crate) fn new(reach: f64) -> Self {
-        Kept { barrier: Barrier::new(reach), ..Kept::default() }
+    pub(crate) fn new(reach: f64, simd: Simd) -> Self {
+        Kept { barrier: Barrier::new(reach, simd), ..Kept::default() }
     }
 }
 

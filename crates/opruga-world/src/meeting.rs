@@ -98,6 +98,7 @@ impl<const D: usize> Meeting<D> {
         let mut numbers = cluster.bodies.clone();
         numbers.extend(cluster.outlines.iter().map(|outline| first_outline + outline));
         let mut touching = Touching::<D>::default();
+        touching.use_simd(scene.simd);
         let (mut columns, mut points, mut pushed) = (vec![Vec::new(); islands.len()], Vec::new(), Vec::new());
         let mut pushed_bodies = Vec::new();
         let mut workspace = Workspace::default();
@@ -170,7 +171,7 @@ impl<const D: usize> Meeting<D> {
             outlines,
             pushed,
             at_rest,
-            barrier: scene.reach.map(Kept::new),
+            barrier: scene.reach.map(|reach| Kept::new(reach, scene.simd)),
             workspace,
         }
     }

@@ -6,7 +6,7 @@ use crate::island::{FramePlan, Island};
 use crate::path::{Bounds, overlap, wider};
 use opruga_collide::{Colliders, Laws, Outline};
 use opruga_core::spec::Values;
-use opruga_math::Lane;
+use opruga_math::{Lane, Simd};
 use std::sync::Arc;
 
 /// The margin of the search for candidates, relative to the mean edge. Points may move half of it between two searches, a quarter of an edge; this is
@@ -30,6 +30,8 @@ pub(crate) struct SceneContact<const D: usize> {
     pub(crate) margin: f64,
     /// The maximum number of candidates.
     pub(crate) most: usize,
+    /// The vector instructions of the world.
+    pub(crate) simd: Simd,
     /// The reach of the barrier [m]; none if impulses keep bodies apart.
     pub(crate) reach: Option<f64>,
     /// The distance from their present positions within which bodies may touch others [m].
@@ -60,7 +62,12 @@ impl<const D: usize> MadeFor<D> {
 
 impl<const D: usize> SceneContact<D> {
     /// The contact of a scene in its present state; none without `[contact]`, or if no two bodies may touch.
-    pub(crate) fn of(scene: &Blueprint<D>, islands: &[Island<D>], made_for: MadeFor<D>) -> Option<SceneContact<D>> {
+    pub(crate) fn of(
+        scene: &Blueprint<D>,
+        islands: &[Island<D>],
+        made_for: MadeFor<D>,
+        simd: Simd,
+    ) -> Option<SceneContact<D>> {
         let contact = scene.contact.as_ref()?;
         // In the order of the bodies, so that results do not depend on batches.
         let mut seated: Vec<(usize, (usize, usize))> = Vec::new();
@@ -101,6 +108,7 @@ impl<const D: usize> SceneContact<D> {
             laws,
             margin: MARGIN_OF_EDGE * mean_edge,
             most: contact.values.number("most_pairs").unwrap_or(0.0) as usize,
+            simd,
             reach,
             distance: thickness + reach.unwrap_or(0.0),
         })

@@ -59,7 +59,7 @@ impl<const D: usize> World<D> {
         let (built, colliders) = (self.islands_built, self.colliders.clone());
         let made_for = MadeFor { built, islands: self.islands.len(), colliders };
         if self.clusters.as_ref().is_none_or(|clusters| !clusters.scene.is_for(&made_for)) {
-            let scene = SceneContact::of(&self.blueprint, &self.islands, made_for);
+            let scene = SceneContact::of(&self.blueprint, &self.islands, made_for, self.simd);
             self.clusters = scene.map(|scene| Box::new(Clusters::of(scene)));
         }
     }

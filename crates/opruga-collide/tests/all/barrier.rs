@@ -1,7 +1,7 @@
 //! The barrier: forces are derivatives of its energy, and nothing passes through it.
 
 use opruga_collide::{Barrier, Laws, PairLaw, Pressed, Surface};
-use opruga_math::Lane;
+use opruga_math::{Lane, Simd};
 use opruga_mesh::Mesh;
 
 const REACH: f64 = 0.1;
@@ -49,7 +49,7 @@ fn blocks<const D: usize>(apart: f64, angle: f64, seed: &mut u64) -> (Surface<D>
 }
 
 fn barrier<const D: usize>(surface: &Surface<D>, x: &[[f64; D]], seed: &mut u64) -> Barrier<D> {
-    let mut barrier = Barrier::new(REACH);
+    let mut barrier = Barrier::new(REACH, Simd::best());
     barrier.softness = (0..surface.points()).map(|_| 1e-3 * (2.0 + random(seed))).collect();
     barrier.look(surface, &laws(0.5), [x, x], 1000).expect("few pairs");
     barrier
@@ -116,7 +116,7 @@ fn the_barrier_has_two_continuous_derivatives_and_no_bound() {
         let mut x = wire.positions.clone();
         // A corner over the middle of the upper side.
         x.extend([[0.5, 1.01 + gap], [1.5, 2.5], [-0.5, 2.5], [0.5, 3.5]]);
-        let mut barrier = Barrier::new(REACH);
+        let mut barrier = Barrier::new(REACH, Simd::best());
         barrier.softness = vec![1e-3; x.len()];
         barrier.look(&surface, &laws(0.0), [&x, &x], 1000).expect("few pairs");
         let pairs = pressed(&barrier, &surface, &x);
