@@ -5,9 +5,9 @@ use super::pressed::{BARRIER, patch_at_rest_by_barrier, pressures_at_rest, weigh
 use crate::case::{Case, Check, Over, Scale};
 
 const WEIGHT: Case = Case {
-    quantity: "force between a solid at rest and one that it stands on, by `equilibrium`, over its weight",
+    quantity: "force between a solid at rest and the one that it stands on, relative to its weight, by `equilibrium`",
     source: "exact: 1 (I. Newton)",
-    over: Over::Parameter("mass of the upper over that of the lower"),
+    over: Over::Parameter("mass of the upper body divided by that of the lower one"),
     levels: &[1e-4, 1.0, 1e4],
     expected: &[1.0],
     tolerance: 1e-6,
@@ -18,9 +18,10 @@ const WEIGHT: Case = Case {
 pub(super) const CASES: &[Case] = &[
     Case {
         name: "contact-patch-statics",
-        quantity: "largest difference of the pressure on a node from the one that presses two blocks of meshes that do not match, over it, by `equilibrium`",
+        quantity: "two blocks with non-matching meshes are pressed together: largest deviation of the pressure on a node from the applied pressure, \
+relative to that, by `equilibrium`",
         source: "exact: uniform pressure (R. L. Taylor, P. Papadopoulos 1991, contact patch test)",
-        over: Over::Cells("cells along a side of the lower block; one more of the upper"),
+        over: Over::Cells("cells along a side of the lower block; one more along that of the upper block"),
         levels: &[2.0, 3.0, 4.0],
         scale: Scale::Of(1.0),
         tolerance: 1e-6,
@@ -31,14 +32,15 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "weight-on-body-statics", measure: |lab, ratio| weight(lab, "equilibrium", "", ratio, 1.0), ..WEIGHT },
     Case {
         name: "weight-on-body-barrier-statics",
-        quantity: "force between a solid at rest and one that it stands on, by `equilibrium` with a barrier, over its weight",
+        quantity: "force between a solid at rest and the one that it stands on, relative to its weight, by `equilibrium` with a barrier",
         levels: &[0.01, 1.0, 100.0],
         measure: |lab, ratio| weight(lab, "equilibrium", "response = \"barrier\"\n", ratio, 1.0),
         ..WEIGHT
     },
     Case {
         name: "contact-patch-barrier-statics",
-        quantity: "largest difference of the pressure on a node from the one that presses two blocks of meshes that do not match, over it, by `equilibrium` with a barrier",
+        quantity: "two blocks with non-matching meshes are pressed together: largest deviation of the pressure on a node from the applied pressure, \
+relative to that, by `equilibrium` with a barrier",
         measure: patch_at_rest_by_barrier,
         ..BARRIER
     },

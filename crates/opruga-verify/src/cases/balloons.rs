@@ -9,9 +9,10 @@ use opruga::mesh::Mesh;
 
 const SPHERE: Case = Case {
     family: Family::Pressure,
-    quantity: "growth of the inner radius of a thick rubber sphere, A = 1 m, B = 2 m, at p = 0.551869 μ; neo-Hookean, ν = 0.49999",
+    quantity: "increase of the inner radius of a thick rubber sphere, A = 1 m, B = 2 m, at p = 0.551869 μ; neo-Hookean, ν = 0.49999",
     unit: "m",
-    source: "incompressible: p/μ = f(λ_B) − f(λ_A), f = 2/λ + 1/2λ⁴ (A. E. Green, W. Zerna, Theoretical Elasticity, art. 3.10; the same by quadrature), λ_A = 1.25",
+    source: "incompressible: p/μ = f(λ_B) − f(λ_A), f = 2/λ + 1/2λ⁴ (A. E. Green, W. Zerna, Theoretical Elasticity, art. 3.10; confirmed by \
+quadrature), λ_A = 1.25",
     over: Over::Cells("cells through the wall"),
     expected: &[0.25],
     check: Check::Order(2.0),
@@ -19,8 +20,8 @@ const SPHERE: Case = Case {
 };
 
 const TUBE: Case = Case {
-    quantity: "growth of the inner radius of a thick rubber tube, A = 1 m, B = 2 m, at p = 0.275712 μ; neo-Hookean, plane strain, ν = 0.49999",
-    source: "incompressible: p/μ = ln λ_A/λ_B + (λ_B⁻² − λ_A⁻²)/2 (R. S. Rivlin 1949; the same by quadrature), λ_A = 1.25",
+    quantity: "increase of the inner radius of a thick rubber tube, A = 1 m, B = 2 m, at p = 0.275712 μ; neo-Hookean, plane strain, ν = 0.49999",
+    source: "incompressible: p/μ = ln λ_A/λ_B + (λ_B⁻² − λ_A⁻²)/2 (R. S. Rivlin 1949; confirmed by quadrature), λ_A = 1.25",
     ..SPHERE
 };
 
@@ -35,14 +36,16 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "thick-tube-quadratic-triangles",
         // Changed after its first run. It started at 4 cells and had ν = 0.49999, which moved the wall by 6e-6; this was most of the error.
-        quantity: "growth of the inner radius of a thick rubber tube, A = 1 m, B = 2 m, at p = 0.275712 μ; neo-Hookean, plane strain, ν = 0.4999999",
+        quantity: "increase of the inner radius of a thick rubber tube, A = 1 m, B = 2 m, at p = 0.275712 μ; neo-Hookean, plane strain, ν = \
+0.4999999",
         levels: &[8.0, 16.0, 32.0],
         measure: |lab, n| tube(lab, n, Cells::Quadratic, 0.499_999_9),
         ..TUBE
     },
     Case {
         name: "gas-in-a-thick-tube",
-        quantity: "growth of the inner radius of a thick rubber tube, A = 1 m, B = 2 m, whose cavity holds gas of nRT = 1.353396 μ m³ for each metre; neo-Hookean, plane strain, ν = 0.49999",
+        quantity: "increase of the inner radius of a thick rubber tube, A = 1 m, B = 2 m, whose cavity holds gas of nRT = 1.353396 μ m³ per metre; \
+neo-Hookean, plane strain, ν = 0.49999",
         source: "incompressible tube (R. S. Rivlin 1949) and nRT = p π A² λ_A²: p = 0.275712 μ at λ_A = 1.25",
         levels: &[4.0, 8.0, 16.0],
         quick: true,
@@ -65,8 +68,10 @@ pub(super) const CASES: &[Case] = &[
         name: "thin-balloon-quadratic-tetrahedra",
         // Changed after its first run. It started with one cell through the wall, which finer sides do not improve, and had ν = 0.49999, which moved
         // the wall by 1e-4.
-        quantity: "growth of the inner radius of a rubber sphere, A = 1 m, B = 1.1 m, two cells through the wall, at p = 0.1 μ; neo-Hookean, ν = 0.499999",
-        source: "incompressible: p/μ = f(λ_B) − f(λ_A), f = 2/λ + 1/2λ⁴ (A. E. Green, W. Zerna, Theoretical Elasticity, art. 3.10; the same by quadrature), λ_A = 1.195255",
+        quantity: "increase of the inner radius of a rubber sphere, A = 1 m, B = 1.1 m, two cells through the wall, at p = 0.1 μ; neo-Hookean, ν = \
+0.499999",
+        source: "incompressible: p/μ = f(λ_B) − f(λ_A), f = 2/λ + 1/2λ⁴ (A. E. Green, W. Zerna, Theoretical Elasticity, art. 3.10; confirmed by \
+quadrature), λ_A = 1.195255",
         over: Over::Cells("cells along a side of an eighth"),
         levels: &[4.0, 5.0, 6.0],
         expected: &[0.195_255_486_883_212_6],
@@ -75,7 +80,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "largest-pressure-of-a-thick-balloon",
-        quantity: "largest pressure that a thick rubber sphere takes, over μ; A = 1 m, B = 2 m, neo-Hookean, ν = 0.49999, hexahedra",
+        quantity: "largest pressure that a thick rubber sphere withstands, divided by μ; A = 1 m, B = 2 m, neo-Hookean, ν = 0.49999, hexahedra",
         unit: "",
         source: "incompressible: maximum of f(λ_B) − f(λ_A), f = 2/λ + 1/2λ⁴, at λ_A = 1.82815",
         levels: &[2.0, 3.0, 5.0],

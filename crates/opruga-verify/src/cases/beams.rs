@@ -7,8 +7,8 @@ use crate::lab::{Lab, Scene, Trouble};
 use std::fmt::Write as _;
 
 const ELASTICA: Case = Case {
-    quantity: "sinking of the tip of a clamped rod under a force across, over its length, PL²/EI = 2",
-    source: "K. E. Bisshopp, D. C. Drucker 1945, elliptic integrals; the same by shooting",
+    quantity: "deflection of the tip of a clamped rod under a transverse force, divided by its length, PL²/EI = 2",
+    source: "K. E. Bisshopp, D. C. Drucker 1945, elliptic integrals; confirmed by shooting",
     over: Over::Cells("segments"),
     expected: &[0.493457],
     ..BASE
@@ -32,7 +32,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "elastica-chain-by-load",
-        quantity: "sinking of the tip of a clamped rod of 100 segments under a force across, over its length",
+        quantity: "deflection of the tip of a clamped rod of 100 segments under a transverse force, divided by its length",
         over: Over::Parameter("PL²/EI"),
         levels: &[0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0],
         expected: &[0.082746, 0.162144, 0.301721, 0.493457, 0.603253, 0.669964, 0.713792, 0.744571, 0.784982, 0.810609],
@@ -44,7 +44,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "elastica-quadratic-triangles",
-        quantity: "sinking of the tip of a clamped strip of thickness L/50 under a force across, over its length, PL²/EI = 2, St. Venant–Kirchhoff",
+        quantity: "deflection of the tip of a clamped strip of thickness L/50 under a transverse force, divided by its length, PL²/EI = 2, St. \
+Venant–Kirchhoff",
         over: Over::Cells("cells along the strip"),
         levels: &[10.0, 20.0, 40.0],
         measure: |lab, n| strip(lab, n, Cells::Quadratic, 1.0),
@@ -52,7 +53,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "elastica-quadrilaterals",
-        quantity: "sinking of the tip of a clamped strip of thickness L/50 under a force across, over its length, PL²/EI = 2, St. Venant–Kirchhoff",
+        quantity: "deflection of the tip of a clamped strip of thickness L/50 under a transverse force, divided by its length, PL²/EI = 2, St. \
+Venant–Kirchhoff",
         over: Over::Cells("cells along the strip"),
         // Changed after its first run, which had half as many cells along the strip: the spurious part of the shear depends only on the ratio of the
         // length of a cell to the thickness.
@@ -62,9 +64,9 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "roll-up",
-        quantity: "moment that holds a straight rod of EI = 1 N m² and 1 m rolled up to a closed circle",
+        quantity: "moment that keeps a straight rod of EI = 1 N m² and 1 m rolled up into a closed circle",
         unit: "N m",
-        source: "exact: M = 2π EI/L, for a chain of equal hinges too",
+        source: "exact: M = 2π EI/L, also for a chain of equal hinges",
         over: Over::Cells("segments"),
         levels: &[12.0, 24.0, 48.0],
         expected: &[std::f64::consts::TAU],
@@ -76,7 +78,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "heavy-beam-quadratic-tetrahedra",
-        quantity: "sinking of the end of a beam of 1 × 0.1 × 0.1 m by its weight, E = 1e8 Pa, ν = 0.3, ρ = 1000 kg/m³, neo-Hookean",
+        quantity: "deflection of the end of a beam of 1 × 0.1 × 0.1 m under its weight, E = 1e8 Pa, ν = 0.3, ρ = 1000 kg/m³, neo-Hookean",
         levels: &[4.0, 8.0, 12.0],
         expected: &[0.014686],
         measure: |lab, n| heavy(lab, n, Cells::Quadratic, 1e8, 4.0),
@@ -84,7 +86,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "heavy-beam-hexahedra",
-        quantity: "sinking of the end of a beam of 1 × 0.1 × 0.1 m by its weight, E = 1e8 Pa, ν = 0.3, ρ = 1000 kg/m³, neo-Hookean",
+        quantity: "deflection of the end of a beam of 1 × 0.1 × 0.1 m under its weight, E = 1e8 Pa, ν = 0.3, ρ = 1000 kg/m³, neo-Hookean",
         // Changed after its first run, which had half as many cells along it, like the strip.
         levels: &[20.0, 40.0, 80.0],
         expected: &[0.014686],
@@ -93,8 +95,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "very-heavy-beam-quadratic-tetrahedra",
-        quantity: "sinking of the end of a beam of 1 × 0.1 × 0.1 m by its weight, E = 1e6 Pa, ν = 0.3, ρ = 1000 kg/m³, neo-Hookean",
-        source: "0.747 by quadratic elements of another program, converged in space; the elastica without stretch and shear says 0.7383",
+        quantity: "deflection of the end of a beam of 1 × 0.1 × 0.1 m under its weight, E = 1e6 Pa, ν = 0.3, ρ = 1000 kg/m³, neo-Hookean",
+        source: "0.747 by quadratic elements of another program, converged in space; the elastica without stretch and shear gives 0.7383",
         levels: &[4.0, 8.0, 12.0],
         expected: &[0.747],
         measure: |lab, n| heavy(lab, n, Cells::Quadratic, 1e6, 4.0),

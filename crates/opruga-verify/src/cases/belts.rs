@@ -9,9 +9,9 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "belt-over-drum",
         family: Family::Dynamics,
-        quantity: "tension of a belt behind half a turn over a body, µ = 0.3, over that before it",
+        quantity: "tension of a belt after half a turn around a body, relative to that before it, µ = 0.3",
         source: "closed form: e^{µ π} (L. Euler 1762)",
-        over: Over::Cells("edges along half a turn"),
+        over: Over::Cells("edges along the half turn"),
         levels: &[10.0, 20.0, 40.0],
         expected: &[2.566_332_395_208_135],
         check: Check::Order(2.0),
@@ -21,9 +21,9 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "explicit-reaches-implicit",
         family: Family::Dynamics,
-        quantity: "height of a block that has fallen onto another one, by symplectic Euler less by backward Euler",
+        quantity: "height of a block that has fallen onto another one: by symplectic Euler minus by backward Euler",
         unit: "m",
-        source: "the limit of short steps: the same motion",
+        source: "limit of short steps: the same motion",
         over: Over::Step("step [s]"),
         levels: &[1.0 / 960.0, 1.0 / 1920.0, 1.0 / 3840.0],
         scale: Scale::Of(1.0),

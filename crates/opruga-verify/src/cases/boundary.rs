@@ -10,8 +10,8 @@ use opruga::mesh::Mesh;
 use std::fmt::Write as _;
 
 const ROTATION: Case = Case {
-    quantity: "largest traction of a rotation by 1 rad of an outline, over the shear modulus",
-    source: "exact: 0 of a rigid motion",
+    quantity: "largest traction after an outline is rotated by 1 rad, divided by the shear modulus",
+    source: "exact: 0 for a rigid motion",
     over: Over::Parameter("vertices"),
     levels: &[5.0, 36.0, 200.0],
     scale: Scale::Of(1.0),
@@ -22,7 +22,7 @@ const ROTATION: Case = Case {
 };
 
 const TRANSLATION: Case = Case {
-    quantity: "largest force on a vertex of a body whose pins move it by its size, over E times its size",
+    quantity: "largest force on a vertex of a body whose pins move it by its size, divided by E times its size",
     over: Over::Parameter("dimensions"),
     levels: &[2.0, 3.0],
     ..ROTATION
@@ -60,7 +60,7 @@ const TUBE: Case = Case {
 };
 
 const HOLE: Case = Case {
-    quantity: "largest stress at a hole in an infinite sheet under tension, over the tension; from the strain of its edges",
+    quantity: "largest stress at a hole in an infinite sheet under tension, divided by the tension; from the strain of its edges",
     unit: "",
     source: "G. Kirsch 1898: 3",
     expected: &[3.0],
@@ -68,7 +68,7 @@ const HOLE: Case = Case {
 };
 
 const CAVITY: Case = Case {
-    quantity: "largest stress at a cavity in an infinite body under tension, over the tension; from the strain of its triangles; ν = 0.25",
+    quantity: "largest stress at a cavity in an infinite body under tension, divided by the tension; from the strain of its triangles; ν = 0.25",
     unit: "",
     source: "R. V. Southwell, H. J. Gough 1926: (27 − 15ν)/2(7 − 5ν)",
     expected: &[2.021_739_130_434_782_6],
@@ -76,9 +76,9 @@ const CAVITY: Case = Case {
 };
 
 const CANTILEVER: Case = Case {
-    quantity: "deflection of a cantilever of 2 × 0.5 × 0.5 m under a shear traction at its end, over that of quadratic finite elements",
+    quantity: "deflection of a cantilever of 2 × 0.5 × 0.5 m under a shear traction at its end, relative to that of quadratic finite elements",
     unit: "",
-    source: "finite elements: 12 × 3 × 3 boxes of tetrahedra of ten nodes",
+    source: "finite elements: 12 × 3 × 3 boxes cut into tetrahedra of ten nodes",
     over: Over::Cells("cells along its height"),
     levels: &[2.0, 3.0, 4.0],
     expected: &[1.0],
@@ -89,8 +89,8 @@ const CANTILEVER: Case = Case {
 
 const FLIGHT: Case = Case {
     family: Family::Ledgers,
-    quantity: "largest change of the momentum of a turning, swinging body of boundary elements in flight within 1 s, over Σ m |v|",
-    source: "exact: forces without a net force (I. Newton)",
+    quantity: "largest change of the momentum of a rotating, vibrating body of boundary elements in flight within 1 s, divided by Σ m |v|",
+    source: "exact: the forces sum to zero (I. Newton)",
     over: Over::Step("step [s]"),
     levels: &[1.0 / 960.0, 1.0 / 1920.0],
     scale: Scale::Of(1.0),
@@ -104,7 +104,7 @@ pub(super) const STATICS: &[Case] = &[
     Case { name: "boundary-rotation-2d", measure: |lab, n| rotation(lab, 2, n), ..ROTATION },
     Case {
         name: "boundary-rotation-3d",
-        quantity: "largest traction of a rotation by 1 rad of a ball, over the shear modulus",
+        quantity: "largest traction after a ball is rotated by 1 rad, divided by the shear modulus",
         over: Over::Parameter("subdivisions of the icosahedron"),
         levels: &[0.0, 1.0, 2.0],
         measure: |lab, n| rotation(lab, 3, n),
@@ -115,7 +115,7 @@ pub(super) const STATICS: &[Case] = &[
     Case { name: "boundary-lame-sphere", measure: |lab, n| shell(lab, n, false), ..SHELL },
     Case {
         name: "boundary-lame-sphere-hoop-stress",
-        quantity: "hoop stress at the inner wall of a thick sphere over the inner pressure",
+        quantity: "hoop stress at the inner wall of a thick sphere, divided by the inner pressure",
         unit: "",
         source: "G. Lamé 1852: (2a³ + b³)/2(b³ − a³)",
         expected: &[0.714_285_714_285_714_3],
@@ -125,7 +125,7 @@ pub(super) const STATICS: &[Case] = &[
     Case { name: "boundary-lame-tube", measure: |lab, n| tube(lab, n, false), ..TUBE },
     Case {
         name: "boundary-lame-tube-hoop-stress",
-        quantity: "hoop stress at the inner wall of a thick tube over the inner pressure",
+        quantity: "hoop stress at the inner wall of a thick tube, divided by the inner pressure",
         unit: "",
         source: "G. Lamé 1852: (a² + b²)/(b² − a²)",
         expected: &[1.666_666_666_666_666_7],
@@ -136,7 +136,7 @@ pub(super) const STATICS: &[Case] = &[
     Case { name: "boundary-cavity-nu-25", measure: |lab, n| cavity(lab, n, 0.25), ..CAVITY },
     Case {
         name: "boundary-cavity-nu-30",
-        quantity: "largest stress at a cavity in an infinite body under tension, over the tension; from the strain of its triangles; ν = 0.3",
+        quantity: "largest stress at a cavity in an infinite body under tension, divided by the tension; from the strain of its triangles; ν = 0.3",
         expected: &[2.045_454_545_454_545_5],
         measure: |lab, n| cavity(lab, n, 0.3),
         ..CAVITY
@@ -148,15 +148,16 @@ pub(super) const LEDGERS: &[Case] = &[
     Case { name: "boundary-momentum", measure: |lab, h| flight(lab, h, Kept::Momentum), ..FLIGHT },
     Case {
         name: "boundary-angular-momentum",
-        quantity: "largest change of the angular momentum of a turning, swinging body of boundary elements in flight within 1 s, over Σ m |x| |v|",
-        source: "exact for rules that turn x and v alike: the energy does not depend on the direction of the body",
+        quantity: "largest change of the angular momentum of a rotating, vibrating body of boundary elements in flight within 1 s, divided by Σ m \
+|x| |v|",
+        source: "exact for integrators that rotate x and v alike: the energy does not depend on the direction of the body",
         measure: |lab, h| flight(lab, h, Kept::AngularMomentum),
         ..FLIGHT
     },
     Case {
         name: "boundary-energy",
-        quantity: "largest part of the energy of a turning, swinging body of boundary elements that the ledger cannot explain, within 1 s",
-        source: "exact: 0; what is left is the error of the rule, of its order in the step",
+        quantity: "largest fraction of the energy of a rotating, vibrating body of boundary elements that the ledger cannot explain, within 1 s",
+        source: "exact: 0; the remainder is the error of the integrator, with its order in the step",
         levels: &[1.0 / 960.0, 1.0 / 1920.0, 1.0 / 3840.0],
         tolerance: 0.01,
         check: Check::Order(2.0),

@@ -7,7 +7,7 @@ use opruga::World;
 
 const SLOPE: Case = Case {
     family: Family::Dynamics,
-    quantity: "way of a chain down a slope of tan θ = 1/2 in 2.5 s, μ = 0.49",
+    quantity: "distance that a chain slides down a slope of tan θ = 1/2 in 2.5 s, μ = 0.49",
     unit: "m",
     source: "exact: g (sin θ − μ cos θ) t²/2 (C. A. Coulomb)",
     over: Over::Step("step [s]"),
@@ -21,8 +21,8 @@ const SLOPE: Case = Case {
 const IMPACT: Case = Case {
     family: Family::Dynamics,
     quick: false,
-    quantity: "time from the touch of a bar with a wall to the moment when its momentum is zero, over L/c",
-    source: "exact: half of the time of contact 2L/c (B. de Saint-Venant 1867)",
+    quantity: "time from the first contact of a bar with a wall until its momentum is zero, divided by L/c",
+    source: "exact: half of the contact time 2L/c (B. de Saint-Venant 1867)",
     over: Over::Cells("springs along the bar"),
     levels: &[25.0, 50.0, 100.0],
     expected: &[1.0],
@@ -45,7 +45,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "sliding-stops",
-        quantity: "way of a chain that slides on the flat from 2 m/s until it stops, μ = 0.4",
+        quantity: "distance that a chain slides on a horizontal plane from 2 m/s until it stops, μ = 0.4",
         source: "exact: v²/2μg",
         expected: &[0.509_683_995_922_528],
         measure: stop,
@@ -60,8 +60,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "bar-hits-wall-rebound",
-        quantity: "speed of the middle of mass of a bar after its impact on a wall over that before",
-        source: "exact: 1, the wave returns all of it (B. de Saint-Venant 1867); no order: a chain of masses keeps some of its trembling",
+        quantity: "speed of the centre of mass of a bar after its impact on a wall, relative to that before",
+        source: "exact: 1, the wave returns all of it (B. de Saint-Venant 1867); no order: some vibration remains in a chain of masses",
         levels: &[50.0, 100.0, 200.0],
         measure: |lab, n| Ok(impact(lab, n)?[1]),
         ..IMPACT

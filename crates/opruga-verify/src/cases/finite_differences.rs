@@ -28,8 +28,8 @@ const COLUMN: Case = Case {
 pub(super) const CASES: &[Case] = &[
     Case {
         name: "finite-difference-elastica",
-        quantity: "sinking of the tip of a clamped rod under a force across, over its length, PL²/EI = 2",
-        source: "K. E. Bisshopp, D. C. Drucker 1945, elliptic integrals; the same by shooting",
+        quantity: "deflection of the tip of a clamped rod under a transverse force, divided by its length, PL²/EI = 2",
+        source: "K. E. Bisshopp, D. C. Drucker 1945, elliptic integrals; confirmed by shooting",
         levels: &[10.0, 20.0, 40.0, 80.0],
         expected: &[0.493457],
         measure: elastica,
@@ -37,7 +37,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "finite-difference-roll-up",
-        quantity: "moment that holds a straight rod of EI = 1 N m² and 1 m rolled up to a closed circle",
+        quantity: "moment that keeps a straight rod of EI = 1 N m² and 1 m rolled up into a closed circle",
         unit: "N m",
         source: "exact: M = 2π EI/L",
         levels: &[12.0, 24.0, 48.0],
@@ -47,7 +47,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "finite-difference-euler-column",
-        quantity: "force under which a rod that one end holds loses its straightness, times L²/EI",
+        quantity: "force under which a rod clamped at one end buckles, times L²/EI",
         source: "L. Euler 1744: π²EI/4L²",
         levels: &[10.0, 20.0, 40.0],
         expected: &[PI * PI / 4.0],
@@ -56,7 +56,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "finite-difference-square-plate",
-        quantity: "sinking of the middle of a square plate with simply supported sides under an even load, w D/q a⁴",
+        quantity: "deflection of the middle of a square plate with simply supported sides under a uniform load, w D/q a⁴",
         source: "S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates and Shells, table 8, by Navier's series",
         over: Over::Cells("cells along a side"),
         levels: &[8.0, 16.0, 32.0],
@@ -66,7 +66,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "finite-difference-cylindrical-bending",
-        quantity: "sinking of the middle of a strip of ν = 0 between two simple supports under an even load, w D/q L⁴",
+        quantity: "deflection of the middle of a strip of ν = 0 between two simple supports under a uniform load, w D/q L⁴",
         source: "L. Euler, D. Bernoulli: 5/384",
         over: Over::Cells("cells along the strip"),
         levels: &[8.0, 16.0, 32.0],
@@ -79,16 +79,16 @@ pub(super) const CASES: &[Case] = &[
 pub(super) const MATERIALS: &[Case] = &[
     Case {
         name: "finite-difference-uniaxial-stress",
-        quantity: "force over the area at rest of a block under uniaxial stress, E = 100 kPa, ν = 0.45",
+        quantity: "force per area at rest on a block under uniaxial stress, E = 100 kPa, ν = 0.45",
         unit: "Pa",
-        source: "exact: E λ (λ² − 1)/2; it is largest in compression at λ = 1/√3, beyond which the law gives way",
+        source: "exact: E λ (λ² − 1)/2; it is largest in compression at λ = 1/√3, beyond which the law softens",
         expected: &[-17_850.0, -14_400.0, -8_550.0, 26_400.0, 93_750.0],
         measure: |lab, stretch| Ok(block(lab, stretch)?[0]),
         ..COLUMN
     },
     Case {
         name: "finite-difference-uniaxial-narrowing",
-        quantity: "stretch across a block under uniaxial stress, E = 100 kPa, ν = 0.45",
+        quantity: "lateral stretch of a block under uniaxial stress, E = 100 kPa, ν = 0.45",
         source: "exact: √(1 − ν (λ² − 1))",
         expected: &[
             1.108_828_210_319_344_3,
@@ -102,7 +102,7 @@ pub(super) const MATERIALS: &[Case] = &[
     },
     Case {
         name: "finite-difference-turning-point",
-        quantity: "stiffness of a block at the stretch 1/√3, over that at rest: the slope of the force between 0.577 and 0.5777",
+        quantity: "stiffness of a block at the stretch 1/√3, relative to that at rest: the slope of the force between 0.577 and 0.5777",
         source: "exact: (3λ² − 1)/2 is zero at 1/√3",
         over: Over::Parameter("difference of two stretches about 1/√3"),
         levels: &[0.002, 0.001],
@@ -118,7 +118,7 @@ const RING: Case = Case { family: Family::Pressure, unit: "N/m", levels: &[16.0,
 pub(super) const PRESSURE: &[Case] = &[
     Case {
         name: "finite-difference-ring-buckles",
-        quantity: "outer pressure at which a ring of EI = 1 N m², R = 1 m, loses its roundness",
+        quantity: "outer pressure at which a ring of EI = 1 N m², R = 1 m, buckles",
         source: "M. Lévy 1884: 3EI/R³ for the pressure of a fluid",
         expected: &[3.0],
         measure: ring_buckles,
@@ -126,16 +126,17 @@ pub(super) const PRESSURE: &[Case] = &[
     },
     Case {
         name: "finite-difference-ring-buckles-dead-load",
-        quantity: "load of fixed direction along the circle at which a ring of EI = 1 N m², R = 1 m, loses its roundness; pins along the circle at four points of the axes, where its motion has none",
-        source: "J. Singer, C. D. Babcock 1970: 4EI/R³ for a load that keeps its direction, where the ring does not turn",
+        quantity: "load per length of the circle, of fixed direction, at which a ring of EI = 1 N m², R = 1 m, buckles; four points on the axes, \
+which do not move along the circle, are pinned in that direction",
+        source: "J. Singer, C. D. Babcock 1970: 4EI/R³ for a load that keeps its direction, if the ring does not turn",
         expected: &[4.0],
         measure: ring_buckles_under_dead_load,
         ..RING
     },
     Case {
         name: "finite-difference-ring-buckles-centred-load",
-        quantity: "load towards the middle of the circle at which a ring of EI = 1 N m², R = 1 m, loses its roundness",
-        source: "J. Singer, C. D. Babcock 1970: 4.5EI/R³ for a load that stays directed towards the middle",
+        quantity: "load towards the centre of the circle at which a ring of EI = 1 N m², R = 1 m, buckles",
+        source: "J. Singer, C. D. Babcock 1970: 4.5EI/R³ for a load that stays directed towards the centre",
         expected: &[4.5],
         measure: ring_buckles_under_centred_load,
         ..RING
@@ -145,14 +146,14 @@ pub(super) const PRESSURE: &[Case] = &[
 pub(super) const DYNAMICS: &[Case] = &[
     Case {
         name: "finite-difference-beam-first",
-        quantity: "(βL)² = ωL²√(ρA/EI) of the first bending of a rod that one end holds",
+        quantity: "(βL)² = ωL²√(ρA/EI) of the first bending mode of a rod clamped at one end",
         expected: &[3.516_015_268_5],
         measure: |lab, n| beam(lab, n, 0),
         ..BEAM
     },
     Case {
         name: "finite-difference-beam-second",
-        quantity: "(βL)² = ωL²√(ρA/EI) of the second bending of a rod that one end holds",
+        quantity: "(βL)² = ωL²√(ρA/EI) of the second bending mode of a rod clamped at one end",
         levels: &[20.0, 40.0, 80.0],
         expected: &[22.034_491_564_7],
         measure: |lab, n| beam(lab, n, 1),
@@ -160,7 +161,7 @@ pub(super) const DYNAMICS: &[Case] = &[
     },
     Case {
         name: "finite-difference-beam-third",
-        quantity: "(βL)² = ωL²√(ρA/EI) of the third bending of a rod that one end holds",
+        quantity: "(βL)² = ωL²√(ρA/EI) of the third bending mode of a rod clamped at one end",
         levels: &[20.0, 40.0, 80.0],
         expected: &[61.697_214_413_9],
         measure: |lab, n| beam(lab, n, 2),
@@ -168,7 +169,7 @@ pub(super) const DYNAMICS: &[Case] = &[
     },
     Case {
         name: "finite-difference-beam-fourth",
-        quantity: "(βL)² = ωL²√(ρA/EI) of the fourth bending of a rod that one end holds",
+        quantity: "(βL)² = ωL²√(ρA/EI) of the fourth bending mode of a rod clamped at one end",
         levels: &[40.0, 80.0, 160.0],
         expected: &[120.901_916_075],
         measure: |lab, n| beam(lab, n, 3),
@@ -176,7 +177,7 @@ pub(super) const DYNAMICS: &[Case] = &[
     },
     Case {
         name: "finite-difference-free-ring",
-        quantity: "ωR²√(ρA/EI) of the oval motion of a free ring",
+        quantity: "ωR²√(ρA/EI) of the oval mode of a free ring",
         source: "R. Hoppe 1871: n (n² − 1)/√(n² + 1), n = 2",
         levels: &[16.0, 32.0, 64.0],
         expected: &[2.683_281_572_999_747_7],
@@ -185,7 +186,7 @@ pub(super) const DYNAMICS: &[Case] = &[
     },
     Case {
         name: "finite-difference-bar-first-wave",
-        quantity: "ωL/c of the slowest wave of a bar of the plane that one end holds",
+        quantity: "ωL/c of the slowest wave of a plane bar clamped at one end",
         source: "exact: π/2",
         over: Over::Cells("cells along the bar"),
         levels: &[4.0, 8.0, 16.0],
@@ -195,7 +196,7 @@ pub(super) const DYNAMICS: &[Case] = &[
     },
     Case {
         name: "finite-difference-bar-third-wave",
-        quantity: "ωL/c of the third wave of a bar of the plane that one end holds",
+        quantity: "ωL/c of the third wave of a plane bar clamped at one end",
         source: "exact: 5π/2",
         over: Over::Cells("cells along the bar"),
         levels: &[16.0, 32.0, 64.0],

@@ -9,7 +9,7 @@ use crate::lab::{Lab, Scene, Trouble};
 const STRAIN: f64 = 0.01;
 
 const HEATED_BAR: Case = Case {
-    quantity: "stress of a bar between two walls that is warmer than at rest, over E; αΔT = 0.01, ν = 0.3, linear",
+    quantity: "stress in a heated bar between two walls, divided by E; αΔT = 0.01, ν = 0.3, linear",
     unit: "",
     source: "exact: −αΔT (S. Timoshenko, J. N. Goodier, Theory of Elasticity, ch. 13)",
     over: Over::Cells("cells along the bar"),
@@ -22,7 +22,7 @@ const HEATED_BAR: Case = Case {
 };
 
 const COLUMN: Case = Case {
-    quantity: "sinking of the top of a column of 2 m under a force of 2000 N/m³, E = 100 kPa, ν = 0",
+    quantity: "downward displacement of the top of a column of 2 m under a force of 2000 N/m³, E = 100 kPa, ν = 0",
     unit: "m",
     source: "exact: bL²/2E",
     over: Over::Cells("cells along the column"),
@@ -35,7 +35,7 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "heated-bar-quadratic-triangles", measure: |lab, n| bar(lab, n, Cells::Quadratic), ..HEATED_BAR },
     Case {
         name: "heated-slice",
-        quantity: "growth of a free warm slice in plane strain, quadrilaterals; αΔT = 0.01, ν = 0.3, linear",
+        quantity: "expansion of a free heated slice in plane strain, quadrilaterals; αΔT = 0.01, ν = 0.3, linear",
         source: "exact: (1 + ν) αΔT (S. Timoshenko, J. N. Goodier, Theory of Elasticity, ch. 13)",
         expected: &[1.3 * STRAIN],
         measure: slice,
@@ -45,7 +45,7 @@ pub(super) const CASES: &[Case] = &[
         name: "bimetal",
         quantity: "rise of the end of a strip of 10 × 1 m whose lower half is warmer, αΔT = 1e-3, quadrilaterals, ν = 0, plane stress",
         unit: "m",
-        source: "S. Timoshenko 1925, layers of one thickness h/2 and one modulus: 3/4 αΔT L²/h; ends are another matter than beams say",
+        source: "S. Timoshenko 1925, layers of equal thickness h/2 and equal modulus: 3/4 αΔT L²/h; the ends deviate from beam theory",
         over: Over::Cells("cells through the strip"),
         levels: &[2.0, 4.0, 8.0],
         expected: &[0.075],
@@ -62,9 +62,9 @@ pub(super) const CASES: &[Case] = &[
 pub(super) const START: Case = Case {
     name: "stretching-start",
     family: Family::Ledgers,
-    quantity: "energy of motion of a square of 1 m that begins with the velocity gradient ∂v/∂x = 1/s along one axis, over ρ",
+    quantity: "kinetic energy of a square of 1 m that begins with the velocity gradient ∂v/∂x = 1/s along one axis, divided by ρ",
     unit: "J m³/kg",
-    source: "exact: ½ ∫ x² dV = 1/24; masses are those of nodes, which are too far out by the square of the cells' size",
+    source: "exact: ½ ∫ x² dV = 1/24; the masses are at the nodes, which are too far out by the square of the cell size",
     over: Over::Cells("cells along each side"),
     levels: &[8.0, 16.0, 32.0],
     expected: &[1.0 / 24.0],

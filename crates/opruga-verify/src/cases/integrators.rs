@@ -6,7 +6,7 @@ use crate::lab::{Lab, Scene, Trouble};
 
 const ORDER: Case = Case {
     family: Family::Integrators,
-    quantity: "displacement after 1 s of a damped oscillator over that at the start, k = 4 N/m, m = 1 kg, c = 0.4 N s/m",
+    quantity: "displacement after 1 s of a damped oscillator, relative to that at the start, k = 4 N/m, m = 1 kg, c = 0.4 N s/m",
     source: "exact: e^(−ct/2m) (cos ωt + c/2mω sin ωt), ω² = k/m − c²/4m²",
     over: Over::Step("step [s]"),
     levels: &[1.0 / 64.0, 1.0 / 128.0, 1.0 / 256.0, 1.0 / 512.0],
@@ -19,7 +19,7 @@ const ORDER: Case = Case {
 
 const LIMIT: Case = Case {
     family: Family::Integrators,
-    quantity: "largest hω at which an undamped oscillator does not grow",
+    quantity: "largest hω at which the amplitude of an undamped oscillator does not grow",
     over: Over::Parameter("oscillator"),
     levels: &[1.0],
     tolerance: 0.002,
@@ -82,7 +82,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "backward-euler-damps",
-        quantity: "amplitude √(x² + v²/ω²) of an oscillator after a step of backward Euler over that before",
+        quantity: "amplitude √(x² + v²/ω²) of an oscillator after a step of backward Euler, relative to that before",
         source: "exact: 1/√(1 + h²ω²)",
         over: Over::Parameter("hω"),
         levels: &[0.1, 1.0, 10.0],

@@ -6,7 +6,7 @@ use crate::lab::{Lab, Scene, Trouble};
 
 const LINEAR: Case = Case {
     family: Family::Ledgers,
-    quantity: "largest change of the momentum of a turning, swinging ball in flight within 2 s, over Σ m |v|",
+    quantity: "largest change of the momentum of a rotating, vibrating ball in flight within 2 s, divided by Σ m |v|",
     source: "exact: inner forces come in pairs (I. Newton)",
     over: Over::Step("step [s]"),
     levels: &[1.0 / 960.0, 1.0 / 1920.0],
@@ -18,14 +18,15 @@ const LINEAR: Case = Case {
 };
 
 const ANGULAR: Case = Case {
-    quantity: "largest change of the angular momentum of a turning, swinging ball in flight within 2 s, over Σ m |x| |v|",
-    source: "exact for rules that turn x and v alike: inner forces act along the lines between nodes (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, IV.2)",
+    quantity: "largest change of the angular momentum of a rotating, vibrating ball in flight within 2 s, divided by Σ m |x| |v|",
+    source: "exact for integrators that rotate x and v alike: inner forces act along the lines between nodes (E. Hairer, C. Lubich, G. Wanner, \
+Geometric Numerical Integration, IV.2)",
     ..LINEAR
 };
 
 const ENERGY: Case = Case {
-    quantity: "largest part of the energy of a swinging ball that the ledger cannot explain, within 2 s",
-    source: "exact: 0; what is left is the error of the rule, of its order in the step",
+    quantity: "largest fraction of the energy of a vibrating ball that the ledger cannot explain, within 2 s",
+    source: "exact: 0; the remainder is the error of the integrator, with its order in the step",
     levels: &[1.0 / 960.0, 1.0 / 1920.0, 1.0 / 3840.0],
     tolerance: 0.01,
     check: Check::Order(1.0),

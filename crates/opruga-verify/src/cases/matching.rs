@@ -7,7 +7,7 @@ use crate::lab::{Lab, Scene, Trouble};
 const SQUARE: Case = Case {
     family: Family::Dynamics,
     quantity: "ω/√κ of the fastest motion of a block that is one cluster, which no map follows",
-    source: "exact: U = ½ κ Σ m |x − g|² with a goal g that does not follow",
+    source: "exact: U = ½ κ Σ m |x − g|² with a goal g that stays where it is",
     over: Over::Parameter("share β of the fitted map"),
     levels: &[0.0, 0.3, 0.8, 1.0],
     expected: &[1.0],
@@ -36,7 +36,7 @@ const RIGID: Case = Case {
 
 const SAG: Case = Case {
     family: Family::Statics,
-    quantity: "sag of the free end of a beam of overlapping clusters at rest, over that with 1/60 s; backward Euler, κ = 4000/s²",
+    quantity: "sag of the free end of a beam of overlapping clusters at rest, relative to that with steps of 1/60 s; backward Euler, κ = 4000/s²",
     source: "exact: 1; κ means the same for every step",
     over: Over::Step("step [s]"),
     levels: &[0.016_666_666_666_666_666, 0.004_166_666_666_666_667, 0.001_041_666_666_666_666_7],

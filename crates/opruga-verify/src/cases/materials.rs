@@ -14,7 +14,7 @@ enum Of {
 
 const STRESS: Case = Case {
     family: Family::Materials,
-    quantity: "force over the area at rest of a cube under uniaxial stress, E = 100 kPa, ν = 0.45",
+    quantity: "force per area at rest on a cube under uniaxial stress, E = 100 kPa, ν = 0.45",
     unit: "Pa",
     source: "roots of the law's own equations ∂ψ/∂λ₂ = 0, P = ∂ψ/∂λ₁, in 30 digits",
     over: Over::Parameter("stretch"),
@@ -26,7 +26,7 @@ const STRESS: Case = Case {
 };
 
 const SIDE: Case =
-    Case { quantity: "stretch across a cube under uniaxial stress, E = 100 kPa, ν = 0.45", unit: "", ..STRESS };
+    Case { quantity: "lateral stretch of a cube under uniaxial stress, E = 100 kPa, ν = 0.45", unit: "", ..STRESS };
 
 pub(super) const PULLED_STRAIGHT: &[f64] = &[-50_000.0, -20_000.0, 20_000.0, 50_000.0, 100_000.0, 200_000.0];
 const NARROWED_STRAIGHT: &[f64] = &[1.225, 1.09, 0.91, 0.775, 0.55, 0.1];
@@ -88,7 +88,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "uniaxial-stress-corotated",
         quick: false,
-        source: "exact: E (λ₁ − 1), as linear without rotation",
+        source: "exact: E (λ₁ − 1), the same as `linear`, because there is no rotation",
         expected: PULLED_STRAIGHT,
         measure: |lab, x| pull_of(lab, "corotated", Cells::Quadratic, x, Of::Stress),
         ..STRESS
@@ -96,7 +96,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "uniaxial-narrowing-corotated",
         quick: false,
-        source: "exact: 1 − ν (λ₁ − 1), as linear without rotation",
+        source: "exact: 1 − ν (λ₁ − 1), the same as `linear`, because there is no rotation",
         expected: NARROWED_STRAIGHT,
         measure: |lab, x| pull_of(lab, "corotated", Cells::Quadratic, x, Of::Side),
         ..SIDE
@@ -122,7 +122,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "uniaxial-stress-st-venant-kirchhoff",
-        source: "exact: E (λ₁³ − λ₁)/2, largest under pressure at 1/√3",
+        source: "exact: E (λ₁³ − λ₁)/2, largest in compression at 1/√3",
         levels: KIRCHHOFF,
         expected: PULLED_KIRCHHOFF,
         measure: |lab, x| pull(lab, "st_venant_kirchhoff", x, Of::Stress),
@@ -195,7 +195,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "simple-shear-neo-hookean",
-        quantity: "shear force over area of a sheared cube, E = 100 kPa, ν = 0.45, neo-Hookean",
+        quantity: "shear force per area on a sheared cube, E = 100 kPa, ν = 0.45, neo-Hookean",
         source: "exact: μγ, for any λ",
         over: Over::Parameter("shear γ"),
         levels: &[0.1, 0.5, 1.0, 2.0],
@@ -205,7 +205,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "kelvin-voigt-damping",
-        quantity: "amplitude of the slowest wave of a damped bar after 1 s over that at the start, ω = π/2 rad/s, τ = 0.2 s",
+        quantity: "amplitude of the slowest wave of a damped bar after 1 s, relative to that at the start, ω = π/2 rad/s, τ = 0.2 s",
         unit: "",
         source: "exact: e^(−τω²/2) (cos ωd + τω²/2ωd sin ωd), ωd² = ω² − τ²ω⁴/4",
         over: Over::Cells("cells along the bar"),

@@ -26,43 +26,43 @@ const SLOPE: Case = Case {
 pub(super) const CASES: &[Case] = &[
     Case {
         name: "bars-meet-swap",
-        quantity: "speed of a bar that an equal one has hit, over the speed of that one before",
-        source: "exact: 1, they swap their speeds (B. de Saint-Venant 1867); no order: a chain of masses keeps some of its trembling",
+        quantity: "speed of a bar after an equal one has hit it, relative to the speed of that one before",
+        source: "exact: 1, they swap their speeds (B. de Saint-Venant 1867); no order: some vibration remains in a chain of masses",
         measure: |lab, n| Ok(impact(lab, n, 1.0, 0.0)?.gained),
         ..BARS
     },
     Case {
         name: "bars-meet-half-time",
-        quantity: "time from the touch of two equal bars to the moment when half of the momentum has gone over, over L/c",
-        source: "exact: half of the time of contact 2L/c (B. de Saint-Venant 1867)",
+        quantity: "time from the first contact of two equal bars until half of the momentum has been transferred, divided by L/c",
+        source: "exact: half of the contact time 2L/c (B. de Saint-Venant 1867)",
         check: Check::Everywhere,
         measure: |lab, n| Ok(impact(lab, n, 1.0, 0.0)?.half),
         ..BARS
     },
     Case {
         name: "bars-meet-stress",
-        quantity: "stress in the middle of a bar at rest that an equal one has hit, over ρcv/2",
+        quantity: "stress in the middle of a bar at rest after an equal one has hit it, divided by ρcv/2",
         source: "exact: ρcv/2 until the wave returns from the end (B. de Saint-Venant 1867)",
         measure: |lab, n| Ok(impact(lab, n, 1.0, 0.0)?.stress),
         ..BARS
     },
     Case {
         name: "bars-meet-head-on",
-        quantity: "speed of one of two equal bars after they have met at ±v, over v",
-        source: "exact: 1, they swap their speeds (B. de Saint-Venant 1867); no order: a chain of masses keeps some of its trembling",
+        quantity: "speed of one of two equal bars after they have collided at ±v, divided by v",
+        source: "exact: 1, they swap their speeds (B. de Saint-Venant 1867); no order: some vibration remains in a chain of masses",
         measure: |lab, n| Ok(impact(lab, n, 1.0, -1.0)?.gained),
         ..BARS
     },
     Case {
         name: "bars-meet-head-on-stress",
-        quantity: "stress in the middle of one of two equal bars that have met at ±v, over ρcv",
+        quantity: "stress in the middle of one of two equal bars that have collided at ±v, divided by ρcv",
         source: "exact: ρcv until the wave returns from the end (B. de Saint-Venant 1867)",
         measure: |lab, n| Ok(impact(lab, n, 1.0, -1.0)?.stress),
         ..BARS
     },
     Case {
         name: "bars-meet-twice-as-long",
-        quantity: "speed of two bars apart after the impact of one on another of twice its length, over their speed of approach",
+        quantity: "speed at which two bars separate after the impact of one on another of twice its length, relative to their speed of approach",
         source: "exact: the ratio of the lengths (B. de Saint-Venant 1867)",
         expected: &[0.5],
         measure: |lab, n| Ok(impact(lab, n, 2.0, 0.0)?.apart),
@@ -70,7 +70,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "bodies-bounce",
-        quantity: "speed of two rods of 1 and 2 kg apart after they have met flat, over their speed of approach",
+        quantity: "speed at which two rods of 1 and 2 kg separate after a flat impact, relative to their speed of approach",
         source: "exact: the restitution e (I. Newton)",
         over: Over::Parameter("e"),
         levels: &[0.25, 0.5, 1.0],
@@ -82,7 +82,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "bodies-bounce-loss",
-        quantity: "energy that the ledger says contact took of the same rods, over half the reduced mass times the square of their approach",
+        quantity: "energy that contact takes from the same rods according to the ledger, divided by half the reduced mass times the square of their \
+speed of approach",
         source: "exact: 1 − e² (I. Newton)",
         over: Over::Parameter("e"),
         levels: &[0.0, 0.25, 0.5],
@@ -94,7 +95,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "slope-way-on-body",
-        quantity: "way of a chain down a body that is held at a slope of tan θ = 1/2, in 2.5 s, μ = 0.49",
+        quantity: "distance that a chain slides down a fixed body with a slope of tan θ = 1/2 in 2.5 s, μ = 0.49",
         source: "exact: g (sin θ − μ cos θ) t²/2 (C. A. Coulomb)",
         expected: &[0.274_197_835_740_912_7],
         check: Check::Order(1.0),
@@ -103,7 +104,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "slope-stick-on-body",
-        quantity: "way of the same chain with μ = 0.505",
+        quantity: "distance that the same chain slides with μ = 0.505",
         source: "exact: 0, tan θ < μ (C. A. Coulomb)",
         scale: Scale::Of(1.0),
         tolerance: 1e-4,
@@ -135,7 +136,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "slope-stick-on-body-implicit",
-        quantity: "way of the same chain with μ = 0.505",
+        quantity: "distance that the same chain slides with μ = 0.505",
         source: "exact: 0, tan θ < μ (C. A. Coulomb)",
         levels: &[1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0],
         scale: Scale::Of(1.0),
@@ -146,9 +147,9 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "weight-on-body",
-        quantity: "force between a solid at rest and one that it stands on, by backward Euler at 1/60 s, over its weight",
+        quantity: "force between a solid at rest and the one that it stands on, relative to its weight, by backward Euler at 1/60 s",
         source: "exact: 1 (I. Newton)",
-        over: Over::Parameter("mass of the upper over that of the lower"),
+        over: Over::Parameter("mass of the upper body divided by that of the lower one"),
         levels: &[1e-2, 1.0, 1e2],
         expected: &[1.0],
         tolerance: 1e-6,
@@ -162,8 +163,8 @@ pub(super) const LEDGERS: &[Case] = &[
     Case {
         name: "balls-meet-momentum",
         family: Family::Ledgers,
-        quantity: "momentum of two balls after they have met with friction, over that before",
-        source: "exact: impulses of a pair have no sum",
+        quantity: "momentum of two balls after a collision with friction, relative to that before",
+        source: "exact: the impulses of a pair sum to zero",
         over: Over::Cells("vertices of a ball"),
         levels: &[24.0, 48.0, 96.0],
         expected: &[1.0],
@@ -176,7 +177,7 @@ pub(super) const LEDGERS: &[Case] = &[
         name: "balls-meet-momentum-implicit",
         family: Family::Ledgers,
         quantity: "as `balls-meet-momentum`, by backward Euler",
-        source: "exact: impulses of a pair have no sum",
+        source: "exact: the impulses of a pair sum to zero",
         over: Over::Cells("vertices of a ball"),
         levels: &[24.0, 48.0],
         expected: &[1.0],

@@ -81,7 +81,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "cook-linear-0-49-triangles",
-        quantity: "upward displacement of the pulled corner, linear, plane strain, E = 1, ν = 0.49, F = 1, volumes of nodes",
+        quantity: "upward displacement of the pulled corner, linear, plane strain, E = 1, ν = 0.49, F = 1, nodal volumes",
         source: "R. D. Cook 1974; 19.48 by 32 × 32 quadratic triangles of two other programs",
         expected: &[19.48],
         levels: &[16.0, 32.0, 64.0],
@@ -134,7 +134,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "cook-large-0-4999-triangles",
-        quantity: "upward displacement of the pulled corner, neo-Hookean, plane strain, E = 240.565, F = 100, volumes of nodes",
+        quantity: "upward displacement of the pulled corner, neo-Hookean, plane strain, E = 240.565, F = 100, nodal volumes",
         source: "6.9 in the limit, read off fig. 5 of J. C. Simo, F. Armero 1992 (two digits), ν = 0.4999",
         levels: &[16.0, 32.0, 64.0],
         expected: &[6.9],

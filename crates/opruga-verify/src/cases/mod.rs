@@ -88,7 +88,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
 
 /// Cases that a reader may miss, and the reasons for their absence.
 pub const LEFT_OUT: &[(&str, &str)] =
-    &[("thin membranes of rubber", "there is no model of membranes; springs have another law")];
+    &[("thin membranes of rubber", "there is no model of membranes; springs obey another law")];
 
 #[cfg(test)]
 mod tests {

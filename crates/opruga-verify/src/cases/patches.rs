@@ -7,7 +7,7 @@ use crate::lab::{Lab, Scene, Trouble, moved_pins};
 use opruga::mesh::Mesh;
 
 const AFFINE: Case = Case {
-    quantity: "largest displacement of inner nodes from the affine one that the boundary has, neo-Hookean",
+    quantity: "largest deviation of inner nodes from the affine displacement that is prescribed on the boundary, neo-Hookean",
     unit: "m",
     source: "exact: an affine displacement has constant stress (B. Irons, A. Razzaque 1972; O. C. Zienkiewicz, R. L. Taylor, The Finite Element Method, ch. patch test)",
     over: Over::Cells("cells along a side of 1 m"),
@@ -21,8 +21,8 @@ const AFFINE: Case = Case {
 };
 
 const BENDING: Case = Case {
-    quantity: "largest displacement of inner nodes from that of pure bending, which the boundary has, linear",
-    source: "exact: pure bending is of second degree and in balance (S. Timoshenko, J. N. Goodier, Theory of Elasticity, art. 102)",
+    quantity: "largest deviation of inner nodes from pure bending, which is prescribed on the boundary, linear",
+    source: "exact: pure bending is of second degree and in equilibrium (S. Timoshenko, J. N. Goodier, Theory of Elasticity, art. 102)",
     ..AFFINE
 };
 

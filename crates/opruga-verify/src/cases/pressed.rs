@@ -9,9 +9,10 @@ use opruga::mesh::Mesh;
 use std::cell::Cell;
 
 const PATCH: Case = Case {
-    quantity: "largest difference of the pressure on a node from the one that presses two blocks of meshes that do not match, over it",
+    quantity: "two blocks with non-matching meshes are pressed together: largest deviation of the pressure on a node from the applied pressure, \
+relative to that",
     source: "exact: uniform pressure (R. L. Taylor, P. Papadopoulos 1991, contact patch test)",
-    over: Over::Cells("cells along a side of the lower block; one more of the upper"),
+    over: Over::Cells("cells along a side of the lower block; one more along that of the upper block"),
     levels: &[2.0, 3.0, 4.0],
     expected: &[0.0],
     scale: Scale::Of(1.0),
@@ -29,7 +30,7 @@ pub(super) const BARRIER: Case = Case {
 };
 
 const STACK: Case = Case {
-    quantity: "force between a solid at rest and one that it stands on, by backward Euler at 1/60 s, over its weight",
+    quantity: "force between a solid at rest and the one that it stands on, relative to its weight, by backward Euler at 1/60 s",
     source: "exact: 1 (I. Newton)",
     expected: &[1.0],
     tolerance: 1e-6,
@@ -54,8 +55,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "barrier-reaches-constraint",
-        quantity: "height of a block that presses on another one, by a barrier less by a constraint",
-        source: "the limit of no reach: the constraint",
+        quantity: "height of a block that presses on another one: with a barrier minus with a constraint",
+        source: "limit of a vanishing reach: the constraint",
         unit: "m",
         // The reduction of the height of each by the pressure.
         scale: Scale::Of(1e-3),
@@ -67,7 +68,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "hertz-line",
-        quantity: "half width of the contact of a cylinder of 1 m with a plane, over that of Hertz at the same force, plane strain",
+        quantity: "half width of the contact between a cylinder of 1 m and a plane, relative to that of Hertz at the same force, plane strain",
         source: "closed form: √(4 F R/(π E*)), E* = E/(1 − ν²) (H. Hertz 1882)",
         over: Over::Cells("cells along half of the width"),
         levels: &[16.0, 32.0, 64.0],
@@ -77,21 +78,21 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "weight-on-body-masses",
-        over: Over::Parameter("mass of the upper over that of the lower"),
+        over: Over::Parameter("mass of the upper body divided by that of the lower one"),
         levels: &[1e-4, 1e4],
         measure: |lab, ratio| weight(lab, "backward_euler", "", ratio, 1.0),
         ..STACK
     },
     Case {
         name: "weight-on-body-barrier",
-        over: Over::Parameter("mass of the upper over that of the lower"),
+        over: Over::Parameter("mass of the upper body divided by that of the lower one"),
         levels: &[0.01, 1.0, 100.0],
         measure: |lab, ratio| weight(lab, "backward_euler", "response = \"barrier\"\n", ratio, 1.0),
         ..STACK
     },
     Case {
         name: "weight-on-body-stiffness",
-        over: Over::Parameter("stiffness of the upper over that of the lower"),
+        over: Over::Parameter("stiffness of the upper body divided by that of the lower one"),
         levels: &[1e-4, 1e4],
         measure: |lab, ratio| weight(lab, "backward_euler", "", 1.0, ratio),
         ..STACK

@@ -8,7 +8,7 @@ use opruga::World;
 const GAS: Case = Case { family: Family::Pressure, over: Over::Cells("vertices"), ..BASE };
 
 const LAW: Case = Case {
-    quantity: "largest departure of P V from its value at the start, in a ball that bounces",
+    quantity: "largest deviation of P V from its value at the start, in a bouncing ball",
     source: "exact: P V = nRT",
     over: Over::Parameter("γ"),
     scale: Scale::Of(1.0),
@@ -22,7 +22,7 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "gas-law-isothermal", levels: &[1.0], measure: gas_law, ..LAW },
     Case {
         name: "gas-law-adiabatic",
-        quantity: "largest departure of P V^γ from its value at the start, in a ball that bounces, γ = 1.4 and 1.67",
+        quantity: "largest deviation of P V^γ from its value at the start, in a bouncing ball, γ = 1.4 and 1.67",
         source: "exact: P V^γ = P₀ V₀^γ (S. D. Poisson 1823)",
         levels: &[1.4, 1.67],
         measure: gas_law,
@@ -43,7 +43,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "ring-breathes-springs-and-gas",
-        quantity: "angular frequency of the breathing of a ring of springs around an adiabatic gas, P = P₀ = 100 Pa, M = 2 kg, k = 50 N/m",
+        quantity: "angular frequency of the breathing mode of a ring of springs around an adiabatic gas, P = P₀ = 100 Pa, M = 2 kg, k = 50 N/m",
         unit: "rad/s",
         source: "exact: ω² = 2γ P N sin(2π/N)/M + 4 k sin²(π/N) N/M",
         over: Over::Parameter("vertices"),
@@ -57,7 +57,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "ring-breathes-gas-alone",
-        quantity: "angular frequency of the breathing of a ring of mass around gas, 100 Pa inside and outside, M = 2 kg, γ = 1.4",
+        quantity: "angular frequency of the breathing mode of a ring with mass around gas, 100 Pa inside and outside, M = 2 kg, γ = 1.4",
         unit: "rad/s",
         source: "exact for a circle: ω = √(4πγP₀/M)",
         levels: &[12.0, 24.0, 48.0],
@@ -69,7 +69,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "balloon-breathes-gas-alone",
-        quantity: "angular frequency of the breathing of a skin of mass around gas, 100 Pa inside and outside, M = 2 kg, R = 0.5 m, γ = 1.4",
+        quantity: "angular frequency of the breathing mode of a skin with mass around gas, 100 Pa inside and outside, M = 2 kg, R = 0.5 m, γ = 1.4",
         unit: "rad/s",
         source: "exact for a sphere: ω = √(12πγP₀R/M)",
         over: Over::Cells("parts of an edge of the icosahedron"),
@@ -81,7 +81,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "ring-buckles",
-        quantity: "outer pressure at which a ring of EI = 1 N m², R = 1 m, loses its roundness: where ω² of its oval motion, linear in the pressure, is zero",
+        quantity: "outer pressure at which a ring of EI = 1 N m², R = 1 m, buckles: where ω² of its oval motion, linear in the pressure, is zero",
         unit: "N/m",
         source: "M. Lévy 1884: 3EI/R³ for the pressure of a fluid",
         levels: &[16.0, 32.0, 64.0],

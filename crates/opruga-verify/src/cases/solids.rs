@@ -9,7 +9,7 @@ use crate::lab::{Lab, Scene, Trouble, moved_pins};
 const SMALL: f64 = 1e-6;
 
 const BAR: Case = Case {
-    quantity: "growth of a hanging bar of 1 m, ρ = 1000 kg/m³, E = 125 kPa",
+    quantity: "elongation of a hanging bar of 1 m, ρ = 1000 kg/m³, E = 125 kPa",
     unit: "m",
     source: "exact: ρgL²/2E",
     over: Over::Cells("cells along the bar"),
@@ -75,7 +75,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "lame-tube-hoop-stress",
-        quantity: "hoop stress at the inner wall of a thick tube over the inner pressure, quadrilaterals",
+        quantity: "hoop stress at the inner wall of a thick tube, divided by the inner pressure, quadrilaterals",
         unit: "",
         source: "G. Lamé 1852: (a² + b²)/(b² − a²)",
         expected: &[1.666_666_666_666_666_7],
@@ -92,7 +92,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "lame-sphere-hoop-stress",
-        quantity: "hoop stress at the inner wall of a thick sphere over the inner pressure, hexahedra",
+        quantity: "hoop stress at the inner wall of a thick sphere, divided by the inner pressure, hexahedra",
         unit: "",
         source: "G. Lamé 1852: (2a³ + b³)/2(b³ − a³)",
         expected: &[0.714_285_714_285_714_3],
@@ -130,7 +130,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "hole-in-a-sheet",
-        quantity: "largest stress at a round hole in a stretched sheet over that far away, quadrilaterals, ν = 0.3",
+        quantity: "largest stress at a round hole in a stretched sheet, relative to that far away, quadrilaterals, ν = 0.3",
         unit: "",
         source: "G. Kirsch 1898: 3, with his displacements at four radii from the hole",
         over: Over::Cells("cells along each side"),

@@ -8,7 +8,8 @@ use opruga::mesh::Mesh;
 
 const LATTICE: Case = Case {
     unit: "N/m",
-    source: "exact: equal springs k along a triangular lattice are a sheet of E₂D = 2k/√3 and ν = 1/3 (M. Ostoja-Starzewski 2002; here E₂D = 1 N/m is given)",
+    source: "exact: equal springs k along a triangular lattice act as a sheet with E₂D = 2k/√3 and ν = 1/3 (M. Ostoja-Starzewski 2002; here E₂D = 1 \
+N/m is given)",
     over: Over::Parameter("strain"),
     levels: &[1e-5, 1e-4],
     tolerance: 0.001,
@@ -33,7 +34,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "lattice-stretched",
-        quantity: "modulus 2U/ε²A of a triangular lattice that cannot get narrower: E₂D/(1 − ν²)",
+        quantity: "modulus 2U/ε²A of a triangular lattice of fixed width: E₂D/(1 − ν²)",
         expected: &[1.125],
         measure: |lab, strain| lattice(lab, strain, |x, e| [e * x[0], 0.0]),
         ..LATTICE
@@ -50,7 +51,7 @@ pub(super) const CASES: &[Case] = &[
         quantity: "largest load on a shallow roof of two springs, k = 100 N/m, 2 m wide, 0.3 m high",
         unit: "N",
         source: "exact: P = 2k (l₀ − l) y/l has its maximum at l³ = l₀ b² (R. von Mises 1923), l₀² = 1.09 m², b = 1 m",
-        over: Over::Step("way of a step along the curve of equilibria [m]"),
+        over: Over::Step("length of a step along the curve of equilibria [m]"),
         levels: &[0.02, 0.01, 0.005],
         expected: &[SNAP],
         tolerance: 0.001,

@@ -8,8 +8,8 @@ use opruga::World;
 
 const BEAM: Case = Case {
     family: Family::Dynamics,
-    quantity: "(βL)² = ωL²√(ρA/EI) of the first bending of a beam of thickness L/50 that one end holds",
-    source: "L. Euler, D. Bernoulli: cos βL cosh βL = −1, βL = 1.875104069; slenderness takes 2e-4",
+    quantity: "(βL)² = ωL²√(ρA/EI) of the first bending mode of a beam of thickness L/50 clamped at one end",
+    source: "L. Euler, D. Bernoulli: cos βL cosh βL = −1, βL = 1.875104069; finite slenderness lowers it by 2e-4",
     over: Over::Cells("cells along the beam"),
     expected: &[3.516_015_268_500_15],
     ..BASE
@@ -45,8 +45,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "beam-second-bending-quadratic-triangles",
-        quantity: "(βL)² = ωL²√(ρA/EI) of the second bending of a beam of thickness L/50 that one end holds",
-        source: "L. Euler, D. Bernoulli: cos βL cosh βL = −1, βL = 4.694091133; slenderness takes 2e-3",
+        quantity: "(βL)² = ωL²√(ρA/EI) of the second bending mode of a beam of thickness L/50 clamped at one end",
+        source: "L. Euler, D. Bernoulli: cos βL cosh βL = −1, βL = 4.694091133; finite slenderness lowers it by 2e-3",
         levels: &[10.0, 20.0, 40.0],
         expected: &[22.034_491_564_666_77],
         measure: |lab, n| beam(lab, [n as u32, 1], Cells::Quadratic, true, 1),
@@ -62,8 +62,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "beam-free-quadratic-triangles",
-        quantity: "(βL)² = ωL²√(ρA/EI) of the first bending of a free beam of thickness L/50",
-        source: "L. Euler, D. Bernoulli: cos βL cosh βL = 1, βL = 4.730040745; slenderness takes 1e-3",
+        quantity: "(βL)² = ωL²√(ρA/EI) of the first bending mode of a free beam of thickness L/50",
+        source: "L. Euler, D. Bernoulli: cos βL cosh βL = 1, βL = 4.730040745; finite slenderness lowers it by 1e-3",
         levels: &[10.0, 20.0, 40.0],
         expected: &[22.373_285_448_061_32],
         measure: |lab, n| beam(lab, [n as u32, 1], Cells::Quadratic, false, 3),
@@ -71,7 +71,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "beam-first-bending-chain",
-        quantity: "(βL)² = ωL²√(ρA/EI) of the first bending of a chain of hinges that one end holds",
+        quantity: "(βL)² = ωL²√(ρA/EI) of the first bending mode of a chain of hinges clamped at one end",
         source: "L. Euler, D. Bernoulli: cos βL cosh βL = −1, βL = 1.875104069",
         over: Over::Cells("segments"),
         levels: &[10.0, 20.0, 40.0],
@@ -82,7 +82,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "bar-first-wave",
-        quantity: "ωL/c of the slowest wave of a bar that one end holds",
+        quantity: "ωL/c of the slowest wave of a bar clamped at one end",
         source: "exact: π/2, f = c/4L",
         over: Over::Cells("cells along the bar"),
         levels: &[4.0, 8.0, 16.0],
@@ -94,7 +94,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "bar-third-wave",
-        quantity: "ωL/c of the third wave of a bar that one end holds",
+        quantity: "ωL/c of the third wave of a bar clamped at one end",
         source: "exact: 5π/2, f = 5c/4L",
         over: Over::Cells("cells along the bar"),
         levels: &[16.0, 32.0, 64.0],
@@ -151,7 +151,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "ball-twists-hexahedra",
         quantity: "ωa/c_s of the slowest torsional vibration (l = 2) of a free ball",
-        source: "H. Lamb 1882: j₂′(x) x = j₂(x), halves turn against one another",
+        source: "H. Lamb 1882: j₂′(x) x = j₂(x), the halves turn against one another",
         expected: &[2.501133],
         measure: |lab, n| Ok(ball(lab, n, Cells::Boxes, Motion::Twist)? * 2.6f64.sqrt()),
         ..BALL

@@ -10,9 +10,9 @@ use crate::lab::{Lab, Scene, Trouble, moved_pins};
 const SMALL: f64 = 1e-6;
 
 const AFFINE: Case = Case {
-    quantity: "largest displacement of inner nodes from the affine one that the boundary has, neo-Hookean, finite volumes",
+    quantity: "largest deviation of inner nodes from the affine displacement that is prescribed on the boundary, neo-Hookean, finite volumes",
     unit: "m",
-    source: "exact: dual faces around an inner node close (J. Teran, S. Blemker, V. Ng-Thow-Hing, R. Fedkiw 2003)",
+    source: "exact: the dual faces around an inner node form a closed surface (J. Teran, S. Blemker, V. Ng-Thow-Hing, R. Fedkiw 2003)",
     over: Over::Cells("cells along a side of 1 m"),
     levels: &[2.0, 3.0, 4.0],
     expected: &[0.0],
@@ -24,7 +24,7 @@ const AFFINE: Case = Case {
 };
 
 const BAR: Case = Case {
-    quantity: "growth of a hanging bar of 1 m, ρ = 1000 kg/m³, E = 125 kPa, finite volumes",
+    quantity: "elongation of a hanging bar of 1 m, ρ = 1000 kg/m³, E = 125 kPa, finite volumes",
     source: "exact: ρgL²/2E",
     over: Over::Cells("cells along the bar"),
     levels: &[2.0, 4.0, 8.0],
@@ -59,7 +59,7 @@ const COOK: Case = Case {
 
 const WAVE: Case = Case {
     family: Family::Dynamics,
-    quantity: "ωL/c of the slowest wave of a bar of triangles that one end holds, finite volumes",
+    quantity: "ωL/c of the slowest wave of a bar of triangles clamped at one end, finite volumes",
     source: "exact: π/2, f = c/4L",
     over: Over::Cells("cells along the bar"),
     levels: &[4.0, 8.0, 16.0],
@@ -71,7 +71,7 @@ const WAVE: Case = Case {
 
 const RUBBER: Case = Case {
     family: Family::Materials,
-    quantity: "force over the area at rest of a cube under uniaxial stress, neo-Hookean, E = 100 kPa, ν = 0.45, finite volumes",
+    quantity: "force per area at rest on a cube under uniaxial stress, neo-Hookean, E = 100 kPa, ν = 0.45, finite volumes",
     unit: "Pa",
     source: "roots of the law's own equations ∂ψ/∂λ₂ = 0, P = ∂ψ/∂λ₁, in 30 digits",
     over: Over::Parameter("stretch"),
@@ -103,7 +103,7 @@ pub(super) const MATERIALS: &[Case] = &[
     },
     Case {
         name: "finite-volume-uniaxial-stress-linear",
-        quantity: "force over the area at rest of a cube of hexahedra under uniaxial stress, linear, E = 100 kPa, ν = 0.45, finite volumes",
+        quantity: "force per area at rest on a cube of hexahedra under uniaxial stress, linear, E = 100 kPa, ν = 0.45, finite volumes",
         source: "exact: E (λ₁ − 1)",
         expected: materials::PULLED_STRAIGHT,
         measure: |lab, x| pull(lab, "linear", Cells::Boxes, x),
@@ -111,15 +111,15 @@ pub(super) const MATERIALS: &[Case] = &[
     },
     Case {
         name: "finite-volume-uniaxial-stress-fixed-corotated",
-        quantity: "force over the area at rest of a cube of hexahedra under uniaxial stress, fixed corotated, E = 100 kPa, ν = 0.45, finite volumes",
+        quantity: "force per area at rest on a cube of hexahedra under uniaxial stress, fixed corotated, E = 100 kPa, ν = 0.45, finite volumes",
         expected: materials::FIXED_COROTATED,
         measure: |lab, x| pull(lab, "fixed_corotated", Cells::Boxes, x),
         ..RUBBER
     },
     Case {
         name: "finite-volume-uniaxial-stress-st-venant-kirchhoff",
-        quantity: "force over the area at rest of a cube of hexahedra under uniaxial stress, St. Venant–Kirchhoff, E = 100 kPa, ν = 0.45, finite volumes",
-        source: "exact: E (λ₁³ − λ₁)/2, largest under pressure at 1/√3",
+        quantity: "force per area at rest on a cube of hexahedra under uniaxial stress, St. Venant–Kirchhoff, E = 100 kPa, ν = 0.45, finite volumes",
+        source: "exact: E (λ₁³ − λ₁)/2, largest in compression at 1/√3",
         levels: materials::KIRCHHOFF,
         expected: materials::PULLED_KIRCHHOFF,
         measure: |lab, x| pull(lab, "st_venant_kirchhoff", Cells::Boxes, x),
@@ -127,21 +127,21 @@ pub(super) const MATERIALS: &[Case] = &[
     },
     Case {
         name: "finite-volume-uniaxial-stress-stable-neo-hookean",
-        quantity: "force over the area at rest of a cube of hexahedra under uniaxial stress, stable neo-Hookean, E = 100 kPa, ν = 0.45, finite volumes",
+        quantity: "force per area at rest on a cube of hexahedra under uniaxial stress, stable neo-Hookean, E = 100 kPa, ν = 0.45, finite volumes",
         expected: materials::STABLE_NEO_HOOKEAN,
         measure: |lab, x| pull(lab, "stable_neo_hookean", Cells::Boxes, x),
         ..RUBBER
     },
     Case {
         name: "finite-volume-uniaxial-stress-mooney-rivlin",
-        quantity: "force over the area at rest of a cube of hexahedra under uniaxial stress, Mooney–Rivlin, E = 100 kPa, ν = 0.45, finite volumes",
+        quantity: "force per area at rest on a cube of hexahedra under uniaxial stress, Mooney–Rivlin, E = 100 kPa, ν = 0.45, finite volumes",
         expected: materials::MOONEY_RIVLIN,
         measure: |lab, x| pull(lab, "mooney_rivlin", Cells::Boxes, x),
         ..RUBBER
     },
     Case {
         name: "finite-volume-uniaxial-stress-tetrahedra",
-        quantity: "force over the area at rest of a cube of tetrahedra under uniaxial stress, stable neo-Hookean, E = 100 kPa, ν = 0.45, finite volumes",
+        quantity: "force per area at rest on a cube of tetrahedra under uniaxial stress, stable neo-Hookean, E = 100 kPa, ν = 0.45, finite volumes",
         expected: materials::STABLE_NEO_HOOKEAN,
         measure: |lab, x| pull(lab, "stable_neo_hookean", Cells::Linear, x),
         ..RUBBER
