@@ -11,20 +11,21 @@ pub(crate) use material::Material;
 use std::path::PathBuf;
 pub(crate) use verify::Verify;
 
-/// Elastically deformable bodies: run a scene, look at what happened, measure it.
+/// Elastically deformable bodies: run a scene, look at the result, measure it.
 #[derive(Debug, Parser)]
 #[command(
     name = "opruga",
     version,
     max_term_width = 110,
-    after_help = "Without a command, `opruga` opens the studio where there is a screen; where there is none, it runs the scene `ball`.\n\n\
-                  OPRUGA_SIMD=scalar|sse2|avx2|avx512 in the environment chooses the vector instructions of the kernels instead of the best that \
-                  the processor has; the results are the same to the bit. `scalar` is what every processor of its kind has: `sse2` on x86-64."
+    after_help = "Without a command, `opruga` opens the studio if there is a screen; otherwise it runs the scene \
+                  `ball`.\n\nOPRUGA_SIMD=scalar|sse2|avx2|avx512 in the environment selects the vector instructions of the kernels; the default is \
+                  the best that the processor has. The results are the same to the bit. `scalar` stands for the instructions that every processor of \
+                  a kind has: `sse2` on x86-64."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
-    /// The language of errors and warnings for people; JSON is English
+    /// The language of errors and warnings; JSON is always in English
     #[arg(long, global = true, value_enum, default_value_t)]
     pub(crate) language: crate::language::Language,
 }
@@ -45,11 +46,11 @@ pub(crate) enum Command {
     },
     /// Read a scene and report all of its errors, without running it
     Check(Check),
-    /// Run a scene at many values of its parameters and compare what happens
+    /// Run a scene with many values of its parameters and compare the results
     Sweep(Sweep),
-    /// Make the pictures of a recorded run again, export its frames, or compute it again and compare
+    /// Draw the pictures of a recorded run again, export its frames, or recompute the run and compare
     Replay(Replay),
-    /// Find the natural frequencies of a body, and draw the shapes in which it swings
+    /// Find the natural frequencies of a body and draw its mode shapes
     Modes(Modes),
     /// List models, integrators, shapes, colliders and the scenes that come with the program
     List {
@@ -61,14 +62,14 @@ pub(crate) enum Command {
     New {
         /// The name of the scene, with or without .toml
         name: String,
-        /// Replace the file that is there
+        /// Replace an existing file
         #[arg(long)]
         force: bool,
         /// Print an error as JSON
         #[arg(long)]
         json: bool,
     },
-    /// Print the reference of the scene format (Markdown), made from what the models say of themselves
+    /// Print the reference of the scene format (Markdown), made from the descriptions in the code
     Reference {
         /// Print the JSON Schema for editors instead
         #[arg(long)]
@@ -76,9 +77,9 @@ pub(crate) enum Command {
     },
     /// Fill a surface or an outline with cells, look at a mesh, or write it in another format
     Mesh(Mesh),
-    /// Print energy density, stress and tangent of a law of finite elements at a deformation gradient
+    /// Print energy density, stress and tangent of a material of finite elements at a deformation gradient
     Material(Material),
-    /// Compare the engine with closed forms and published numbers; exit code 1 where a case fails
+    /// Compare the engine with closed forms and published numbers; exit code 1 if a case fails
     Verify(Verify),
     /// Measure speed
     Bench {
@@ -92,37 +93,37 @@ pub(crate) struct Mesh {
     /// A surface (.obj, .stl, .ply, .gltf, .glb), a drawing (.svg, .png), a map (.json, .geojson, .topojson), a font (.ttf, .otf), or a mesh (.msh,
     /// .vtk, .vtu, .mesh, .mfem, .node, .ele)
     pub(crate) input: PathBuf,
-    /// The mesh to be written: .msh, .vtk, .vtu, .mesh, .mfem, .node; its picture lies beside it, with `.png` behind its name
+    /// The mesh file to write: .msh, .vtk, .vtu, .mesh, .mfem, .node; its picture is written next to it, with `.png` appended to the name
     #[arg(short, long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
-    /// About the length of edges of the cells [m]: surfaces and drawings need it
+    /// Approximate length of the edges of cells [m]; required for surfaces and drawings
     ///
     /// In space it is the side of the cubes of a lattice whose points move to the surface; edges are 0.9 of it on average.
     /// Thinner parts may be lost; a message reports this.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub(crate) size: Option<f64>,
-    /// The longest side of the whole body [m], instead of the units of the file; drawings need it
+    /// The longest side of the whole body [m], instead of the units of the file; required for drawings
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     pub(crate) scale_to: Option<f64>,
-    /// A field of the shape as a scene would have it, such as layer=countries, feature=Italy, path=wing, text=opruga; may be given several times
+    /// A field of the shape, as in a scene, such as layer=countries, feature=Italy, path=wing, text=opruga; may be given several times
     #[arg(long = "set", value_name = "FIELD=VALUE")]
     pub(crate) set: Vec<String>,
-    /// 2: a node in the middle of every edge too
+    /// With 2, also a node in the middle of every edge
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2))]
     pub(crate) order: u32,
     /// Repair the mesh: flip inverted cells, drop nodes that no cell uses, merge vertices at the same position; report the number of each
     #[arg(long)]
     pub(crate) mend: bool,
-    /// Where the picture goes [default: beside the mesh]
+    /// The file for the picture [default: next to the mesh]
     #[arg(long, value_name = "FILE")]
     pub(crate) picture: Option<PathBuf>,
-    /// Replace files that are there
+    /// Replace existing files
     #[arg(long)]
     pub(crate) force: bool,
-    /// Warnings are errors, and nothing is written
+    /// Treat warnings as errors and write nothing
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Print what was found, or an error, as JSON
+    /// Print the result, or an error, as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -134,19 +135,19 @@ pub(crate) struct Check {
     /// Override a parameter, such as time.substeps=64; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Print what was found, or the errors, as JSON
+    /// Print the result, or the errors, as JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Warnings are errors
+    /// Treat warnings as errors
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Unknown fields are warnings
+    /// Treat unknown fields as warnings
     #[arg(long, conflicts_with = "strict")]
     pub(crate) lenient: bool,
-    /// A step above the stable limit is a warning, as with `opruga run --allow-unstable`
+    /// Treat a step above the stable limit as a warning, as `opruga run --allow-unstable` does
     #[arg(long)]
     pub(crate) allow_unstable: bool,
-    /// Shapes may be read from files outside of the folder of the scene
+    /// Allow shapes to be read from files outside the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
     /// Check again whenever the scene or a file that it names changes, until Ctrl-C
@@ -161,33 +162,33 @@ pub(crate) struct Sweep {
     pub(crate) scene: Option<String>,
     /// The values of a parameter; may be given several times
     ///
-    /// PATH=a,b,c lists them. PATH=LOW..HIGH:COUNT has COUNT of them, both ends among them; with :log behind it neighbours
-    /// have the same ratio, with :whole they are rounded. PATH=VALUE changes the parameter for all points. Several
-    /// parameters that vary make a grid, unless --each or --sample says otherwise.
+    /// PATH=a,b,c lists them. PATH=LOW..HIGH:COUNT has COUNT values, including both ends; with :log appended, neighbours have the same ratio, with
+    /// :whole, values are rounded. PATH=VALUE changes the parameter for all points. If several parameters vary, the points form a grid, unless --each
+    /// or --sample is given.
     #[arg(long = "set", value_name = "PATH=VALUES", conflicts_with = "resume")]
     pub(crate) set: Vec<String>,
-    /// Vary one parameter after the other, while the others are as in the scene
+    /// Vary one parameter at a time, while the others are as in the scene
     #[arg(long, conflicts_with_all = ["resume", "sample"])]
     pub(crate) each: bool,
-    /// Visit so many random points instead of a grid; ranges then have no COUNT
+    /// Use this many random points instead of a grid; ranges then have no COUNT
     ///
     /// The points form a Latin hypercube sample: if the range of a parameter is divided into as many equal parts as there are points,
     /// each part contains exactly one point.
     #[arg(long, value_name = "COUNT", conflicts_with = "resume")]
     pub(crate) sample: Option<usize>,
-    /// Random points that know nothing of each other, instead of a Latin hypercube
+    /// Draw the random points independently of each other, instead of as a Latin hypercube
     #[arg(long, requires = "sample")]
     pub(crate) independent: bool,
     /// The seed of the random points
     #[arg(long, requires = "sample", default_value_t = 1)]
     pub(crate) seed: u64,
-    /// What is measured of every run; may be given several times
+    /// What to measure in every run; may be given several times
     ///
     /// bounce_height[.BODY], settling_time, equilibrium_radius[.BODY], energy_drift, nanoseconds_per_step, or
     /// PROBE.COLUMN.min, .max, .mean, .last for a column of a probe of the scene, such as top.y.max.
     #[arg(long = "metric", value_name = "METRIC", conflicts_with = "resume")]
     pub(crate) metrics: Vec<String>,
-    /// The simulated time at which runs end, instead of what the scene says [s]
+    /// The simulated time at which runs end, instead of that of the scene [s]
     #[arg(long, allow_negative_numbers = true, conflicts_with = "resume")]
     pub(crate) seconds: Option<f64>,
     /// The folder for the output [default: out/SCENE-sweep]
@@ -195,25 +196,25 @@ pub(crate) struct Sweep {
     /// If you repeat the same call for the same folder, an interrupted sweep continues.
     #[arg(long, value_name = "FOLDER", conflicts_with = "resume")]
     pub(crate) out: Option<PathBuf>,
-    /// Go on with the sweep of this folder, whose question it holds
+    /// Continue the sweep of this folder, which contains its definition
     #[arg(long, value_name = "FOLDER")]
     pub(crate) resume: Option<PathBuf>,
-    /// Begin anew, whatever the folder holds
+    /// Start again, whatever the folder contains
     #[arg(long, conflicts_with = "resume")]
     pub(crate) force: bool,
-    /// Runs at the same time, 1 to 256 [default: the number of cores]; the results do not depend on them, speeds do
+    /// Number of simultaneous runs, 1 to 256 [default: the number of cores]; results do not depend on it, speeds do
     #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: Option<u16>,
     /// Print the summary, or an error, as JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Run even where the step is above the stable limit
+    /// Run even if the step is above the stable limit
     #[arg(long, conflicts_with = "resume")]
     pub(crate) allow_unstable: bool,
-    /// Shapes may be read from files outside of the folder of the scene
+    /// Allow shapes to be read from files outside the folder of the scene
     #[arg(long, conflicts_with = "resume")]
     pub(crate) allow_outside: bool,
-    /// Unknown fields of the scene are overlooked
+    /// Ignore unknown fields of the scene
     #[arg(long, conflicts_with = "resume")]
     pub(crate) lenient: bool,
 }
@@ -221,10 +222,10 @@ pub(crate) struct Sweep {
 /// What is drawn of a run or of a recording.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Pictures {
-    /// Pictures, and frames that are exported, for each second of simulated time [default: 20]
+    /// Pictures and exported frames per second of simulated time [default: 20]
     ///
-    /// Above 0 up to 240; never more than there are frames. Between two pictures lies a whole number of frames: with frames of
-    /// 1/60 s there are 60, 30, 20, 15, 12, … pictures a second, and the nearest rate counts.
+    /// Above 0 up to 240, but never more than there are frames. There is a whole number of frames between two pictures: with frames of 1/60 s there
+    /// can be 60, 30, 20, 15, 12, … pictures per second, and the nearest rate is used.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) fps: Option<f64>,
     /// Write no strip, video or plots
@@ -266,11 +267,10 @@ pub(crate) struct Run {
     /// A scene file, or the name of a scene that comes with the program [default: ball]
     #[arg(conflicts_with = "resume")]
     pub(crate) scene: Option<String>,
-    /// The simulated time at which the run ends, instead of what the scene says [s]
+    /// The simulated time at which the run ends, instead of that of the scene [s]
     ///
-    /// Whole frames are run, the last one to this time or just beyond it, which is said. A resumed run that goes on from t = 5 with
-    /// --seconds 8 runs for 3 s; without it, it ends where the earlier run was meant to end. 0 writes the state at the
-    /// start.
+    /// A run has whole frames; if the last one ends after this time, a note reports it. A resumed run that continues from t = 5 with --seconds 8 runs
+    /// for 3 s; without --seconds, it ends where the earlier run was meant to end. 0 writes the state at the start.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
     #[command(flatten)]
@@ -278,13 +278,13 @@ pub(crate) struct Run {
     /// The folder for the output [default: out/SCENE]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
-    /// Replace the output that is there
+    /// Replace existing output
     #[arg(long)]
     pub(crate) force: bool,
-    /// Threads, 1 to 256; the results do not depend on them
+    /// Number of threads, 1 to 256; results do not depend on it
     #[arg(long, allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: u16,
-    /// Write Cauchy's stress, the von Mises stress and J of every node to final.csv too
+    /// Also write Cauchy's stress, the von Mises stress and J of every node to final.csv
     ///
     /// The value at a node is the mean over the finite elements around it, weighted by their volume at rest. Columns: sxx, syy, szz, sxy,
     /// in 3D syz and szx, von_mises (of that mean), volume_ratio. Nodes of bodies without finite elements have NaN.
@@ -293,37 +293,37 @@ pub(crate) struct Run {
     /// Override a parameter, such as time.substeps=64; may be given several times
     ///
     /// PATH is the position of the field in the scene file, with dots between the parts: integrator.kind=heun, body.ball.models.pressure.nRT=50,
-    /// body.0.mass=2, world.gravity=[0,0]. Entries of lists go by number, name or kind.
+    /// body.0.mass=2, world.gravity=[0,0]. Entries of lists are named by number, name or kind.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
     /// Print the summary, or an error, as JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Go on from the checkpoint of an earlier run, to the same bits
+    /// Continue from the checkpoint of an earlier run, with the same bits
     ///
-    /// The checkpoint holds its scene, what --set and --seconds have changed in it, --lenient and --allow-unstable. Other
-    /// options are given anew. Its output is that of the rest of the run, so it goes to a folder of its own.
+    /// The checkpoint contains the scene with the changes of --set and --seconds, --lenient and --allow-unstable. Other options must be given again.
+    /// The output covers the rest of the run only, so it goes to a folder of its own.
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
-    /// Seconds on the clock between two checkpoints on the way; 0: at the end only
+    /// Seconds on the clock between two checkpoints during the run; 0: only at the end
     ///
-    /// A run that is killed loses no more than that: `checkpoint` and `diagnostics.csv` are there up to then, and
-    /// `checkpoint.previous` is the checkpoint before. --resume goes on from either.
+    /// A run that is killed loses no more than that: `checkpoint` and `diagnostics.csv` reach up to then, and `checkpoint.previous` is the checkpoint
+    /// before. --resume continues from either.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 60.0)]
     pub(crate) checkpoint_every: f64,
     /// Record the run to this file, for `opruga replay`, which also writes its frames as VTU, glTF, PC2, MDD, OBJ or PLY
     ///
-    /// The file holds the scene and needs no other, and a hash of every frame. A run that is killed loses no frame that it
-    /// has finished. --force replaces a file that is there.
+    /// The file contains the scene, so it needs no other file, and a hash of every frame. A run that is killed loses no frame that it has finished.
+    /// --force replaces an existing file.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
-    /// Keep one state in so many frames of the recording; 1: all
+    /// Keep one state for every FRAMES frames of the recording; 1: all
     ///
     /// States between them are computed again on request, and compared by their hashes. By default, the interval is chosen so that recording
     /// takes less than a tenth of the run; it is at most 32 frames.
     #[arg(long, value_name = "FRAMES", requires = "record", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) record_every: Option<u32>,
-    /// Write one row of diagnostics.csv for so many frames; 1: all
+    /// Write one row of diagnostics.csv for every FRAMES frames; 1: all
     ///
     /// The first and the last frame always have a row. By default, every frame has a row if the table then stays below 67 MB. If it would be
     /// larger, rows are left out, and a warning counts them.
@@ -331,20 +331,20 @@ pub(crate) struct Run {
     pub(crate) diagnostics_every: Option<u32>,
     /// Check after every frame that no surfaces cross; a run in which some do ends with exit code 1
     ///
-    /// The check is exact and shares no code with the detection of contact. It takes bodies that touch by `[contact]`, without that
-    /// section all bodies.
+    /// The check is exact and shares no code with the detection of contact. It covers the bodies that touch by `[contact]`, or all bodies if that
+    /// section is missing.
     #[arg(long)]
     pub(crate) check_contact: bool,
     /// Run even if the step is above the stable limit
     #[arg(long)]
     pub(crate) allow_unstable: bool,
-    /// Warnings before the run are errors
+    /// Treat warnings before the run as errors
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Unknown fields are warnings
+    /// Treat unknown fields as warnings
     #[arg(long, conflicts_with = "strict")]
     pub(crate) lenient: bool,
-    /// Shapes may be read from files outside of the folder of the scene
+    /// Allow shapes to be read from files outside the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
     /// Run again whenever the scene or a file that it names changes, until Ctrl-C; later runs replace the output of earlier ones
@@ -356,16 +356,16 @@ pub(crate) struct Run {
 pub(crate) struct Modes {
     /// A scene file, or the name of a scene that comes with the program
     pub(crate) scene: String,
-    /// How many modes, the lowest ones: a number from 1, or `all`
+    /// The number of modes, from the lowest one: a number from 1, or `all`
     #[arg(short = 'n', long = "count", default_value = "10", allow_negative_numbers = true, value_parser = count_of_modes)]
     pub(crate) count: usize,
     /// The body [default: the first one]
     #[arg(long, value_name = "NAME")]
     pub(crate) body: Option<String>,
-    /// About the equilibrium, which the integrator `equilibrium` looks for, instead of the state at the start
+    /// Find the modes about the equilibrium, which the integrator `equilibrium` computes, instead of the state at the start
     #[arg(long)]
     pub(crate) equilibrium: bool,
-    /// About the state at this simulated time [s]
+    /// Find the modes about the state at this simulated time [s]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 0.0)]
     pub(crate) after: f64,
     /// Override a parameter, such as body.ball.mass=2; may be given several times
@@ -374,16 +374,16 @@ pub(crate) struct Modes {
     /// The folder for the output [default: out/SCENE-modes]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
-    /// Replace the output that is there
+    /// Replace existing output
     #[arg(long)]
     pub(crate) force: bool,
-    /// No picture of the shapes
+    /// Write no picture of the mode shapes
     #[arg(long)]
     pub(crate) no_pictures: bool,
     /// Print the frequencies, or an error, as JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Shapes may be read from files outside of the folder of the scene
+    /// Allow shapes to be read from files outside the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
 }
@@ -392,9 +392,9 @@ pub(crate) struct Modes {
 pub(crate) struct Replay {
     /// A recording: a file that `opruga run --record` has written
     pub(crate) file: PathBuf,
-    /// Compute every frame again and compare its hash, and its whole state where that is kept; exit code 1 where one differs
+    /// Recompute every frame and compare its hash, and its whole state if that is kept; exit code 1 if one differs
     ///
-    /// Alone it writes nothing. With --out or another option of what is written, that is written afterwards, if all frames are the same.
+    /// On its own, it writes nothing. With --out or another option for output, the output is written afterwards if all frames are the same.
     #[arg(long)]
     pub(crate) verify: bool,
     /// The simulated time to begin at [s] [default: the first frame]
@@ -408,34 +408,34 @@ pub(crate) struct Replay {
     /// The folder for the output [default: out/SCENE-replay]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
-    /// Replace the output that is there
+    /// Replace existing output
     #[arg(long)]
     pub(crate) force: bool,
-    /// Write every picture's frame as VTK too (frame-000012.vtk …; ParaView opens frames.vtk.series)
+    /// Also write the frame of every picture as VTK (frame-000012.vtk …; ParaView opens frames.vtk.series)
     #[arg(long)]
     pub(crate) vtk: bool,
-    /// Write every picture's frame as VTK XML too, with displacements, groups and stress (ParaView opens frames.pvd)
+    /// Also write the frame of every picture as VTK XML, with displacements, groups and stress (ParaView opens frames.pvd)
     #[arg(long)]
     pub(crate) vtu: bool,
-    /// Write the run as animated glTF too (run.glb): one morph target for every picture's frame
+    /// Also write the run as animated glTF (run.glb): one morph target for the frame of every picture
     #[arg(long)]
     pub(crate) gltf: bool,
-    /// Write a point cache of every body too (NAME.pc2), for the mesh of --obj
+    /// Also write a point cache of every body (NAME.pc2), for the mesh of --obj
     #[arg(long)]
     pub(crate) pc2: bool,
-    /// Write a point cache of every body too (NAME.mdd), for the mesh of --obj
+    /// Also write a point cache of every body (NAME.mdd), for the mesh of --obj
     #[arg(long)]
     pub(crate) mdd: bool,
-    /// Write every picture's frame as Wavefront OBJ too
+    /// Also write the frame of every picture as Wavefront OBJ
     #[arg(long)]
     pub(crate) obj: bool,
-    /// Write every picture's frame as Stanford PLY too
+    /// Also write the frame of every picture as Stanford PLY
     #[arg(long)]
     pub(crate) ply: bool,
-    /// Threads, 1 to 256; the results do not depend on them
+    /// Number of threads, 1 to 256; results do not depend on it
     #[arg(long, allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: u16,
-    /// Print what was found, or an error, as JSON
+    /// Print the result, or an error, as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }

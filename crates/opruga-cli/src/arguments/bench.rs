@@ -7,13 +7,13 @@ use std::path::PathBuf;
 pub(crate) enum Bench {
     /// Rings of 8 to 1,048,576 vertices, and many of them: figure 4 of the thesis
     Vertices(BenchVertices),
-    /// A scene without pictures and files: milliseconds of its frames, and what they are spent on
+    /// A scene without pictures and files: milliseconds per frame, and what they are spent on
     Scene(BenchScene),
     /// Forces and Hessians of finite elements, nanoseconds per element
     Elements(BenchElements),
-    /// What `--record` adds to the frames of a scene: runs with and without it, in turns
+    /// What `--record` adds to the frames of a scene: alternating runs with and without it
     Record(BenchRecord),
-    /// How long it takes to read a surface of many triangles, beside reading the bytes of its file
+    /// How long it takes to read a surface of many triangles, compared with reading the bytes of its file
     Load(BenchLoad),
 }
 
@@ -24,19 +24,19 @@ pub(crate) struct BenchRecord {
     /// Override a parameter, such as time.substeps=64; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
-    /// How many frames each run has [default: those of the scene]
+    /// Number of frames per run [default: those of the scene]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) frames: Option<u32>,
-    /// How many pairs of runs
+    /// Number of pairs of runs
     #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1_000))]
     pub(crate) rounds: u32,
-    /// Keep one state in so many frames, as `run --record-every` [default: as `run --record` does]
+    /// Keep one state for every FRAMES frames, as `run --record-every` does [default: as `run --record` does]
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) every: Option<u32>,
-    /// The folder for the recording, which is removed again [default: that of the system for temporary files]
+    /// The folder for the recording, which is removed afterwards [default: the system's folder for temporary files]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) folder: Option<PathBuf>,
-    /// Shapes may be read from files outside of the folder of the scene
+    /// Allow shapes to be read from files outside the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
     /// Print JSON
@@ -48,10 +48,10 @@ pub(crate) struct BenchRecord {
 pub(crate) struct BenchLoad {
     /// A surface in STL, OBJ, PLY or glTF [default: a torus of --triangles in binary STL]
     pub(crate) file: Option<PathBuf>,
-    /// About how many triangles the torus has
+    /// Approximate number of triangles of the torus
     #[arg(long, default_value_t = 1_000_000, conflicts_with = "file", value_parser = clap::value_parser!(u32).range(100..=10_000_000))]
     pub(crate) triangles: u32,
-    /// How often it is read
+    /// How many times it is read
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=100))]
     pub(crate) rounds: u32,
     /// Print JSON
@@ -66,13 +66,13 @@ pub(crate) struct BenchScene {
     /// Override a parameter, such as time.substeps=64; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
-    /// How many frames are timed
+    /// Number of frames that are timed
     #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) frames: u32,
-    /// Frames before them
+    /// Number of frames before them
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     pub(crate) after: u32,
-    /// Shapes may be read from files outside of the folder of the scene
+    /// Allow shapes to be read from files outside the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
     /// Print JSON
@@ -82,7 +82,7 @@ pub(crate) struct BenchScene {
 
 #[derive(Args, Debug)]
 pub(crate) struct BenchElements {
-    /// One of the materials of `fem` alone
+    /// Only this material of `fem`
     #[arg(long)]
     pub(crate) material: Option<String>,
     /// Hexahedra along a side of the cube, each cut into six tetrahedra
@@ -95,16 +95,16 @@ pub(crate) struct BenchElements {
 
 #[derive(Args, Debug)]
 pub(crate) struct BenchVertices {
-    /// Threads, 1 to 256; the results do not depend on them
+    /// Number of threads, 1 to 256; results do not depend on it
     #[arg(long, allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: u16,
-    /// Count the drawing of every frame too
+    /// Include the drawing of every frame
     #[arg(long)]
     pub(crate) draw: bool,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// The integrator: one of those of `opruga list`
+    /// The integrator, one of those that `opruga list` shows
     #[arg(long, default_value = "symplectic_euler")]
     pub(crate) integrator: String,
     /// Only one row: `36` for one ring of 36 vertices, `27778x36` for 27,778 of them
@@ -113,7 +113,7 @@ pub(crate) struct BenchVertices {
     /// Processor time spent on each row, above 0 up to 600 [s]
     #[arg(long, allow_negative_numbers = true, default_value_t = 1.0)]
     pub(crate) seconds: f64,
-    /// Write the log–log plot to this SVG file, replacing what is there
+    /// Write the log–log plot to this SVG file, replacing an existing one
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
 }

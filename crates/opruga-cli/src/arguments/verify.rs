@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 pub(crate) struct Verify {
-    /// Only cases whose name contains this, or those of a family: statics, materials, pressure, dynamics, integrators,
-    /// ledgers; may be given several times
+    /// Run only cases whose name contains this, or those of a family: statics, materials, pressure, dynamics, integrators, ledgers; may be given
+    /// several times
     #[arg(long, value_name = "WORD")]
     pub(crate) filter: Vec<String>,
-    /// List the cases with their sources, and run none
+    /// List the cases with their sources, but run none
     #[arg(long)]
     pub(crate) list: bool,
     /// Print JSON
@@ -18,13 +18,13 @@ pub(crate) struct Verify {
     /// Write a report with a plot of every case to this folder: report.html, report.md
     #[arg(long, value_name = "FOLDER", conflicts_with = "list")]
     pub(crate) report: Option<PathBuf>,
-    /// Replace the report that is there
+    /// Replace an existing report
     #[arg(long, requires = "report")]
     pub(crate) force: bool,
-    /// Multiply the shear modulus of every solid and the stiffness of every spring and hinge, 0.5 to 2: which cases notice?
+    /// Multiply the shear modulus of every solid and the stiffness of every spring and hinge by this, 0.5 to 2, to see which cases notice
     #[arg(long, value_name = "FACTOR", allow_negative_numbers = true, default_value_t = 1.0, conflicts_with = "list")]
     pub(crate) stiffer: f64,
-    /// Threads, 1 to 256; the results do not depend on them [default: one for each core]
+    /// Number of threads, 1 to 256; results do not depend on it [default: one per core]
     #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: Option<u16>,
 }
