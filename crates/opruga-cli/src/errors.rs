@@ -18,19 +18,19 @@ opruga::math::messages! {
         ShapeFile { kind: &'static str, file: String },
         "material.gradient" #[error("`--F` has `{word}`, which is not a finite number")] #[value("{word}")]
         #[allowed("4 finite numbers (2D) or 9 (3D), row by row")]
-        #[hint("--F 1.1,0,0,1 stretches the plane by a tenth along x; --F 1,0,0,0,1,0,0,0,1 is rest in space")]
+        #[hint("--F 1.1,0,0,1 stretches the plane by a tenth along x; --F 1,0,0,0,1,0,0,0,1 is the state at rest in space")]
         GradientNumber { word: String },
         "material.gradient" #[error("`--F` has {count} numbers")] #[value("{text}")]
         #[allowed("4 finite numbers (2D) or 9 (3D), row by row")]
-        #[hint("--F 1.1,0,0,1 stretches the plane by a tenth along x; --F 1,0,0,0,1,0,0,0,1 is rest in space")]
+        #[hint("--F 1.1,0,0,1 stretches the plane by a tenth along x; --F 1,0,0,0,1,0,0,0,1 is the state at rest in space")]
         GradientCount { count: usize, text: String },
         "scene.unknown_name" #[error("there is no material `{name}`")] #[value("{name}")] #[allowed("{known}")]
         NoMaterialToAsk { name: String, known: String },
-        "scene.dimension" #[error("`--plane` is about the plane, and F is of space")] #[allowed("with 4 numbers in `--F`")]
+        "scene.dimension" #[error("`--plane` applies to the plane, but F is in space")] #[allowed("with 4 numbers in `--F`")]
         PlaneInSpace {},
         "scene.unknown_field" #[error("`{law}` has no field `{field}`")] #[value("{text}")] #[allowed("{known}")]
         NoFieldOfLaw { field: String, law: String, text: String, known: String },
-        "scene.unknown_field" #[error("`{law}` has no field `{field}`")] #[value("{text}")] #[allowed("none: E and ν are all")]
+        "scene.unknown_field" #[error("`{law}` has no field `{field}`")] #[value("{text}")] #[allowed("none: the law has only E and ν")]
         NoFields { field: String, law: String, text: String },
         "checkpoint.version" #[error("the checkpoint belongs to another version of the program")]
         OtherVersion {},
@@ -55,7 +55,7 @@ opruga::math::messages! {
     /// Errors in a call.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CallFault {
-        "call" #[error("{text}")] #[hint("--help tells what can be said")]
+        "call" #[error("{text}")] #[hint("--help lists commands and options")]
         Arguments { text: String },
         "call" #[error("{option} is {value}; allowed: {allowed}")]
         OutOfRange { option: &'static str, value: String, allowed: CallRange },
@@ -69,33 +69,33 @@ opruga::math::messages! {
         NoModel { name: &'static str },
         "call" #[error("there is no obstacle `{name}`")]
         NoObstacle { name: &'static str },
-        "call" #[error("{path} cannot be written: files ending in `.{ending}` are unknown")] #[hint("{known} can")]
+        "call" #[error("{path} cannot be written: files ending in `.{ending}` are unknown")] #[hint("known endings: {known}")]
         UnknownEnding { path: String, ending: String, known: &'static str },
-        "call" #[error("{path} is no name of a file in UTF-8")]
+        "call" #[error("{path} is not a file name in UTF-8")]
         NotUtf8 { path: String },
-        "call" #[error("--size is missing")] #[hint("--size H: about the length of edges [m]")]
+        "call" #[error("--size is missing")] #[hint("--size H: approximate length of the edges [m]")]
         NoSize {},
         "call" #[error("--scale-to is missing")] #[hint("--scale-to L: the longer side of the drawing [m]")]
         NoScale {},
         "call" #[error("--set text=… is missing")]
-        #[hint("--set text=… such as --set text=opruga, says what is written in the letters of the font")]
+        #[hint("--set text=… gives the text to write in the font, such as --set text=opruga")]
         NoText {},
-        "call" #[error("{path} has cells already")] #[hint("without --size and --scale-to it is shown, and written in another format")]
+        "call" #[error("{path} already has cells")] #[hint("leave out --size and --scale-to to show the mesh, or to write it in another format")]
         HasCells { path: String },
-        "call" #[error("{path}: files ending in `.{ending}` hold no shape")]
+        "call" #[error("{path}: files ending in `.{ending}` contain no shape")]
         #[hint("files that can be read end in .obj, .stl, .ply, .gltf, .glb, .svg, .png, .json, .geojson, .topojson, .ttf, .otf, {meshes}")]
         NoShape { path: String, ending: String, meshes: &'static str },
-        "call" #[error("{path}: files ending in `.toml` hold no shape")] #[hint("a scene is read by `opruga check` and `opruga run`")]
+        "call" #[error("{path}: files ending in `.toml` contain no shape")] #[hint("`opruga check` and `opruga run` read scenes")]
         SceneAsShape { path: String },
-        "call" #[error("the file holds nothing that fills a body")]
+        "call" #[error("the file contains nothing that can fill a body")]
         NothingFills {},
-        "call" #[error("no film can have {rate} pictures per second: --fps {fps}, frames of {frame} s")]
-        #[hint("0.0001 to 10000 are possible; --no-pictures does without a film")]
+        "call" #[error("a film cannot have {rate} pictures per second: --fps {fps}, frames of {frame} s")]
+        #[hint("allowed rates are 0.0001 to 10000; --no-pictures writes no film")]
         FilmRate { rate: String, fps: String, frame: String },
-        "call" #[error("--gltf, --pc2 and --mdd hold the whole run in memory, more than {bytes} bytes")]
+        "call" #[error("--gltf, --pc2 and --mdd keep the whole run in memory, here more than {bytes} bytes")]
         #[hint("a lower --fps, or --from and --to")]
         RunTooLong { bytes: usize },
-        "call" #[error("no frame lies from {} s to {} s: the recording has those from {} s to {} s, {} s apart", number(*from), number(*to), number(*first), number(*last), number(*apart))]
+        "call" #[error("there is no frame from {} s to {} s: the recording has frames from {} s to {} s, {} s apart", number(*from), number(*to), number(*first), number(*last), number(*apart))]
         NoFrame { from: f64, to: f64, first: f64, last: f64, apart: f64 },
         "call" #[error("the checkpoint is at t = {} s, and the run ends at {} s: nothing is left to do", number(*time), number(*end))]
         #[hint("--seconds is the simulated time at which the run ends: give one above {}", number(*time))]
@@ -106,7 +106,7 @@ opruga::math::messages! {
         NoScreen { scene: String },
         "call" #[error("there is no screen here to open a window on")] #[hint("`opruga replay {file}` writes its pictures")]
         NoScreenForRecording { file: String },
-        "call" #[error("the program `opruga-studio` does not lie beside this one")] #[hint("cargo install --path crates/opruga-studio")]
+        "call" #[error("the program `opruga-studio` is not in the folder of this one")] #[hint("cargo install --path crates/opruga-studio")]
         NoStudio {},
         "call" #[error("the studio cannot be started: {reason}")]
         StudioNotStarted { reason: String },
@@ -135,7 +135,7 @@ opruga::math::messages! {
         Within { first: u32, second: u32, body: String },
         "part.crossing" #[error("facet {first} of body `{body}` and facet {second} of body `{other}` cross")]
         Between { first: u32, body: String, second: u32, other: String },
-        "part.crossing" #[error("of bodies `{body}` and `{other}`, one lies in the other")]
+        "part.crossing" #[error("one of the bodies `{body}` and `{other}` lies inside the other")]
         Inside { body: String, other: String },
     }
     /// The result of a check of a run.
@@ -152,52 +152,52 @@ opruga::math::messages! {
     /// Warnings about a call, its machine or its inputs.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CallWarning {
-        "threads.above_cores" #[error("{threads} threads on {}: more are no faster", counted(*cores as u64, "core", "cores"))]
+        "threads.above_cores" #[error("{threads} threads on {}: more threads than cores are not faster", counted(*cores as u64, "core", "cores"))]
         AboveCores { threads: usize, cores: usize },
-        "simd.other" #[error("OPRUGA_SIMD=scalar: the kernels run with {used}, which every processor of this kind has")]
+        "simd.other" #[error("OPRUGA_SIMD=scalar: the kernels use {used}, which every processor of this kind has")]
         NeverScalar { used: &'static str },
-        "simd.other" #[error("OPRUGA_SIMD={asked}: this processor lacks them; the kernels run with {used}")]
+        "simd.other" #[error("OPRUGA_SIMD={asked}: this processor lacks them; the kernels use {used}")]
         InstructionsLacking { asked: String, used: &'static str },
         "diagnostics.thinned"
-        #[error("diagnostics.csv would have about {megabytes} MB, and {most} MB are written unasked: one frame of {apart} has a row; --diagnostics-every 1 writes all")]
+        #[error("diagnostics.csv would have about {megabytes} MB, more than the default limit of {most} MB: one frame in {apart} has a row; --diagnostics-every 1 writes all")]
         Thinned { megabytes: u64, most: u64, apart: u64 },
-        "checkpoint.failed" #[error("a checkpoint on the way could not be written: {cause}")]
+        "checkpoint.failed" #[error("a checkpoint during the run could not be written: {cause}")]
         CheckpointFailed { cause: AnyMessage },
         "checkpoint.failed" #[error("no checkpoint at t = {} s: {path}: {cause}", number(*time))]
         NoCheckpoint { time: f64, path: String, cause: AnyMessage },
         "recording.open"
-        #[error("the recording has no end: its run was killed or still runs; {} up to t = {} s {} whole, {} behind {} no whole frame",
+        #[error("the recording has no end: its run was killed or still runs; {} up to t = {} s {} complete, {} after {} not a complete frame",
             counted(*frames, "frame", "frames"), number(*until), if *frames == 1 { "is" } else { "are" },
             counted(*lost, "byte", "bytes"), if *lost == 1 { "it is" } else { "them are" })]
         NoEnd { frames: u64, until: f64, lost: u64 },
         "recording.program" #[error("{program} wrote the recording; this is {now}")]
         OtherProgram { program: String, now: &'static str },
-        "scene.changed" #[error("{file} has changed since; the recording goes by its own copy")]
+        "scene.changed" #[error("{file} has changed since the recording, which uses its own copy")]
         SceneChanged { file: String },
-        "pictures.thinned" #[error("pictures of {nodes} nodes would take {mebibytes} MiB; one frame of {every} is kept")]
+        "pictures.thinned" #[error("pictures of {nodes} nodes would take {mebibytes} MiB; one frame in {every} is kept")]
         PicturesThinned { nodes: usize, mebibytes: u64, every: u64 },
     }
     /// Notes about a call.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CallNote {
         "run.whole_frames"
-        #[error("frames are whole: the run ends at t = {} s, not at {} s, after {} of {} s",
+        #[error("a run has whole frames: it ends at t = {} s, not at {} s, after {} of {} s",
             number(*reached), number(*asked), counted(*frames, "frame", "frames"), rounded(*frame, 4))]
         WholeFrames { reached: f64, asked: f64, frames: u64, frame: f64 },
         "run.takes_long"
         #[error("the run will take about {duration} more ({} of {} s). Shorter: {shorter}", counted(*frames, "frame", "frames"), rounded(*each, 2))]
         TakesLong { duration: String, frames: u64, each: f64, shorter: Shorter },
         "pictures.rate"
-        #[error("{} pictures per second, not {} (--fps): from one to the next is a whole number of frames of the scene, here {} of {} s each",
+        #[error("{} pictures per second, not {} (--fps): the time between two pictures is a whole number of frames of the scene, here {} of {} s each",
             rounded(*rate, 4), rounded(*asked, 4), counted(*every, "frame", "frames"), rounded(*frame, 4))]
         OtherRate { rate: f64, asked: f64, every: u64, frame: f64 },
         "pictures.none" #[error("no plots: {cause}")]
         NoPlots { cause: AnyMessage },
         "pictures.none" #[error("no strip and no video: {cause}")]
         NoStrip { cause: AnyMessage },
-        "pictures.none" #[error("no video, since the run was interrupted; `opruga run --resume` goes on from the checkpoint")]
+        "pictures.none" #[error("no video, because the run was interrupted; `opruga run --resume` continues from the checkpoint")]
         NoVideo {},
-        "threads.shared" #[error("{threads} runs shared the machine; for speeds take --threads 1 (and --force)")]
+        "threads.shared" #[error("{threads} runs shared the machine; to compare speeds, use --threads 1 (and --force)")]
         SharedMachine { threads: usize },
     }
     /// Ways to make a run shorter.
@@ -205,9 +205,9 @@ opruga::math::messages! {
     pub(crate) enum Shorter {
         "part.shorter" #[error("--set integrator.accuracy=real_time")]
         RealTime {},
-        "part.shorter" #[error("an explicit rule, --set integrator={integrator} --set time.substeps={substeps}")]
+        "part.shorter" #[error("an explicit integrator, --set integrator={integrator} --set time.substeps={substeps}")]
         Explicit { integrator: &'static str, substeps: u32 },
-        "part.shorter" #[error("fewer substeps than {substeps}: implicit rules have no largest stable step")]
+        "part.shorter" #[error("fewer substeps than {substeps}: implicit integrators have no largest stable step")]
         FewerSubsteps { substeps: u32 },
         "part.shorter" #[error("--set time.substeps={substeps}, which is stable for the shapes at rest")]
         Substeps { substeps: u32 },
@@ -221,17 +221,17 @@ opruga::math::messages! {
     /// What helps if a recording or a checkpoint cannot be used.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ResumeHint {
-        "part.resume_hint" #[error("the frames before are whole: --to {} shows them", number(*time))]
+        "part.resume_hint" #[error("the frames before the damage are complete: --to {} shows them", number(*time))]
         FramesBefore { time: f64 },
-        "part.resume_hint" #[error("no whole frame lies before")]
+        "part.resume_hint" #[error("there is no complete frame before the damage")]
         NoFrameBefore {},
         "part.resume_hint" #[error("the run was killed before its first frame was written")]
         KilledAtStart {},
-        "part.resume_hint" #[error("the checkpoint before it is whole, at t = {} s: --resume {file}", number(*time))]
+        "part.resume_hint" #[error("the checkpoint before it is complete, at t = {} s: --resume {file}", number(*time))]
         CheckpointBefore { time: f64, file: String },
-        "part.resume_hint" #[error("a run leaves it in the folder of its output, such as out/ball/checkpoint")]
+        "part.resume_hint" #[error("a run writes it into its output folder, such as out/ball/checkpoint")]
         InOutput {},
-        "part.resume_hint" #[error("try an older checkpoint; there is none beside this one")]
+        "part.resume_hint" #[error("try an older checkpoint; there is none next to this one")]
         NoneBeside {},
     }
 }

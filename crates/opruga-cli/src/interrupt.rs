@@ -29,7 +29,7 @@ pub(crate) fn asked_to_stop() -> &'static AtomicBool {
             std::thread::spawn(|| {
                 std::thread::sleep(PATIENCE);
                 if !SILENT.load(Ordering::SeqCst) {
-                    eprintln!("ends after the step at hand; asked once more, at once");
+                    eprintln!("the run ends after the present step; asked once more, it ends at once");
                 }
             });
         });

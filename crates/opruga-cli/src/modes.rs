@@ -133,7 +133,7 @@ fn table(name: &str, time: f64, modes: &[Mode<3>], rounding: f64) -> String {
     for (k, mode) in modes.iter().enumerate() {
         let (times_i, remark) = match (&mode.rigid, growth(mode, rounding)) {
             (Some(motion), _) => ("", format!("  rigid: {motion}")),
-            (None, None) if mode.square.abs() <= rounding => ("", "  nothing resists it, but for rounding".into()),
+            (None, None) if mode.square.abs() <= rounding => ("", "  nothing resists it, except rounding".into()),
             (None, Some(growth)) => (" i", format!("  unstable: grows as exp({} t/s)", rounded(growth, 5))),
             (None, None) => ("", String::new()),
         };

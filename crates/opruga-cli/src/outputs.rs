@@ -238,12 +238,12 @@ impl Outputs<'_> {
         };
         let by_the_rule = match e.loss_numerical {
             0.0 => String::new(),
-            made if made < 0.0 => format!(", {} J made by the damping of its rule", number(-made)),
-            taken => format!(", {} J taken by the damping of its rule", number(taken)),
+            made if made < 0.0 => format!(", {} J added by the damping of its integrator", number(-made)),
+            taken => format!(", {} J removed by the damping of its integrator", number(taken)),
         };
         eprintln!(
-            "{}: {from}{:.3} s of {}{speed}\n  energy {} J; the ledger closes to {} % of the most that was in motion ({} J {} by the \
-             integrator's error{})",
+            "{}: {from}{:.3} s of {}{speed}\n  energy {} J; the ledger closes to {} % of the largest energy in motion ({} J {} by the integrator's \
+             error{})",
             world.scene().name(),
             world.time(),
             counted(nodes as u64, "node", "nodes"),
@@ -267,7 +267,7 @@ impl Outputs<'_> {
         let pictures = ["video.mp4", "video.gif", "strip.png", "plots.svg"];
         let there: Vec<&str> = pictures.into_iter().filter(|name| self.folder.path(name).is_file()).collect();
         if !there.is_empty() {
-            eprintln!("  to look at: {}", there.join(", "));
+            eprintln!("  results: {}", there.join(", "));
         }
     }
 }

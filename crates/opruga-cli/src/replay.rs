@@ -168,7 +168,7 @@ impl Job<'_> {
                 if self.call.json {
                     print_data(&format!("{verified}\n"))?;
                 } else if writes {
-                    eprintln!("nothing is written of a run that is not the recorded one; without --verify it is");
+                    eprintln!("the run differs from the recorded one, so nothing is written; without --verify it is");
                 }
                 Ok(u8::from(!same))
             }

@@ -106,8 +106,8 @@ impl core::fmt::Display for Found {
         writeln!(f, "{bodies}, {nodes}, {} dimensions", self.dimension)?;
         let substeps = counted(self.substeps.into(), "substep", "substeps");
         match self.is_static {
-            true => writeln!(f, "{}: a balance", self.integrator)?,
-            false => writeln!(f, "{}: h = {} s, {substeps} a frame", self.integrator, number(self.h))?,
+            true => writeln!(f, "{}: an equilibrium", self.integrator)?,
+            false => writeln!(f, "{}: h = {} s, {substeps} per frame", self.integrator, number(self.h))?,
         }
         for c in &self.cells {
             let (low, high) = (rounded(c.smallest_angle, 3), rounded(c.largest_angle, 4));
@@ -202,7 +202,7 @@ fn listed(as_json: bool, registries: &Registries) -> String {
             None => refused.push((*model, vec![*integrator])),
         }
     }
-    let _ = writeln!(text, "every model goes with every integrator, but");
+    let _ = writeln!(text, "every model works with every integrator, except");
     for (model, integrators) in refused {
         let _ = writeln!(text, "  {model:<18} not with {}", integrators.join(", "));
     }

@@ -20,7 +20,7 @@ const NO_WINDOW: i32 = 5;
 /// `opruga` without a command: opens the window if there is a screen, otherwise runs a scene without one.
 pub(crate) fn first(registries: &Registries) -> Result<u8, Failure> {
     let headless = |why: &str| {
-        eprintln!("{why}: running the scene `ball` without a window (`opruga --help` tells what else there is)");
+        eprintln!("{why}: running the scene `ball` without a window (`opruga --help` lists the other commands)");
         let out = Some(crate::run::fresh_folder("ball"));
         crate::watch::run(&Run { out, ..Run::default_scene() }, registries)
     };
@@ -65,7 +65,7 @@ fn has_screen(variable: impl Fn(&str) -> Option<OsString>) -> bool {
 fn start(scene: Option<&str>) -> Result<u8, Failure> {
     let mut command = match source_tree(|name| std::env::var_os(name)) {
         Some((cargo, root)) => {
-            eprintln!("starting the studio; cargo builds it where it has changed, which takes minutes the first time");
+            eprintln!("starting the studio; cargo builds it if it has changed, which takes minutes the first time");
             built(&cargo, &root)
         }
         None => {

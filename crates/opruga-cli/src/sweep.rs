@@ -248,7 +248,7 @@ impl Work<'_> {
             (0..there.len()).filter(|number| !there[*number]).collect()
         };
         if !known.is_empty() && !missing.is_empty() {
-            eprintln!("{} of {} are done already", known.len(), counted(self.points.len() as u64, "point", "points"));
+            eprintln!("{} of {} are already done", known.len(), counted(self.points.len() as u64, "point", "points"));
         }
         let bar = progress_bar(self.points.len());
         bar.set_position(known.len() as u64);
@@ -292,7 +292,7 @@ impl Work<'_> {
         if rows.len() < self.points.len() {
             let folder = argument(&self.folder.path("").display().to_string());
             eprintln!(
-                "{} of {} points are done; `opruga sweep --resume {folder}` goes on",
+                "{} of {} points are done; `opruga sweep --resume {folder}` continues",
                 rows.len(),
                 self.points.len()
             );

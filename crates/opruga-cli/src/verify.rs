@@ -63,7 +63,7 @@ pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failu
     }
     let failed = rows.iter().any(|row| !row.pass);
     if failed && !call.json {
-        eprintln!("docs/verification.md tells why cases fail that are known to");
+        eprintln!("docs/verification.md explains why cases that are known to fail do so");
     }
     Ok(u8::from(failed))
 }

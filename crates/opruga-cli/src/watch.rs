@@ -80,7 +80,7 @@ fn again_and_again(
                     1 => String::new(),
                     n => format!(" and of {}", counted(n as u64 - 1, "file that it names", "files that it names")),
                 };
-                eprintln!("waiting for changes of {}{more}; Ctrl-C ends", visible(scene));
+                eprintln!("waiting for changes to {}{more}; Ctrl-C ends", visible(scene));
             }
             (outcome, watcher.join().ok().flatten())
         });

@@ -101,7 +101,7 @@ fn a_file_that_the_scene_names_is_watched_even_where_it_is_missing() {
     let drawing = folder.path().join("s.svg");
     let watched = Watched::start(folder.path(), &["check", "mine.toml", "--watch"]);
     watched.until("read.failed");
-    watched.until("waiting for changes of mine.toml and of 1 file that it names");
+    watched.until("waiting for changes to mine.toml and of 1 file that it names");
     std::fs::write(&drawing, "<svg xmlns='http://www.w3.org/2000/svg'><circle r='3'/></svg>").expect("a file");
     watched.until("s.svg has changed");
     watched.until("waiting for changes");

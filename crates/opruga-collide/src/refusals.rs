@@ -54,10 +54,10 @@ messages! {
         "collider.flat_hull" #[error("the hull of the {count} `points` has no area")] #[parameters("points")] #[allowed("points that are not all on one line")]
         NoArea { count: usize },
         /// A hull without a volume.
-        "collider.flat_hull" #[error("the hull of the {count} `points` has no volume")] #[parameters("points")] #[allowed("points that are not all on one plane")]
+        "collider.flat_hull" #[error("the hull of the {count} `points` has no volume")] #[parameters("points")] #[allowed("points that are not all in one plane")]
         NoVolume { count: usize },
         /// A segment without a length.
-        "collider.degenerate_facet" #[error("points {first} and {second} are both {position}")] #[allowed("segments of a length above 0")]
+        "collider.degenerate_facet" #[error("points {first} and {second} are both at {position}")] #[allowed("segments of a length above 0")]
         SamePoints { first: usize, second: usize, position: String },
         /// A triangle without an area.
         "collider.degenerate_facet" #[error("triangle {triangle} with points {points} has no area")] #[allowed("triangles with an area")]

@@ -18,13 +18,20 @@ macro_rules! collider {
             dimensions: &[$dimension],
             fields: &[
                 $($own,)+
-                Field::new("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact. The speed before is that with which a node meets the surface within the step, √(u² + 2 a g) with its speed and gap at the start of the step and what forces give it, at most the one at the end of the step: an impact makes no energy. With `rest_speed = 0` it is always the speed at the end of the step, as in the thesis, and a node that is pushed on gains a little. `symplectic_euler` loses about m g h v of energy from one impact with speed v to the next (a tenth in 20 s from 1 m at 16 substeps), `verlet` none."),
-                Field::new("friction", Allowed::NOT_NEGATIVE, "", ZERO, "Coulomb's coefficient µ, for sticking and sliding alike."),
-                Field::new("rest_speed", Allowed::NOT_NEGATIVE, "m/s", Default::Number(0.05), "Normal speed up to which a contact does not bounce; with 0 every crossing bounces, also that of a node at rest on the collider.").applies(&[Condition::NotZero("restitution")]),
+                Field::new("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact. The speed before an \
+impact is that with which a node meets the surface within the step: √(u² + 2 a g) with its speed u and gap g at the start of the step and its \
+acceleration a by forces, but at most the speed at the end of the step, so that an impact creates no energy. With `rest_speed = 0` it is always the \
+speed at the end of the step, as in the thesis, and a node that is pushed on gains a little energy. `symplectic_euler` loses about m g h v of energy \
+from one impact with speed v to the next (a tenth in 20 s from 1 m at 16 substeps); `verlet` loses none."),
+                Field::new("friction", Allowed::NOT_NEGATIVE, "", ZERO, "Coulomb's coefficient µ, for both sticking and sliding."),
+                Field::new("rest_speed", Allowed::NOT_NEGATIVE, "m/s", Default::Number(0.05), "Normal speed up to which a contact does not bounce; \
+with 0 every crossing bounces, even that of a node at rest on the collider.").applies(&[Condition::NotZero("restitution")]),
                 Field::new("thickness", Allowed::NOT_NEGATIVE, "m", ZERO, "Distance that nodes keep from the surface; edges and corners become round."),
-                Field::new("motion", Allowed::Path, "s, m", Default::Absent, "Displacement over time, added to the placement; at rest before and after."),
+                Field::new("motion", Allowed::Path, "s, m", Default::Absent, "Displacement over time, added to the position; the obstacle is at rest \
+before the first row and after the last one."),
                 Field::new("spin", $turn, "rad/s", Default::Absent, "Angular velocity about the pivot, from t = 0 on; in 3D a vector along the axis."),
-                Field::new("pivot", Allowed::Vector, "m", Default::Absent, "Where the axis of the spin passes; without it the centre of the shape.").applies(&[Condition::Given("spin")]),
+                Field::new("pivot", Allowed::Vector, "m", Default::Absent, "A point of the axis of the spin; the default is the centre of the \
+shape.").applies(&[Condition::Given("spin")]),
             ], roles: $roles, };
     };
 }
@@ -45,7 +52,7 @@ both! { HALF_SPACE_2D, HALF_SPACE_3D, "half_space", &[Role::HalfSpace],
 }
 
 const BOX_TEXT: &str = "Solid inside, or (`inside = true`) a container that keeps bodies within its walls. Given by two opposite corners, or by \
-centre and size and then possibly turned. A node inside leaves through the nearest face; one that is faster than a quarter of the smallest side \
+centre and size and then possibly turned. A node inside leaves through the nearest face; a node that is faster than a quarter of the smallest side \
 per step leaves through the face by which it came in.";
 const MIN: Field = Field::new(
     "min",
@@ -97,24 +104,24 @@ both! { CAPSULE_2D, CAPSULE_3D, "capsule", &[],
     "all points nearer to a segment than a radius",
     "Solid where the distance to the segment a b is below the radius. A node exactly on the segment leaves at a right angle to it.";
     Field::new("a", Allowed::Vector, "m", Default::Required, "One end of the segment."),
-    Field::new("b", Allowed::Vector, "m", Default::Required, "The other end; another point than `a`."),
+    Field::new("b", Allowed::Vector, "m", Default::Required, "The other end, a different point from `a`."),
     Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
 }
 
 both! { CONVEX_2D, CONVEX_3D, "convex", &[],
     "the convex hull of points",
-    "Solid inside of the hull of the points; points within the hull do not matter. A node inside leaves through the nearest face.";
+    "Solid inside the hull of the points; points within the hull do not matter. A node inside leaves through the nearest face.";
     Field::new("points", Allowed::Points, "m", Default::Required, "Points whose hull has an area (2D) or a volume (3D)."),
 }
 
 const THIN: &str = "An infinitely thin surface that holds nodes back on both sides: a node stays on the side on which it was before the step, \
 however fast it is. Nodes keep a distance of at least a hundred-millionth of its size. A node that starts exactly on it goes to the side of the \
-normal (in 2D left of the direction in which the points run, in 3D by the right-hand rule).";
+normal (in 2D, to the left of the direction in which the points run, in 3D by the right-hand rule).";
 
 collider! {
     /// The parameters of `polyline` (2D).
     POLYLINE, "polyline", 2, Allowed::ANY, &[], "a thin curve of straight segments, open or closed", THIN;
-    Field::new("points", Allowed::Points, "m", Default::Required, "Two or more points, each another than the one before."),
+    Field::new("points", Allowed::Points, "m", Default::Required, "Two or more points, each different from the one before."),
     Field::new("closed", Allowed::Boolean, "", NO, "Whether the last point is joined to the first; needs three points."),
 }
 collider! {

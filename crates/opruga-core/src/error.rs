@@ -45,9 +45,12 @@ impl IntoField for BuildError {
 /// The range that a diverging body has left: that of finite numbers, or that of its positions [m].
 pub fn what_was_left(range: Option<f64>) -> String {
     match range {
-        None => "the finite numbers".into(),
+        None => "the range of finite numbers".into(),
         Some(range) => {
-            format!("the range in which rounding is small beside its elements, {} m about the origin", number(range))
+            format!(
+                "the range in which rounding is small compared with its elements, {} m around the origin",
+                number(range)
+            )
         }
     }
 }
@@ -65,7 +68,7 @@ messages! {
     /// Why a preparation ended early.
     #[derive(Clone, Debug, PartialEq)]
     pub enum BrokenOff {
-        "run.broken_off" #[error("the preparation was broken off")]
+        "run.broken_off" #[error("the preparation was interrupted")]
         Preparation {},
     }
 
@@ -105,7 +108,7 @@ messages! {
             hint: AnyMessage,
         },
         /// The step was stopped from outside.
-        "part.step" #[error("the step was broken off")]
+        "part.step" #[error("the step was interrupted")]
         BrokenOff {},
         /// A model has no value in this state; with a hint from the settings of the integrator if the model gives none.
         "part.step" #[error("{model}: {about}")]

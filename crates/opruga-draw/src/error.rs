@@ -7,7 +7,7 @@ opruga_math::terms! {
     /// The thing that a picture or a plot lacks.
     pub enum Nothing = "part.nothing_to_draw" {
         Picture = "a film strip needs a picture",
-        FinitePlace = "no body has a node at a finite place",
+        FinitePlace = "no body has a node at a finite position",
         Cell = "a map needs a panel, a column and a row",
         Panel = "a plot needs a panel",
         Sample = "a GIF needs sample frames for its palette",
@@ -47,7 +47,7 @@ opruga_math::messages! {
         Node { body: usize, nodes: usize, list: PictureList, node: u32 },
         /// The list of scalars of a body has a different length from the list of positions. The body is given by its index in the picture.
         "draw.failed"
-        #[error("body {body} has {nodes} nodes, but {scalars} scalars; there must be none, or one a node")]
+        #[error("body {body} has {nodes} nodes, but {scalars} scalars; there must be none, or one per node")]
         Scalars { body: usize, nodes: usize, scalars: usize },
         /// The dimension of a picture is neither 2 nor 3.
         "draw.failed"

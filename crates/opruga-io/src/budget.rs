@@ -26,10 +26,10 @@ terms! {
 terms! {
     /// What helps if a file asks for too much.
     pub(crate) enum LimitHint = "part.limit_hint" {
-        Picture = "take a picture with fewer spots: one that is smoothed, or drawn with fewer colours",
+        Picture = "use a picture with fewer spots: one that is smoothed, or drawn with fewer colours",
         Entities = "write the drawing without entities, or with `use`",
-        Letters = "the letters of this font are made of too many others",
-        Instances = "draw a mesh less often, or leave out what the body does not need",
+        Letters = "the letters of this font are composed of too many others",
+        Instances = "use fewer instances of a mesh, or leave out what the body does not need",
         Compression = "save the file without compression",
     }
 }
@@ -38,7 +38,7 @@ messages! {
     /// A request of a file beyond a limit; the code is that of the limit.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum LimitError {
-        "part.limit" #[error("the file asks for {count} {what} or more")] #[value("{count}")] #[allowed("at most {most} {what}")]
+        "part.limit" #[error("the file requires {count} {what} or more")] #[value("{count}")] #[allowed("at most {most} {what}")]
         Above { count: u64, what: Counted, most: u64 },
     }
 }

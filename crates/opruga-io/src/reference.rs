@@ -28,7 +28,8 @@ pub fn markdown(catalogue: &Catalogue) -> String {
             kinds(&mut out, "Models", "models = [ { … } ]", &catalogue.models);
         }
     }
-    out.push_str("## Selectors\n\nA selector is a table with exactly one of these keys; one that selects nothing is an error. Places are those at the start.\n\n| key | selects | form |\n|---|---|---|\n");
+    out.push_str("## Selectors\n\nA selector is a table with exactly one of these keys; one that selects nothing is an error. Positions are those at \
+the start.\n\n| key | selects | form |\n|---|---|---|\n");
     for spec in SELECTORS {
         let _ = writeln!(out, "| `{}` | {} | {} |", spec.kind, spec.summary, spec.documentation);
     }
@@ -36,13 +37,15 @@ pub fn markdown(catalogue: &Catalogue) -> String {
     out
 }
 
-const INTRODUCTION: &str = "A scene is a text in [TOML](https://toml.io), UTF-8. Units are SI. Numbers are finite; whole numbers may stand for numbers, but no text \
-stands for a number. Unknown fields, keys given twice and names that no body has are errors, and all errors are reported at once. There is no include.\n\n";
+const INTRODUCTION: &str = "A scene is a [TOML](https://toml.io) file in UTF-8. Units are SI. Numbers must be finite. A whole number is also a \
+number, but a text is not. Unknown fields, repeated keys and names that no body has are errors. All errors are reported at once. A scene cannot \
+include another one.\n\n";
 
-const PATHS: &str = "\n## Paths of parameters\n\n`--set PATH=VALUE` and `do = \"set\"` name a parameter by the way to it: `seed`, `time.substeps`, `world.gravity`, `integrator.kind`, \
-`collider.0.friction`, `body.ball.mass`, `body.0.models.mass_spring.stiffness`. In a list an entry is named by its number from 0, its `name` or its `kind`. \
-`--set` changes the scene before it is read, so it may name any field and numbers count the tables of the file; `do = \"set\"` changes the running world, so it may name \
-fields of `world`, of the integrator, of colliders and of models, and `time.substeps`; a name of a body with copies means all of them.\n";
+const PATHS: &str = "\n## Paths of parameters\n\n`--set PATH=VALUE` and `do = \"set\"` name a parameter by its path: `seed`, `time.substeps`, \
+`world.gravity`, `integrator.kind`, `collider.0.friction`, `body.ball.mass`, `body.0.models.mass_spring.stiffness`. In a list an entry is named by \
+its number from 0, its `name` or its `kind`. `--set` changes the scene before it is read, so it may name any field and numbers count the tables of \
+the file; `do = \"set\"` changes the running world, so it may name fields of `world`, of the integrator, of colliders and of models, and \
+`time.substeps`; a name of a body with copies means all of them.\n";
 
 fn heading(out: &mut String, title: &str, section: &'static Section) {
     let _ = writeln!(out, "## {title}\n\n{}\n", sentence(section.spec));
@@ -171,7 +174,7 @@ fn default(field: &Field) -> String {
 fn holds(child: &Child) -> String {
     match child.holds {
         Holds::Table(_) => "a table, see below".into(),
-        Holds::Integrator => "a table, see Integrators, or its `kind` alone".into(),
+        Holds::Integrator => "a table, see Integrators, or only its `kind`".into(),
         Holds::List(_) | Holds::Tagged { .. } | Holds::Models | Holds::Colliders => {
             "a list of tables, see below".into()
         }

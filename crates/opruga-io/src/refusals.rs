@@ -22,11 +22,11 @@ messages! {
         OtherValue { most: u32 },
         "part.refusal_hint" #[error("a `value` of {substeps} or more, or another integrator")]
         LargerValue { substeps: u32 },
-        "part.refusal_hint" #[error("another `value`, or substeps >= {substeps} when the command begins, which a command before it sets")]
+        "part.refusal_hint" #[error("another `value`, or substeps >= {substeps} when the command begins, set by an earlier command")]
         ValueOrEarlierCommand { substeps: u32 },
         "part.refusal_hint" #[error("another `value`, or substeps >= {substeps} when the command begins, such as --set time.substeps={substeps}")]
         ValueOrSubsteps { substeps: u32 },
-        "part.refusal_hint" #[error("a softer or heavier body, or substeps >= {substeps} when the command begins, which a command before it sets")]
+        "part.refusal_hint" #[error("a softer or heavier body, or substeps >= {substeps} when the command begins, set by an earlier command")]
         BodyOrEarlierCommand { substeps: u32 },
         "part.refusal_hint" #[error("a softer or heavier body, or substeps >= {substeps} when the command begins, such as --set time.substeps={substeps}")]
         BodyOrSubsteps { substeps: u32 },

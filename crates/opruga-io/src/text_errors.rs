@@ -27,7 +27,7 @@ messages! {
         "scene.encoding" #[error("the scene is written in UTF-16 or UTF-32")] #[allowed("UTF-8")] #[hint("save it as UTF-8")]
         Wide {},
         "scene.encoding" #[error("the scene begins with two byte-order marks (U+FEFF)")] #[value("U+FEFF U+FEFF")]
-        #[allowed("UTF-8, with one byte-order mark at most")] #[hint("save it as UTF-8 without a byte-order mark")]
+        #[allowed("UTF-8, with at most one byte-order mark")] #[hint("save it as UTF-8 without a byte-order mark")]
         TwoMarks {},
         "scene.encoding" #[error("byte {byte} is not valid UTF-8")] #[allowed("UTF-8")] #[hint("save it as UTF-8")]
         Byte { byte: String },
@@ -49,11 +49,11 @@ messages! {
         BracketBefore { bracket: char, line: usize },
         "part.text_hint" #[error("a `{bracket}` is missing before here")]
         BracketHere { bracket: char },
-        "part.text_hint" #[error("numbers stand without units: write {bare}; `opruga reference` tells the unit of every field")]
+        "part.text_hint" #[error("numbers have no units: write {bare}; `opruga reference` gives the unit of every field")]
         Unit { bare: String },
         "part.text_hint" #[error("texts with spaces need quotes")]
         Quotes {},
-        "part.text_hint" #[error("`opruga sweep` takes lists (8,16,32) and ranges (0.5..4:log:7), with a run for each value; a vector stands in brackets")]
+        "part.text_hint" #[error("`opruga sweep` accepts lists (8,16,32) and ranges (0.5..4:log:7), with a run for each value; a vector must be in brackets")]
         Sweep {},
     }
 
@@ -64,17 +64,17 @@ messages! {
         Failed { reason: String },
         "read.failed" #[error("there is no file `{name}`")] #[value("{name}")] #[allowed("{known}")]
         NotHeld { name: String, known: String },
-        "read.failed" #[error("there is no file `{name}`")] #[value("{name}")] #[allowed("a scene without a folder names no files")]
+        "read.failed" #[error("there is no file `{name}`")] #[value("{name}")] #[allowed("a scene without a folder cannot name files")]
         NoFolder { name: String },
-        "read.failed" #[error("the file `{name}` is not there")] #[value("{name}")] #[hint("files are looked up in `{folder}`")]
+        "read.failed" #[error("the file `{name}` does not exist")] #[value("{name}")] #[hint("files are looked up in `{folder}`")]
         NotThere { name: String, folder: String },
         "read.not_regular_file" #[error("this is a folder")]
         Folder {},
         "read.not_regular_file" #[error("this is not a regular file")]
         NotRegular {},
-        "read.changed" #[error("the file was changed while it was read")] #[hint("try again once it is saved")]
+        "read.changed" #[error("the file changed while it was being read")] #[hint("try again once it is saved")]
         Changed {},
-        "shape.outside" #[error("`{name}` leads out of the folder of the scene")] #[value("{name}")]
+        "shape.outside" #[error("`{name}` is outside the folder of the scene")] #[value("{name}")]
         #[allowed("a file in the folder of the scene or below it, named with /")]
         #[hint("`--allow-outside` lets a scene read files from anywhere")]
         Outside { name: String },
@@ -102,7 +102,7 @@ messages! {
         NoEntryCalled { list: String, name: String, known: String },
         "set.path" #[error("`{list}` has {count} entries `{name}`")] #[value("{name}")] #[allowed("their numbers: {indices}")]
         SeveralEntries { list: String, count: usize, name: String, indices: String },
-        "set.path" #[error("`{value}` is {kind}, it has no fields")] #[value("{field}")]
+        "set.path" #[error("`{value}` is {kind}, which has no fields")] #[value("{field}")]
         NoFields { value: String, kind: ValueKind, field: String },
     }
 }

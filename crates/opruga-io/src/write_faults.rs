@@ -12,11 +12,11 @@ messages! {
     /// Why a file or a folder could not be written.
     #[derive(Clone, Debug, PartialEq)]
     pub enum WriteFault {
-        "write.exists" #[error("the file is already there")] #[hint("--force replaces it")]
+        "write.exists" #[error("the file already exists")] #[hint("--force replaces it")]
         FileExists {},
-        "write.exists" #[error("the folder already holds {file}")] #[hint("--force replaces them, --out chooses another folder")]
+        "write.exists" #[error("the folder already contains {file}")] #[hint("--force replaces them, --out chooses another folder")]
         HoldsFile { file: String },
-        "write.exists" #[error("the folder already holds {count} files, among them {file}")]
+        "write.exists" #[error("the folder already contains {count} files, among them {file}")]
         #[hint("--force replaces them, --out chooses another folder")]
         HoldsFiles { count: usize, file: String },
         "write.failed" #[error("writing stopped after {bytes} bytes: {reason}")]
@@ -25,19 +25,19 @@ messages! {
         IsFolder {},
         "write.failed" #[error("this is not a regular file")]
         NoRegularFile {},
-        "write.failed" #[error("the path has no name of a file")]
+        "write.failed" #[error("the path has no file name")]
         NoFileName {},
-        "write.failed" #[error("the file cannot be made: {reason}")]
+        "write.failed" #[error("the file cannot be created: {reason}")]
         FileNotMade { reason: String },
-        "write.failed" #[error("the file cannot be made: {reason}")] #[hint("the folder around it is missing")]
+        "write.failed" #[error("the file cannot be created: {reason}")] #[hint("its parent folder is missing")]
         NoFolderAround { reason: String },
-        "write.failed" #[error("the folder around it cannot be made: {reason}")]
+        "write.failed" #[error("its parent folder cannot be created: {reason}")]
         FolderAroundNotMade { reason: String },
-        "write.failed" #[error("the recording has ended before")]
+        "write.failed" #[error("the recording has already ended")]
         RecordingEnded {},
-        "write.locked" #[error("another process writes this file")] #[hint("wait for it, or choose another name")]
+        "write.locked" #[error("another process is writing this file")] #[hint("wait for it, or choose another name")]
         FileLocked {},
-        "write.locked" #[error("another process writes into this folder")] #[hint("wait for it, or choose another folder with --out")]
+        "write.locked" #[error("another process is writing into this folder")] #[hint("wait for it, or choose another folder with --out")]
         FolderLocked {},
         "write.folder" #[error("the folder cannot be {doing}: {reason}")]
         Folder { doing: Doing, reason: String },
@@ -48,7 +48,7 @@ messages! {
         "write.input" #[error("{output} would replace {input}, which is an input of this call")]
         #[hint("choose another name; --force replaces outputs only, never an input")]
         ReplacesInput { output: Use, input: Use },
-        "write.twice" #[error("{one} and {other} are one file: only the last would be left")] #[hint("choose another name for one of them")]
+        "write.twice" #[error("{one} and {other} are the same file: only the last one would remain")] #[hint("choose another name for one of them")]
         OneFile { one: Use, other: Use },
     }
     /// The role of a file in a call.
@@ -70,7 +70,7 @@ messages! {
         Option { option: &'static str },
         "part.use" #[error("a file of the output")]
         OfOutput {},
-        "part.use" #[error("a file of the folder of the output")]
+        "part.use" #[error("a file of the output folder")]
         OfFolder {},
     }
 }

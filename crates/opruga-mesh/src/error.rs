@@ -56,7 +56,7 @@ terms! {
         AreaSpannedSidesCorner = "area spanned by the sides at a corner",
         DeterminantMap = "determinant of the map",
         Dimension = "dimension",
-        DistanceWelding = "distance of welding",
+        DistanceWelding = "welding distance",
         LengthCells = "length of `cells`",
         LengthRadii = "length of `radii`",
         StartAngle = "start angle",
@@ -99,7 +99,7 @@ messages! {
         "part.mesh" #[error("{edges} edges run past one another so closely that more than {most} pairs would have to be compared")]
         NotCompared { edges: u64, most: u64 },
         /// Two consecutive points of an outline or chain coincide.
-        "part.mesh" #[error("points {first} and {second} follow each other at the same place")]
+        "part.mesh" #[error("the consecutive points {first} and {second} are at the same position")]
         RepeatedPoint { first: u32, second: u32 },
         /// Two edges of an outline cross, touch or overlap.
         "part.mesh" #[error("the edge from point {} to point {} meets the edge from point {} to point {}",
@@ -118,13 +118,13 @@ messages! {
         "part.mesh" #[error("`{name}` has {values} values for {cells} cells")]
         CellValues { name: String, values: usize, cells: usize },
         /// The number of values of nodes differs from the number of nodes.
-        "part.mesh" #[error("`{name}` has {values} numbers, {components} a node, for {nodes} nodes")]
-        NodeValues { name: String, values: usize, components: usize, nodes: usize },
         /// An operation that supports only triangles and tetrahedra was applied to another cell.
-        "part.mesh" #[error("a {element} is no triangle or tetrahedron; it has to be cut into these first")]
-        NotSimplices { element: Element },
         /// Hexahedra that cannot be cut into five tetrahedra each such that common faces are cut in the same way.
-        "part.mesh" #[error("the hexahedra around the edge from node {} to node {} cannot alternate: a loop of an odd number of edges leads through it",
+        "part.mesh" #[error("`{name}` has {values} numbers, {components} per node, for {nodes} nodes")]
+        NodeValues { name: String, values: usize, components: usize, nodes: usize },
+        "part.mesh" #[error("a {element} is not a triangle or tetrahedron; cut it into these first")]
+        NotSimplices { element: Element },
+        "part.mesh" #[error("the hexahedra around the edge from node {} to node {} cannot alternate: a loop of an odd number of edges passes through it",
             edge[0], edge[1])]
         OddLoop { edge: [u32; 2] },
         /// The spacing of a filling is missing.
@@ -137,7 +137,7 @@ messages! {
         "part.mesh" #[error("with a spacing of {} m the filling would have {kept:.2} of the volume{}", number(*spacing), keeps(*finer))]
         Lost { spacing: f64, kept: f64, finer: Option<f64> },
         /// A three-dimensional element in a plane mesh, or a filled plane cell in a mesh in space.
-        "part.mesh" #[error("a {element} has no place in a mesh of {dimension} dimensions")]
+        "part.mesh" #[error("a mesh of {dimension} dimensions cannot contain a {element}")]
         WrongDimension { element: Element, dimension: usize },
         /// Sheet quadrilateral k is not the union of sheet triangles 2k and 2k + 1.
         "part.mesh" #[error("sheet quadrilateral {index} is not cut into sheet triangles {} and {}", 2 * u64::from(*index), 2 * u64::from(*index) + 1)]
@@ -155,7 +155,7 @@ messages! {
         "part.mesh" #[error("the surface through facet {facet} has only one side")]
         NonOrientable { facet: u32 },
         /// Neighbouring facets have opposite orientations; [`crate::Mesh::orient_outward`] repairs this.
-        "part.mesh" #[error("{} against their neighbours, the first is facet {}", counted(*count as u64, "facet faces", "facets face"), first)]
+        "part.mesh" #[error("{} against their neighbours; the first is facet {}", counted(*count as u64, "facet is oriented", "facets are oriented"), first)]
         InconsistentOrientation { count: usize, first: u32 },
         /// A component with negative volume is in no enclosing component; [`crate::Mesh::orient_outward`] repairs a mesh that is inside out.
         "part.mesh" #[error("the component through facet {facet} is inside out: its volume is {} and no other component encloses it",
@@ -168,7 +168,7 @@ messages! {
         "part.mesh" #[error("ring {inner} lies inside ring {outer}, and their radii have the same sign")]
         RingsAlike { outer: usize, inner: usize },
         /// A ring that is a hole is inside no other ring.
-        "part.mesh" #[error("ring {ring} is a hole, by its negative radius, and lies inside no other ring")]
+        "part.mesh" #[error("ring {ring} is a hole, because its radius is negative, but it lies inside no other ring")]
         HoleInNothing { ring: usize },
         /// Elements of different dimensions share one mesh, so a single density cannot define a mass.
         "part.mesh" #[error("the mesh mixes {first} and {second} elements, which have no common measure")]

@@ -5,7 +5,7 @@ opruga::math::messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum StartError {
         /// An argument is not text.
-        "studio.call" #[error("`{argument}` is no text in UTF-8")]
+        "studio.call" #[error("`{argument}` is not UTF-8 text")]
         NotUtf8 { argument: String },
         /// An unknown option.
         "studio.call" #[error("there is no option `{option}`")]

@@ -82,7 +82,7 @@ pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
             if rescue::mark_of(&kept.file()).exists() {
                 hint(save_and_report(&kept.file(), registries).as_deref());
             } else {
-                eprintln!("  = nothing was done that is not saved");
+                eprintln!("  = all work was already saved");
             }
             return ExitCode::from(ENDED);
         }
@@ -104,7 +104,7 @@ pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
             hint(saved.as_deref());
             return ExitCode::from(NO_WINDOW);
         }
-        eprintln!("  = another window goes on from there");
+        eprintln!("  = another window continues from there");
     }
 }
 
@@ -112,8 +112,8 @@ pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
 fn save_and_report(kept: &Path, registries: &Registries) -> Option<String> {
     let saved = save(kept, registries);
     match &saved {
-        Some(path) => eprintln!("  = what was done is saved: {path}"),
-        None => eprintln!("  = nothing was kept of it"),
+        Some(path) => eprintln!("  = your work is saved: {path}"),
+        None => eprintln!("  = nothing of it was kept"),
     }
     saved
 }

@@ -87,7 +87,7 @@ fn a_window_saves_what_was_done_before_it_closes_and_stays_where_that_is_refused
     let ended = |window: &mut Window| {
         for _ in 0..2000 {
             let [_, closes] = commands(window);
-            if closes || !question(window) && window.harness.query_by_label_contains("cannot be made").is_some() {
+            if closes || !question(window) && window.harness.query_by_label_contains("cannot be created").is_some() {
                 return closes;
             }
             std::thread::sleep(std::time::Duration::from_millis(5));

@@ -9,7 +9,7 @@ opruga_math::messages! {
         /// A frame has no pixels, or more than the format allows.
         "video.size"
         #[error("a film of {width} by {height} pixels is impossible")]
-        #[allowed("1 to 16384 a side, and 35 million in all")]
+        #[allowed("1 to 16384 per side, and at most 35 million in all")]
         Size { width: u32, height: u32 },
         /// The size of a frame differs from that of the film.
         "video.frame_size"

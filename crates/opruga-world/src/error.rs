@@ -24,7 +24,7 @@ fn damped(damping: f64) -> String {
 /// A hint for a body that may fall forever.
 fn falls(range: Option<f64>) -> &'static str {
     match range {
-        Some(_) => "; `world.largest_distance` takes away what falls for ever",
+        Some(_) => "; `world.largest_distance` removes bodies that fall for ever",
         None => "",
     }
 }
@@ -97,8 +97,8 @@ messages! {
         NotConverged { body: String, cause: Box<StepError> },
         /// The sums over all bodies left the finite numbers in the frame after the last good one. Contains the time of the last good frame \[s\].
         "run.overflow"
-        #[error("the energy or the momentum of all bodies together left the finite numbers in the frame from t = {} s; the world is at its last good frame", number(*last))]
-        #[hint("are masses, stiffnesses and speeds in units that go together (metres, kilograms, seconds)?")]
+        #[error("the energy or the momentum of all bodies together left the range of finite numbers in the frame from t = {} s; the world is at its last good frame", number(*last))]
+        #[hint("are masses, stiffnesses and speeds in consistent units (metres, kilograms, seconds)?")]
         Overflow { last: f64 },
         /// More pairs may touch in a step than the scene allows. Contains the time of the last good frame \[s\].
         "limit.contacts"
@@ -108,17 +108,17 @@ messages! {
         /// Surfaces that a barrier should keep apart meet. The second is another body, the same body, or an obstacle. Contains the time at the end of
         /// the substep \[s\].
         "contact.surfaces_meet"
-        #[error("the surfaces of `{first}` and {} meet at t = {} s, where a barrier needs a gap; the world is at its last good frame", other(first, second), number(*time))]
+        #[error("the surfaces of `{first}` and {} meet at t = {} s, but a barrier needs a gap; the world is at its last good frame", other(first, second), number(*time))]
         #[hint("bodies that begin apart, a smaller `thickness`, or `response = \"constraint\"`")]
         Meet { first: String, second: String, time: f64 },
         /// Pins and obstacles move bodies through one another. The second is another body, the same body, or an obstacle. Contains the time at the
         /// end of the substep \[s\].
         "contact.led_through"
-        #[error("pins and obstacles lead `{first}` through {} at t = {} s; the world is at its last good frame", other(first, second), number(*time))]
-        #[hint("another path of what leads them, or `touch = false` for the pair")]
+        #[error("pins and obstacles move `{first}` through {} at t = {} s; the world is at its last good frame", other(first, second), number(*time))]
+        #[hint("another path of these pins or obstacles, or `touch = false` for the pair")]
         LedThrough { first: String, second: String, time: f64 },
         /// The frame was cancelled from outside ([`crate::Options::break_off`]).
-        "run.broken_off" #[error("the frame was broken off; the world is at its last good frame")]
+        "run.broken_off" #[error("the frame was interrupted; the world is at its last good frame")]
         BrokenOff {},
         /// A name, path or value is not valid.
         "path.unknown" #[error("`{path}`: {about}")]

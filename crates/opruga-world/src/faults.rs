@@ -31,11 +31,11 @@ messages! {
         "scene.duplicate_name" #[error("two probes are called `{name}`{}", first_in(line))] #[value("{name}")]
         TwoProbes { name: String, line: Option<usize> },
         "scene.duplicate_name"
-        #[error("the names of two bodies print alike and differ by Unicode normalisation alone, {} here and {} there: `{name}`{}", points(here), points(there), first_in(line))]
+        #[error("the names of two bodies look alike and differ only in Unicode normalisation, {} here and {} there: `{name}`{}", points(here), points(there), first_in(line))]
         #[value("{name}")]
         AlikeBodies { name: String, here: Option<String>, there: Option<String>, line: Option<usize> },
         "scene.duplicate_name"
-        #[error("the names of two probes print alike and differ by Unicode normalisation alone, {} here and {} there: `{name}`{}", points(here), points(there), first_in(line))]
+        #[error("the names of two probes look alike and differ only in Unicode normalisation, {} here and {} there: `{name}`{}", points(here), points(there), first_in(line))]
         #[value("{name}")]
         AlikeProbes { name: String, here: Option<String>, there: Option<String>, line: Option<usize> },
     }
@@ -43,7 +43,7 @@ messages! {
     /// Errors in the numbers of a blueprint, or in the names that its parts refer to.
     #[derive(Clone, Debug, PartialEq)]
     pub enum BlueprintFault {
-        "scene.range" #[error("a step of {} s is lost in {} s: time would stand still", number(*h), number(*seconds))]
+        "scene.range" #[error("a step of {} s is lost in rounding at {} s: time would not advance", number(*h), number(*seconds))]
         #[value("{frame}")] #[allowed("a step that changes the time")]
         LostStep { h: f64, seconds: f64, frame: String },
         "scene.range" #[error("{} s are {} frames", number(*seconds), number(*frames))] #[value("{frame}")] #[allowed("at most 1e12 frames")]
@@ -62,7 +62,7 @@ messages! {
         NoBody { index: usize, last: usize },
         "scene.unknown_name" #[error("there is no body {index}")] #[value("{index}")] #[allowed("the scene has no bodies")]
         NoBodies { index: usize },
-        "scene.shape" #[error("it has no nodes")] #[allowed("one node at least")]
+        "scene.shape" #[error("it has no nodes")] #[allowed("at least one node")]
         NoNodes {},
         "scene.shape" #[error("node {node} lies at {position}")] #[allowed("coordinates within 1e70 m of the origin of the shape")]
         FarNode { node: usize, position: String },

@@ -52,7 +52,7 @@ messages! {
         NotAParameter {},
         "part.path" #[error("there is no such node")] #[allowed("0 to {last}")]
         NoNode { last: usize },
-        "part.path" #[error("{value} is not a position and not a velocity")] #[allowed("finite numbers")]
+        "part.path" #[error("{value} is neither a position nor a velocity")] #[allowed("finite numbers")]
         NoPosition { value: f64 },
         "part.path" #[error("the threads cannot start: {reason}")]
         Threads { reason: String },
@@ -62,15 +62,15 @@ messages! {
         NotNow { at: f64, now: f64 },
         "part.path" #[error("there is no such command")]
         NoCommand {},
-        "part.path" #[error("it is not a drag, which alone has a path")]
+        "part.path" #[error("only a drag has a path")]
         NoDrag {},
-        "part.path" #[error("a row of its path is a later time and a point, all of them finite")]
+        "part.path" #[error("a row of its path must be a later time and a point, all of them finite numbers")]
         Row {},
         "part.path" #[error("it begins at {at} s and cannot end at {until} s")]
         CannotEnd { at: f64, until: f64 },
-        "part.path" #[error("a force that only the program knows cannot be recorded")]
+        "part.path" #[error("a force that the program defines cannot be recorded")]
         ForceUnrecorded {},
-        "part.path" #[error("a command that the program leads while it acts cannot be recorded")] #[hint("save the scene with it instead")]
+        "part.path" #[error("a command that the program controls while it acts cannot be recorded")] #[hint("save the scene with it instead")]
         ActUnrecorded {},
         "part.path" #[error("a body that the program adds cannot be recorded")]
         BodyUnrecorded {},
@@ -78,22 +78,22 @@ messages! {
         ModelsUnrecorded {},
         "part.path" #[error("this cannot be recorded")]
         Unrecorded {},
-        "part.path" #[error("it has no form in a scene")]
+        "part.path" #[error("it cannot be written in a scene")]
         NoForm {},
         "part.path" #[error("the scene has another dimension")]
         OtherDimension {},
         "part.path" #[error("the scene adds nothing now")]
         AddsNothing {},
-        "part.path" #[error("the selected nodes hold no whole cell of the body")] #[allowed("all nodes of one cell at least")]
+        "part.path" #[error("no cell of the body has all of its nodes selected")] #[allowed("all nodes of at least one cell")]
         NoCells {},
-        "part.path" #[error("the selected nodes hold no whole facet of the boundary")] #[allowed("all nodes of one facet at least")]
+        "part.path" #[error("no facet of the boundary has all of its nodes selected")] #[allowed("all nodes of at least one facet")]
         NoFacets {},
     }
 
     /// Errors in a snapshot.
     #[derive(Clone, Debug, PartialEq)]
     pub enum SnapshotFault {
-        "part.snapshot" #[error("it promises {count} {what}, more than it holds")]
+        "part.snapshot" #[error("it declares {count} {what}, more than it contains")]
         Promises { count: u64, what: Promised },
         "part.snapshot" #[error("it ends too early")]
         EndsEarly {},
@@ -105,39 +105,39 @@ messages! {
         Channel { channel: String },
         "part.snapshot" #[error("the channel `{channel}` holds {number}")]
         ChannelNumber { channel: String, number: f64 },
-        "part.snapshot" #[error("it holds {what} of a kind that is unknown here")]
+        "part.snapshot" #[error("it contains {what} of an unknown kind")]
         Unknown { what: Content },
-        "part.snapshot" #[error("it holds `{kind}` of a kind that is unknown here")]
+        "part.snapshot" #[error("it contains `{kind}`, which is an unknown kind")]
         UnknownKind { kind: String },
         "part.snapshot" #[error("its gravity is missing")]
         Gravity {},
         "part.snapshot" #[error("it has more substeps than a frame may have")]
         Substeps {},
-        "part.snapshot" #[error("it changes an obstacle that is not there")]
+        "part.snapshot" #[error("it changes an obstacle that does not exist")]
         NoObstacle {},
-        "part.snapshot" #[error("it changes a body that is not there")]
+        "part.snapshot" #[error("it changes a body that does not exist")]
         NoBody {},
         "part.snapshot" #[error("it holds a body that no command here adds")]
         NotAdded {},
-        "part.snapshot" #[error("a body has the mesh of one that is not there")]
+        "part.snapshot" #[error("a body has the mesh of a body that does not exist")]
         NoMesh {},
-        "part.snapshot" #[error("a body came from nowhere")]
+        "part.snapshot" #[error("the origin of a body is of an unknown kind")]
         FromNowhere {},
         "part.snapshot" #[error("in `{kind}`, {problem}")]
         Field { kind: String, problem: opruga_core::spec::ValueError },
-        "part.snapshot" #[error("what a program did is of an unknown kind")]
+        "part.snapshot" #[error("an input of a program is of an unknown kind")]
         Input {},
         "part.snapshot" #[error("its version is not {version}")]
         Version { version: u64 },
-        "part.snapshot" #[error("its impulses of contact are invalid")]
+        "part.snapshot" #[error("its contact impulses are invalid")]
         Contact {},
         "part.snapshot" #[error("it has another dimension")]
         Dimension {},
         "part.snapshot" #[error("it has another number of bodies")]
         BodyCount {},
-        "part.snapshot" #[error("a body is where it cannot be")]
+        "part.snapshot" #[error("a body and its slot contradict each other")]
         BodyPlace {},
-        "part.snapshot" #[error("a body has the generation of one to come")]
+        "part.snapshot" #[error("the generation of a body is higher than any assigned so far")]
         Generation {},
         "part.snapshot" #[error("body `{body}` has another shape")]
         OtherShape { body: String },
@@ -145,15 +145,15 @@ messages! {
         NotFinite { body: String },
         "part.snapshot" #[error("it has another number of commands")]
         CommandCount {},
-        "part.snapshot" #[error("a command holds what is not there")]
+        "part.snapshot" #[error("a command holds something that does not exist")]
         CommandHolds {},
         "part.snapshot" #[error("a command is in an unknown state")]
         CommandState {},
-        "part.snapshot" #[error("it goes on after its end")]
+        "part.snapshot" #[error("bytes follow its end")]
         GoesOn {},
-        "part.snapshot" #[error("what it says of the scene goes on after its end")]
+        "part.snapshot" #[error("bytes follow the end of its part about the scene")]
         SceneGoesOn {},
-        "part.snapshot" #[error("it is not that of two scenes side by side")]
+        "part.snapshot" #[error("it does not belong to two scenes side by side")]
         NoPair {},
     }
 }

@@ -22,31 +22,31 @@ messages! {
         NoKindHere { what: &'static str, known: String },
         "scene.missing" #[error("`{name}` is missing")] #[parameters(name)]
         NoFieldGiven { name: &'static str },
-        "stale_handle" #[error("the body of this handle is not in this world any more, or never was")]
+        "stale_handle" #[error("the body of this handle is no longer in this world, or never was")]
         #[hint("`World::body` finds a body by its name, `World::handle` gives a handle of it")]
         StaleHandle {},
         "model.cells_twice" #[error("cell {cell} belongs to the models {first} and {second} of the body, whose stiffness would add up")]
-        #[allowed("every cell in one `{kind}` model")] #[hint("name groups without common cells by `cells`")]
+        #[allowed("every cell in one `{kind}` model")] #[hint("use `cells` to name groups without common cells")]
         CellsTwice { cell: u32, first: usize, second: usize, kind: &'static str },
         "model.uncovered_cells"
-        #[error("{count} of {cells} cells, the first of them cell {first}, are in none of the groups {groups} of the models: they would have mass and no stiffness")]
+        #[error("{count} of {cells} cells, the first of which is cell {first}, are in none of the groups {groups} of the models: they would have mass but no stiffness")]
         #[allowed("every cell in one model")]
         Uncovered { count: usize, cells: usize, first: usize, groups: String },
         "integrator.mass_matrix"
-        #[error("`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, and `{integrator}` moves every node by its own mass")] #[value("\"consistent\"")] #[parameters("mass")]
-        #[allowed("\"lumped\"")] #[hint("consistent masses go with backward_euler, bdf2, implicit_midpoint and newmark")]
+        #[error("`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, but `{integrator}` moves every node by its own mass")] #[value("\"consistent\"")] #[parameters("mass")]
+        #[allowed("\"lumped\"")] #[hint("consistent masses work with backward_euler, bdf2, implicit_midpoint and newmark")]
         MassMatrix { integrator: &'static str },
-        "model.mass" #[error("`mass` is \"consistent\", and there are obstacles, whose impacts act on the masses of single nodes")] #[value("\"consistent\"")] #[parameters("mass")]
-        #[allowed("\"lumped\"")] #[hint("consistent masses go with obstacles in `equilibrium`, which knows no impacts")]
+        "model.mass" #[error("`mass` is \"consistent\", but there are obstacles, whose impacts act on the masses of single nodes")] #[value("\"consistent\"")] #[parameters("mass")]
+        #[allowed("\"lumped\"")] #[hint("`equilibrium` has no impacts and accepts consistent masses with obstacles")]
         MassAndObstacles {},
-        "model.mass" #[error("`mass` is \"consistent\", and `node_mass` = {mass} kg gives every node the same mass, whatever its cells")] #[value("\"consistent\"")] #[parameters("mass")]
-        #[allowed("\"lumped\"")] #[hint("`mass` or `density` of the body goes with consistent masses")]
+        "model.mass" #[error("`mass` is \"consistent\", but `node_mass` = {mass} kg gives every node the same mass, whatever its cells")] #[value("\"consistent\"")] #[parameters("mass")]
+        #[allowed("\"lumped\"")] #[hint("use `mass` or `density` of the body with consistent masses")]
         NodeMass { mass: f64 },
         "integrator.needs" #[error("the model has no symmetric second derivatives, which `{integrator}` needs{}", because(why))]
-        #[hint("an explicit integrator steps it, such as `symplectic_euler`, and `equilibrium` finds where it comes to rest")]
+        #[hint("use an explicit integrator, such as `symplectic_euler`; `equilibrium` finds where the body comes to rest")]
         NoSymmetry { integrator: String, why: Option<AnyMessage> },
         "integrator.needs" #[error("the model has no second derivatives, which `{integrator}` needs{}", because(why))]
-        #[hint("an explicit integrator steps it, such as `symplectic_euler`")]
+        #[hint("use an explicit integrator, such as `symplectic_euler`")]
         NoDerivatives { integrator: String, why: Option<AnyMessage> },
         "integrator.needs" #[error("`{model}` has no symmetric second derivatives{}", because(why))]
         NoSymmetricModes { model: &'static str, why: Option<AnyMessage> },
@@ -54,7 +54,7 @@ messages! {
         NoModes { model: &'static str },
         "run.model" #[error("{cause}")]
         State { cause: StepError },
-        "modes.all_held" #[error("all nodes of the body are held along every axis, and nothing of it can swing")]
+        "modes.all_held" #[error("all nodes of the body are pinned along every axis, so the body cannot vibrate")]
         #[allowed("a node that is free along an axis")] #[hint("another body, or fewer pins")]
         AllHeld {},
         "modes.no_mass" #[error("node {node} has no mass")] #[allowed("masses above 0 where a node can move")]
@@ -64,57 +64,57 @@ messages! {
         ModesMemory { count: usize, axes: usize, bytes: String, most: String },
         "modes.indefinite" #[error("the stiffness of this state has no natural frequencies")]
         Indefinite {},
-        "contact.implicit" #[error("`{integrator}` and the integrator of `{other}` do not touch: one finds a state at rest, the other one moves")]
+        "contact.implicit" #[error("bodies of `{integrator}` cannot touch `{other}`: one of the two integrators looks for a state at rest, the other one follows a motion")]
         #[allowed("bodies that all rest, or all move")]
         #[hint("`contact.touch = false` in a body lets it pass through the others")]
         RestBesideMotion { integrator: &'static str, other: String },
-        "contact.implicit" #[error("`{integrator}` with `arc_length` or `load_steps` puts loads on in parts, and bodies that touch find their balance under the whole load")] #[parameters("arc_length", "load_steps")]
+        "contact.implicit" #[error("`{integrator}` with `arc_length` or `load_steps` applies loads in parts, but bodies that touch are balanced under the whole load")] #[parameters("arc_length", "load_steps")]
         #[allowed("bodies that touch without `arc_length` and `load_steps`")]
         #[hint("`contact.touch = false` in a body lets it pass through the others")]
         RestInParts { integrator: &'static str },
-        "run.model" #[error("bodies that touch find no common balance: steps and contact do not agree on an end, however short the way")]
-        #[hint("pins or friction hold what would slide")]
+        "run.model" #[error("bodies that touch find no common equilibrium: steps and contact do not agree on an end, however short the steps")]
+        #[hint("use pins or friction to hold bodies that would slide")]
         NoAgreementAtRest {},
-        "run.model" #[error("bodies that touch find no common balance: after {steps} steps towards it they still move by {} m", number(*moved))]
-        #[hint("pins or friction hold what would slide")]
+        "run.model" #[error("bodies that touch find no common equilibrium: after {steps} steps towards it they still move by {} m", number(*moved))]
+        #[hint("use pins or friction to hold bodies that would slide")]
         NoCommonBalance { steps: usize, moved: f64 },
         "contact.barrier" #[error("`{integrator}` does not solve for the end of a step, which a barrier needs")]
-        #[allowed("an implicit integrator, such as `backward_euler`")] #[hint("or `response = \"constraint\"`, which takes every integrator")]
+        #[allowed("an implicit integrator, such as `backward_euler`")] #[hint("or `response = \"constraint\"`, which works with every integrator")]
         NoBarrier { integrator: &'static str },
         "contact.reach"
-        #[error("the reach is {} m and the shortest edge of the body {} m, so its own features would push one another at rest", number(*reach), number(*shortest))]
+        #[error("the reach is {} m and the shortest edge of the body is {} m, so its own features would push one another at rest", number(*reach), number(*shortest))]
         #[allowed("less than that edge")]
         Reach { reach: f64, shortest: f64 },
-        "contact.unfold" #[error("`unfold` displaces bodies at random, into others too")] #[parameters("unfold")] #[allowed("`unfold = false` in a scene with `[contact]`")]
+        "contact.unfold" #[error("`unfold` displaces bodies at random, possibly into other bodies")] #[parameters("unfold")] #[allowed("`unfold = false` in a scene with `[contact]`")]
         Unfold {},
-        "limit.memory" #[error("the bodies of the scene take about {all} bytes, `{body}` {largest} of them")] #[allowed("at most {most} bytes")]
+        "limit.memory" #[error("the bodies of the scene take about {all} bytes, of which `{body}` takes {largest}")] #[allowed("at most {most} bytes")]
         #[hint("a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
         SceneMemory { all: String, body: String, largest: String, most: u64 },
-        "limit.memory" #[error("the bodies of the scene take about {all} bytes, `{body}` {largest} of them")]
-        #[allowed("what the machine gives to this program")]
+        "limit.memory" #[error("the bodies of the scene take about {all} bytes, of which `{body}` takes {largest}")]
+        #[allowed("the memory that the machine gives to this program")]
         #[hint("a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
         MachineMemory { all: String, body: String, largest: String },
         "scene.range"
         #[error("it begins {} m from the origin along an axis, where positions are rounded by {} m", rounded(*farthest, 3), rounded(*farthest * f64::EPSILON, 2))]
-        #[allowed("at most {} m, where that is a millionth of the distance of its nodes", rounded(*range, 3))]
+        #[allowed("at most {} m, where rounding is a millionth of the distance between its nodes", rounded(*range, 3))]
         #[hint("move the scene to the origin")]
         FarBody { farthest: f64, range: f64 },
         "scene.range"
-        #[error("`velocity` and `angular_velocity` let it begin with {} m/s along an axis, {} m in a step of {} s", rounded(*fastest, 3), rounded(*fastest * *h, 3), number(*h))] #[parameters("velocity", "angular_velocity")]
-        #[allowed("at most {} m/s, with which a step ends where positions still have digits that tell its nodes apart", rounded(*range / *h, 3))]
+        #[error("`velocity` and `angular_velocity` give it {} m/s along an axis at the start, {} m in a step of {} s", rounded(*fastest, 3), rounded(*fastest * *h, 3), number(*h))] #[parameters("velocity", "angular_velocity")]
+        #[allowed("at most {} m/s, so that after a step positions still have enough digits to distinguish its nodes", rounded(*range / *h, 3))]
         #[hint("are its units mixed (metres, seconds, radians)?")]
         FastBody { fastest: f64, h: f64, range: f64 },
-        "scene.range" #[error("`{word}` is {value}, with which node {node} has a mass of {} kg", number(*mass))] #[value("{value}")] #[parameters(word)]
+        "scene.range" #[error("`{word}` is {value}, which gives node {node} a mass of {} kg", number(*mass))] #[value("{value}")] #[parameters(word)]
         #[allowed("such that every node has at least {} kg and at most {} kg", number(f64::MIN_POSITIVE), number(f64::MAX))]
         #[hint("are its units mixed (metres, kilograms)?")]
         MassOfNode { word: &'static str, value: String, node: usize, mass: f64 },
-        "scene.range" #[error("a weight of {} m/s² takes the energy of the bodies beyond the finite numbers", number(*weight))]
+        "scene.range" #[error("a weight of {} m/s² takes the energy of the bodies out of the range of finite numbers", number(*weight))]
         #[allowed("at most {} m/s² along an axis", number(*most))]
         Weight { weight: f64, most: f64 },
-        "scene.range" #[error("`{word}` is {value}, which takes the energy or the momentum of the body beyond the finite numbers")] #[value("{value}")] #[parameters(word)]
+        "scene.range" #[error("`{word}` is {value}, which takes the energy or the momentum of the body out of the range of finite numbers")] #[value("{value}")] #[parameters(word)]
         #[allowed("numbers whose squares are finite, up to {}", number(*most))]
         BeyondFinite { word: &'static str, value: String, most: f64 },
-        "scene.range" #[error("its energy or its momentum is beyond the finite numbers")]
+        "scene.range" #[error("its energy or its momentum is out of the range of finite numbers")]
         #[hint("are its units mixed (metres, kilograms, seconds)?")]
         Sums {},
         "step.not_finite" #[error("{cause}")]
@@ -127,12 +127,12 @@ messages! {
         NoEstimateOf { cause: AnyMessage, field: String, value: f64, kind: String, lightest: f64 },
         "run.model" #[error("obstacles push nodes through others that a barrier keeps apart")] #[hint("smaller steps, or finer surfaces")]
         Pushed {},
-        "run.model" #[error("cell {cell} is inverted (volume ratio {}), where a barrier keeps bodies apart", number(*ratio))]
+        "run.model" #[error("cell {cell} is inverted (volume ratio {}) while a barrier keeps bodies apart", number(*ratio))]
         #[hint("a material that resists that, such as `neo_hookean`, or smaller steps")]
         InvertedByBarrier { cell: u32, ratio: f64 },
-        "run.model" #[error("the matrix of a step with a barrier has no factor")] #[hint("smaller steps, or another material")]
+        "run.model" #[error("the matrix of a step with a barrier cannot be factored: it is not positive definite")] #[hint("smaller steps, or another material")]
         NoFactor {},
-        "run.model" #[error("bodies that a barrier keeps apart have no common end of the step after {iterations} iterations")]
+        "run.model" #[error("the step of bodies that a barrier keeps apart did not converge in {iterations} iterations")]
         #[hint("smaller steps, or more `iterations`")]
         NoCommonEnd { iterations: u32 },
     }

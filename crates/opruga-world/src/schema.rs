@@ -127,21 +127,22 @@ pub const SCENE: Section = Section {
                 Allowed::Text,
                 "",
                 Default::Text("m"),
-                "What pictures and plots call the unit of length, for scenes that do not count in metres; no number depends on it.",
+                "The name of the unit of length in pictures and plots, for scenes that are not in metres. No number depends on it.",
             ),
             Field::new(
                 "credit",
                 Allowed::Text,
                 "",
                 Default::Text(""),
-                "Whose drawings, maps or surfaces the scene shows, and under which licence: written small under every picture and film of it.",
+                "The authors and licences of the drawings, maps or surfaces that the scene shows. Every picture and film of the scene has this text \
+below it, in small letters.",
             ),
         ],
     ),
     children: &[
         child("time", Holds::Table(&TIME), true, "How time passes."),
         child("world", Holds::Table(&WORLD), false, "What acts everywhere."),
-        child("integrator", Holds::Integrator, true, "How the equations of motion are stepped."),
+        child("integrator", Holds::Integrator, true, "How the equations of motion are integrated."),
         child("body", Holds::List(&BODY), false, "The deformable bodies."),
         child("collider", Holds::Colliders, false, "The rigid obstacles."),
         child("contact", Holds::Table(&CONTACT), false, "How deformable bodies touch one another."),
@@ -189,21 +190,21 @@ pub const PICTURE: Section = Section {
     spec: &section(
         "picture",
         "What pictures of the scene show",
-        "What pictures show, and from where. What is not given is chosen by what is seen in the run; no number of the physics depends on it.",
+        "What pictures show, and from where. What is not given is chosen from what can be seen in the run; no physical result depends on it.",
         &[
             Field::new(
                 "panels",
                 Allowed::Integer { least: 1, greatest: 60 },
                 "",
                 Default::Absent,
-                "How many moments `strip.png` shows; by itself as many as leave bodies large enough to be looked at.",
+                "How many moments `strip.png` shows; by default, as many as leave bodies large enough to see.",
             ),
             Field::new(
                 "low",
                 Allowed::Vector,
                 "m",
                 Default::Absent,
-                "The lowest corner of the part that `strip.png` shows, with `high`; by itself all that bodies reach, as in films.",
+                "The lowest corner of the part that `strip.png` shows, with `high`; by default, everything that bodies reach, as in films.",
             ),
             Field::new("high", Allowed::Vector, "m", Default::Absent, "The highest corner of that part."),
             Field::new(
@@ -211,14 +212,14 @@ pub const PICTURE: Section = Section {
                 Allowed::Number { least: Bound::Closed(-360.0), greatest: Bound::Closed(360.0) },
                 "°",
                 Default::Absent,
-                "In space: where the camera stands around the y axis, from z towards x; by itself 32.",
+                "In space: the angle of the camera around the y axis, from z towards x; the default is 32.",
             ),
             Field::new(
                 "elevation",
                 Allowed::Number { least: Bound::Closed(-89.0), greatest: Bound::Closed(89.0) },
                 "°",
                 Default::Absent,
-                "In space: how far above the horizon the camera stands; by itself 20.",
+                "In space: the angle of the camera above the horizon; the default is 20.",
             ),
         ],
     ),
@@ -230,7 +231,8 @@ pub const WORLD: Section = Section {
     spec: &section(
         "world",
         "What acts everywhere",
-        "Gravity and drag act on every node. The largest force and velocity are stabilisers, the largest distance ends what would fall for ever: off unless given, and every time they act is counted. `unfold` does what no physics does, and is off, too.",
+        "Gravity and drag act on every node. `largest_force` and `largest_velocity` stabilise a scene; `largest_distance` removes bodies that would \
+fall for ever. All three are off by default, and each use is counted. `unfold` is not physical and is also off by default.",
         &[
             Field::new("gravity", Allowed::Vector, "m/s²", Default::Origin, "Acceleration of gravity."),
             Field::new(
@@ -247,15 +249,15 @@ pub const WORLD: Section = Section {
                 Allowed::POSITIVE,
                 "m",
                 Default::Absent,
-                "A body all of whose nodes are farther than this from the origin is taken away.",
+                "A body all of whose nodes are farther than this from the origin is removed.",
             ),
             Field::new(
                 "unfold",
                 Allowed::Boolean,
                 "",
                 Default::Boolean(false),
-                "Whether a body that rests with degenerate or inverted cells, or strained though nothing acts on it, is displaced at \
-random so that it leaves that shape: by 1e-4 of its size, then by a hundredth and a tenth. Every time is counted.",
+                "Whether a body that is at rest with degenerate or inverted cells, or is strained although nothing acts on it, is displaced at \
+random so that it leaves that shape: by 1e-4 of its size, then by a hundredth and a tenth. Each displacement is counted.",
             ),
         ],
     ),
@@ -267,7 +269,8 @@ pub const BODY: Section = Section {
     spec: &section(
         "body",
         "A deformable body",
-        "Exactly one of `mass`, `density`, `density_of_cells` and `node_mass` says how much it weighs. Its shape is scaled, then rotated about the origin of the shape's own coordinates, then moved to `position`.",
+        "Exactly one of `mass`, `density`, `density_of_cells` and `node_mass` gives its mass. Its shape is scaled, then rotated about the origin of \
+the shape's own coordinates, then moved to `position`.",
         &[
             Field::new("name", Allowed::Text, "", Default::Required, "Its name, unique in the scene."),
             Field::new("mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of the whole body."),
@@ -277,7 +280,7 @@ pub const BODY: Section = Section {
                 Allowed::Text,
                 "",
                 Default::Absent,
-                "The name of numbers of the mesh file, one per cell, that are mass per volume [kg/m³].",
+                "The name of the numbers in the mesh file, one per cell, that are mass per volume [kg/m³].",
             ),
             Field::new("node_mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of every node."),
             Field::new(
@@ -285,21 +288,22 @@ pub const BODY: Section = Section {
                 Allowed::Boolean,
                 "",
                 Default::Boolean(false),
-                "All nodes are pinned; then no mass need be given.",
+                "Whether all nodes are pinned; the body then needs no mass.",
             ),
             Field::new(
                 "thickness",
                 Allowed::POSITIVE,
                 "m",
                 Default::Number(1.0),
-                "Depth out of the plane in 2D, for gas, loads and bending too. In 3D it is the thickness of a sheet and the width of a square wire, for `density` alone, which then needs it, as it does for a wire in 2D.",
+                "Depth out of the plane in 2D, also for gas, loads and bending. In 3D it is the thickness of a sheet or the width of a square wire; \
+only `density` uses it, and requires it there, as it does for a wire in 2D.",
             ),
             Field::new(
                 "position",
                 Allowed::Vector,
                 "m",
                 Default::Origin,
-                "Where the origin of its shape lies at the start.",
+                "The position of the origin of its shape at the start.",
             ),
             Field::new("scale", Allowed::POSITIVE, "", Default::Number(1.0), "A factor on the lengths of its shape."),
             Field::new(
@@ -307,14 +311,15 @@ pub const BODY: Section = Section {
                 Allowed::Boolean,
                 "",
                 Default::Boolean(false),
-                "Cuts its quadrilaterals into two triangles each, its hexahedra into tetrahedra.",
+                "Whether its quadrilaterals are cut into two triangles each, and its hexahedra into tetrahedra.",
             ),
             Field::new(
                 "tetrahedra_per_hexahedron",
                 Allowed::Integer { least: 5, greatest: 6 },
                 "",
                 Default::Integer(6),
-                "Into how many `simplices` cuts a hexahedron: six around a diagonal, or five (one inscribed, four corners), which alternate from one to the next and favour no direction.",
+                "The number of tetrahedra into which `simplices` cuts a hexahedron: six around a diagonal, or five (one inscribed, four at corners), \
+which alternate from cell to cell and favour no direction.",
             )
             .applies(&[Condition::Dimension(3), Condition::Given("simplices")]),
             Field::new(
@@ -322,19 +327,20 @@ pub const BODY: Section = Section {
                 Allowed::Integer { least: 1, greatest: 2 },
                 "",
                 Default::Absent,
-                "2: a node more in the middle of every edge of its triangles and tetrahedra, whose finite elements then neither lock in bending nor near incompressibility. \
-A body with a `fem` model, or another that owns its cells, whose cells are all triangles or tetrahedra has 2 where the scene is silent, others 1; `finite_volume` needs `order = 1`; `order = 1` is faster, bends too stiffly and is refused above ν = 0.45.",
+                "With 2, triangles and tetrahedra have another node in the middle of every edge; their finite elements then lock neither in bending \
+nor near incompressibility. The default is 2 for a body with a `fem` model, or another model that owns its cells, if all cells are triangles or \
+tetrahedra; it is 1 for other bodies. `finite_volume` needs `order = 1`. `order = 1` is faster, bends too stiffly and is refused above ν = 0.45.",
             ),
         ],
     ),
     children: &[
         child("shape", Holds::Shape, true, "Its shape at rest."),
-        child("rotation", Holds::Turn, false, "How its shape is turned at rest [rad], within 1e6."),
+        child("rotation", Holds::Turn, false, "The rotation of its shape at rest [rad], within 1e6."),
         child(
             "velocity",
             Holds::VectorOr(&VELOCITY),
             false,
-            "Velocity at the start [m/s]: the same of all nodes, or as a field.",
+            "Velocity at the start [m/s]: the same for all nodes, or a field.",
         ),
         child(
             "angular_velocity",
@@ -342,10 +348,10 @@ A body with a `fem` model, or another that owns its cells, whose cells are all t
             false,
             "Angular velocity at the start about the centre of mass [rad/s].",
         ),
-        child("integrator", Holds::Integrator, false, "How it is stepped, where not as the scene says."),
+        child("integrator", Holds::Integrator, false, "Its integrator, if it is not that of the scene."),
         child("models", Holds::Models, false, "What its material does."),
         contact::OF_BODY,
-        child("pin", Holds::List(&PIN), false, "Nodes held at their place, or moved in a prescribed way."),
+        child("pin", Holds::List(&PIN), false, "Nodes that are held in place, or moved in a prescribed way."),
         child(
             "copies",
             Holds::Table(&COPIES),
@@ -360,8 +366,8 @@ pub const VELOCITY: Section = Section {
     spec: &section(
         "velocity",
         "The velocity at the start as a field",
-        "v = linear + angular × (x − c) + gradient (x − c) + of_nodes, where c is the centre of mass of the body and x where a node \
-         is at the start.",
+        "v = linear + angular × (x − c) + gradient (x − c) + of_nodes, where c is the centre of mass of the body and x the position of a node at the \
+start.",
         &[
             Field::new("linear", Allowed::Vector, "m/s", Default::Origin, "The velocity of the centre of mass."),
             Field::new(
@@ -376,7 +382,8 @@ pub const VELOCITY: Section = Section {
                 Allowed::Text,
                 "",
                 Default::Absent,
-                "The name of vectors of the mesh file, one per node, that are velocities [m/s]: they turn with `rotation`, `scale` leaves them.",
+                "The name of the vectors in the mesh file, one per node, that are velocities [m/s]. They turn with `rotation`; `scale` does not \
+change them.",
             ),
         ],
     ),
@@ -392,19 +399,19 @@ pub const VELOCITY: Section = Section {
 pub const PIN: Section = Section {
     spec: &section(
         "pin",
-        "Nodes held at their place, or moved in a prescribed way",
-        "Between the rows of `motion` the displacement is linear, before the first and after the last it is constant. A held \
-         node is where its pin leads it, through obstacles too: these stop its neighbours, not the node. What the pin does \
-         against springs and obstacles is work of the user. Where a node is caught in flight, or its motion has a corner, the \
-         pin changes its velocity by an impulse on that node; with `mass = \"consistent\"`, where a node has inertia with those \
-         beside it, these are thrown back by it, the same under every integrator: a fine table of motion accelerates them.",
+        "Nodes that are held in place, or moved in a prescribed way",
+        "Between the rows of `motion` the displacement is linear; before the first and after the last it is constant. A pinned node follows its pin, \
+even through obstacles: these stop its neighbours, but not the node. The work of the pin against springs and obstacles counts as work of the user. \
+If a pin catches a moving node, or if its motion has a corner, the pin changes the velocity of that node by an impulse. With `mass = \
+\"consistent\"`, a node shares its inertia with its neighbours, so the impulse throws them back, by the same amount with every integrator. A table \
+of motion with many rows accelerates them gradually instead.",
         &[
             Field::new(
                 "axes",
                 Allowed::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]),
                 "",
                 Default::Absent,
-                "The axes that are held; all where the scene is silent.",
+                "The axes along which nodes are held; the default is all axes.",
             ),
             Field::new("motion", Allowed::Path, "s, m", Default::Absent, "Displacement from the start over time."),
         ],
@@ -432,11 +439,11 @@ pub const COPIES: Section = Section {
                 Allowed::NOT_NEGATIVE,
                 "m",
                 Default::Number(0.0),
-                "Each coordinate is moved at random, evenly in ±jitter, by the seed of the scene.",
+                "Each coordinate is displaced at random, uniformly within ±jitter, by the seed of the scene.",
             ),
         ],
     ),
-    children: &[child("count", Holds::Counts, true, "How many along every axis.")],
+    children: &[child("count", Holds::Counts, true, "The number of copies along every axis.")],
 };
 
 /// The selectors, by their key.
@@ -444,7 +451,7 @@ pub const SELECTORS: &[Spec] = &[
     section(
         "box",
         "Nodes in a box between two corners",
-        "`{ box = [[x, y], [x, y]] }` [m]: at the start, the surface of the box included.",
+        "`{ box = [[x, y], [x, y]] }` [m]: at the start; the surface of the box is included.",
         &[],
     ),
     section(

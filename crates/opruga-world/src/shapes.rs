@@ -16,7 +16,8 @@ const fn count(least: i64) -> Allowed {
 }
 
 const CENTER: Field = Field::new("center", Allowed::Vector, "m", Default::Origin, "Where its centre lies.");
-const CORNER: Field = Field::new("corner", Allowed::Vector, "m", Default::Origin, "Its corner of lowest coordinates.");
+const CORNER: Field =
+    Field::new("corner", Allowed::Vector, "m", Default::Origin, "Its corner with the lowest coordinates.");
 const START_ANGLE: Field = Field::new(
     "start_angle",
     Allowed::Number { least: Bound::Closed(-LARGEST_ANGLE), greatest: Bound::Closed(LARGEST_ANGLE) },
@@ -42,7 +43,9 @@ static RING: Spec = Spec {
 static RINGS: Spec = Spec {
     kind: "rings",
     summary: "several round outlines in one body: chambers, and holes in them",
-    documentation: "Circles of `vertices` nodes each, one after the other. A negative radius is a hole: it runs clockwise, and the gas of the ring around it leaves it out. Rings neither cross nor touch; in a ring lie holes alone, in a hole rings alone, and every hole lies in a ring.",
+    documentation: "Circles of `vertices` nodes each, one after the other. A ring with a negative radius is a hole: it runs clockwise, and the gas \
+of the ring around it does not fill it. Rings must not cross or touch. A ring may contain only holes, a hole may contain only rings, and every hole \
+must lie in a ring.",
     dimensions: &[2],
     fields: &[
         Field::new("centers", Allowed::Points, "m", Default::Required, "The centre of each ring."),
@@ -98,7 +101,7 @@ static LINE: Spec = Spec {
 static POLYLINE: Spec = Spec {
     kind: "polyline",
     summary: "a chain through points",
-    documentation: "Node i is point i; it encloses nothing, even where it is closed.",
+    documentation: "Node i is point i; it encloses nothing, even if it is closed.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("points", Allowed::Points, "m", Default::Required, "The nodes."),
@@ -116,7 +119,7 @@ static POLYLINE: Spec = Spec {
 static GRID: Spec = Spec {
     kind: "grid",
     summary: "a filled rectangle or box of equal cells",
-    documentation: "Node (x, y, z) has number x + (nx+1)·(y + (ny+1)·z). Groups: left, right, bottom, top, in space back and front.",
+    documentation: "Node (x, y, z) has number x + (nx+1)·(y + (ny+1)·z). Groups: left, right, bottom, top, and in space back and front.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
@@ -138,7 +141,7 @@ static QUADRILATERAL: Spec = Spec {
             Allowed::Integers,
             "",
             Default::Required,
-            "How many cells along the side from corner 0 to 1, and along that from 1 to 2.",
+            "How many cells along the side from corner 0 to 1, and along the side from 1 to 2.",
         ),
     ],
     roles: &[],
@@ -176,7 +179,7 @@ static BOX: Spec = Spec {
 static ICOSPHERE: Spec = Spec {
     kind: "icosphere",
     summary: "a closed ball surface of nearly equal triangles",
-    documentation: "10·4^s + 2 nodes: an icosahedron whose faces are cut in four s times.",
+    documentation: "10·4^s + 2 nodes: an icosahedron whose faces are cut into four s times.",
     dimensions: &[3],
     fields: &[
         Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
@@ -185,7 +188,7 @@ static ICOSPHERE: Spec = Spec {
             Allowed::Integer { least: 0, greatest: MAXIMUM_SUBDIVISIONS as i64 },
             "",
             Default::Required,
-            "How often each face is cut in four.",
+            "How many times each face is cut into four.",
         ),
         CENTER,
         FILLING_OF_SURFACES,

@@ -72,18 +72,18 @@ terms! {
 terms! {
     /// Measures against the error of an integrator.
     pub enum ErrorHint = "part.error_hint" {
-        Implicit = "implicit rules leave unexplained what their equations are left out of balance: a smaller `tolerance`, or `accuracy = \"exact\"`",
-        Contact = "bodies met obstacles, and there it falls in proportion to the step by every rule: more substeps",
-        ContactOfOthers = "bodies met obstacles, and there it falls in proportion to the step by every rule; `verlet` makes least of it",
-        Explicit = "more substeps make it smaller, and rules of higher order make less of it",
+        Implicit = "with implicit integrators it comes from the residual of their equations: a smaller `tolerance`, or `accuracy = \"exact\"`",
+        Contact = "bodies met obstacles, where it is proportional to the step with every integrator: more substeps",
+        ContactOfOthers = "bodies met obstacles, where it is proportional to the step with every integrator; it is smallest with `verlet`",
+        Explicit = "more substeps reduce it, and integrators of higher order have less of it",
     }
 }
 
 terms! {
     /// Measures against inverted cells.
     pub enum CellHint = "part.cell_hint" {
-        Smaller = "smaller cells, or less that crushes them",
-        Farther = "smaller cells, or a material that pushes such cells back from farther (`fixed_corotated`)",
+        Smaller = "smaller cells, or less compression of them",
+        Farther = "smaller cells, or a material that pushes cells back from a stronger inversion (`fixed_corotated`)",
         Material = "or a material that pushes such cells back (`stable_neo_hookean`, `fixed_corotated`)",
     }
 }
@@ -125,7 +125,7 @@ messages! {
     /// Measures that free a body that starts inside an obstacle.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Remedy {
-        "part.remedy" #[error("moved by ({shift}) m it would be free")]
+        "part.remedy" #[error("a shift by ({shift}) m would free it")]
         Moved { shift: String },
         "part.remedy" #[error("no shift along the surfaces around it would free it")]
         Nowhere {},
@@ -134,104 +134,104 @@ messages! {
     /// The cell whose volume differs most from its volume at rest.
     #[derive(Clone, Debug, PartialEq)]
     pub enum WorstCell {
-        "part.worst_cell" #[error("; now the cell farthest from its volume is {cell} of body `{body}`, J = {ratio:.4}")]
+        "part.worst_cell" #[error("; now the cell whose volume has changed most is {cell} of body `{body}`, J = {ratio:.4}")]
         Cell { cell: u32, body: String, ratio: f64 },
     }
 
     /// A warning of a world.
     #[derive(Clone, Debug, PartialEq)]
     pub enum WorldWarning {
-        "limit.force" #[error("forces were shortened to `world.largest_force`")]
+        "limit.force" #[error("forces were limited to `world.largest_force`")]
         ForcesLimited {},
-        "limit.velocity" #[error("velocities were shortened to `world.largest_velocity`")]
+        "limit.velocity" #[error("velocities were limited to `world.largest_velocity`")]
         VelocitiesLimited {},
         "limit.drag"
-        #[error("pulls were shortened to their `largest_force`, where the scene is silent that of a spring stretched by ten sizes of the body")]
+        #[error("pulls were limited to their `largest_force`; its default is the force of the spring stretched by ten times the size of the body")]
         PullsLimited {},
-        "limit.distance" #[error("bodies went farther than `world.largest_distance` and were taken away")]
+        "limit.distance" #[error("bodies went farther than `world.largest_distance` and were removed")]
         BodiesLost {},
         "ledger.numerical_damping"
-        #[error("implicit rules have by themselves taken {} J, more than a twentieth of the energy in motion (`loss_numerical`): what is fast for the step fades, or grows, by the rule and by no law of physics; more substeps make it smaller, and `implicit_midpoint` or `newmark` take less by themselves", number(*energy))]
+        #[error("the implicit integrators themselves removed {} J, more than a twentieth of the energy in motion (`loss_numerical`): motion that is fast compared with the step decays or grows because of the integrator, not because of physics; more substeps reduce this, and `implicit_midpoint` or `newmark` remove less", number(*energy))]
         TakenByRules { energy: f64 },
         "ledger.numerical_damping"
-        #[error("implicit rules have by themselves made {} J, more than a twentieth of the energy in motion (`loss_numerical`): what is fast for the step fades, or grows, by the rule and by no law of physics; more substeps make it smaller, and `backward_euler` damps what would grow", number(*energy))]
+        #[error("the implicit integrators themselves added {} J, more than a twentieth of the energy in motion (`loss_numerical`): motion that is fast compared with the step decays or grows because of the integrator, not because of physics; more substeps reduce this, and `backward_euler` damps motion that would grow", number(*energy))]
         MadeByRules { energy: f64 },
         "ledger.closure"
-        #[error("a frame ended with more than a tenth of the energy in motion unexplained (`closure`), {} J {difference} by the end: the error of the integrator; {help}", number(*energy))]
+        #[error("at the end of a frame more than a tenth of the energy in motion was unexplained (`closure`), {} J {difference} so far: the error of the integrator; {help}", number(*energy))]
         Unexplained { energy: f64, difference: Difference, help: ErrorHint },
-        "step.not_converged" #[error("a step counted though Newton's method had not converged (`when_not_converged = \"accept\"`)")]
+        "step.not_converged" #[error("a step was accepted although Newton's method had not converged (`when_not_converged = \"accept\"`)")]
         Accepted {},
         "step.halved"
-        #[error("a step of {} s, in statics what it adds of the load and of the ways of pins, was made in two halves, these again where need be, down to {} s, a part of 1/{parts}: Newton's method had not converged over the whole, or a model has no meaning there (`when_not_converged = \"halve\"`, or in real time); the result is that of steps so short there, no worse for it, and took longer", number(*h), number(*shortest))]
-        #[hint("more substeps, in statics more `load_steps` or frames, spare the attempts in vain")]
+        #[error("a step of {} s (in statics, the load and the motion of pins that it adds) was halved, again and again if needed, down to {} s, 1/{parts} of it, because Newton's method did not converge over the whole step, or a model is undefined there (`when_not_converged = \"halve\"`, or in real time); the result is as good as with such short steps, but took longer", number(*h), number(*shortest))]
+        #[hint("more substeps (in statics, more `load_steps` or frames) avoid the failed attempts")]
         Halved { h: f64, shortest: f64, parts: u64 },
         "step.cut_off"
-        #[error("a step in real time spent its budget, or took so many products that much may be left in slow motions: forces out of balance that would move single nodes by up to {} m; the body is too stiff or too slender for the step: more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`", number(*left))]
+        #[error("a real-time step used up its budget, or took so many products that slow motions may have a large residual: forces out of balance that would move single nodes by up to {} m; the body is too stiff or too slender for the step: more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`", number(*left))]
         CutOff { left: f64 },
         "statics.blurred"
-        #[error("a balance was found where forces are as small as their rounding, though what is left of them would still move nodes by up to {} m: positions have sixteen digits, and the body is so slender, its cells so thin or the origin so far that this is what they leave open; what is smaller in the result is chance", number(*error_estimate))]
-        #[hint("cells that are less long for their thickness, or a scene at the origin")]
+        #[error("an equilibrium was found in which forces are as small as their rounding, but the residual could still move nodes by up to {} m: positions have sixteen digits, which is too few for a body so slender, cells so thin or an origin so far away; smaller details of the result are meaningless", number(*error_estimate))]
+        #[hint("cells that are shorter for their thickness, or a scene at the origin")]
         Estimated { error_estimate: f64 },
         "conditioning"
-        #[error("a step of a body so stiff for its mass that rounding of its positions, which have sixteen digits, makes forces of up to {} times the load of a node: its motion as a whole is balanced apart and is right, its nodes are where they belong but for the last digit of positions, and its stresses are chance", number(*times))]
-        #[hint("a scene nearer to the origin, larger cells, or a body that is less stiff")]
+        #[error("a body is so stiff for its mass that rounding of its positions, which have sixteen digits, causes forces of up to {} times the load of a node in a step: its motion as a whole is balanced separately and is correct, and its nodes are correct except for the last digit of their positions, but its stresses are meaningless", number(*times))]
+        #[hint("a scene closer to the origin, larger cells, or a less stiff body")]
         Conditioning { times: f64 },
         "step.disturbed"
-        #[error("a body that stood still flat, inside out or folded was disturbed by chance, by 1e-4 of its size, then by a hundredth and by a tenth")]
-        #[hint("what has left such a shape swings on until something damps it, soonest under `backward_euler` or with `damping` of its material")]
+        #[error("a body at rest in a degenerate, inverted or folded shape was disturbed at random, by 1e-4 of its size, then by a hundredth and by a tenth")]
+        #[hint("a body that has left such a shape swings until something damps it, soonest with `backward_euler` or with `damping` of its material")]
         Disturbed {},
         "step.odd_rest"
-        #[error("a body stood still flat, inside out or folded, in a balance that disturbing it by up to a tenth of its size did not end{}", if_any(worst))]
-        #[hint("another start, or a material that pushes such cells back (`fixed_corotated`)")]
+        #[error("a body stayed at rest in a degenerate, inverted or folded shape, in an equilibrium that disturbances of up to a tenth of its size did not end{}", if_any(worst))]
+        #[hint("another initial state, or a material that pushes such cells back (`fixed_corotated`)")]
         DegenerateRest { worst: Option<WorstCell> },
-        "restore.no_force" #[error("a snapshot holds no laws of force of the program, and a body had one: give it again (`World::add_force`)")]
+        "restore.no_force" #[error("a snapshot does not contain forces that the program defines, and a body had one: add it again (`World::add_force`)")]
         NoForce {},
         "statics.load_left"
-        #[error("the run ends before the whole load is on: body `{body}` is in balance under {} of it (`load_factor`), and that is what the last state shows", number(*part))]
+        #[error("the run ends before the whole load is applied: the last state of body `{body}` is the equilibrium under {} of it (`load_factor`)", number(*part))]
         #[hint("more frames, or a longer `arc_length`")]
         LoadLeft { body: String, part: f64 },
         "units.sag"
         #[error("body `{body}` of {} kg would sag by about {} m under its weight, more than its size of {} m: are its units mixed (metres, kilograms, newtons per metre)?", number(*mass), rounded(*sag, 2), number(*size))]
         Sag { body: String, mass: f64, sag: f64, size: f64 },
         "contact.starts_inside"
-        #[error("body `{body}` begins inside obstacle {collider} ({kind}): {}, node {deepest} the deepest by {} m; {remedy}", counted(*nodes as u64, "node", "nodes"), number(*depth))]
+        #[error("body `{body}` begins inside obstacle {collider} ({kind}): {}, of which node {deepest} is the deepest, by {} m; {remedy}", counted(*nodes as u64, "node", "nodes"), number(*depth))]
         StartsInside { body: String, collider: usize, kind: String, nodes: usize, deepest: u32, depth: f64, remedy: Remedy },
         "contact.none"
-        #[error("at t = {} s {} through one another: `{first}` and `{second}` first", number(*time), if *pairs == 1 { "two bodies pass".into() } else { format!("{pairs} pairs of bodies pass") })]
+        #[error("at t = {} s {} through one another: first `{first}` and `{second}`", number(*time), if *pairs == 1 { "two bodies pass".into() } else { format!("{pairs} pairs of bodies pass") })]
         #[hint("a section `[contact]` keeps bodies apart")]
         NoContact { time: f64, pairs: u64, first: String, second: String },
         "contact.mixed"
-        #[error("at t = {} s body `{first}` ({first_rule}) touches body `{second}` ({second_rule}): contact is solved for both together, but each of them steps by its own rule, so the order and the damping of neither hold for the pair; counted per frame and pair of bodies", number(*time))]
+        #[error("at t = {} s body `{first}` ({first_rule}) touches body `{second}` ({second_rule}): contact is solved for both together, but each of them is stepped by its own integrator, so the pair has the order and the damping of neither; counted per frame and pair of bodies", number(*time))]
         #[hint("one integrator for bodies that touch")]
         Mixed { time: f64, first: String, first_rule: String, second: String, second_rule: String },
         "cells.slender"
-        #[error("body `{body}` bends or twists too stiffly: the longest edges of its cells are {} m on average, {} times its thickness of {} m; at {limit} times the first frequencies of plates were measured {error} % too high, and they rise farther", rounded(*length, 3), rounded(*times, 3), rounded(*thickness, 3))]
+        #[error("body `{body}` bends or twists too stiffly: the longest edges of its cells are {} m on average, {} times its thickness of {} m; at {limit} times the measured first frequencies of plates are {error} % too high, and the error grows with that ratio", rounded(*length, 3), rounded(*times, 3), rounded(*thickness, 3))]
         #[hint("{help}")]
         Slender { body: String, length: f64, times: f64, thickness: f64, limit: f64, error: f64, help: BendingHint },
         "cells.inverted"
-        #[error("at t = {} s {cells} inside out, the first of them cell {cell} of body `{body}` with J = {}", number(*time), number(*ratio))]
+        #[error("at t = {} s {cells} inverted; the first is cell {cell} of body `{body}`, with J = {}", number(*time), number(*ratio))]
         #[hint("more substeps, {help}{}", if_any(unfold))]
         Inverted { time: f64, cells: InvertedCells, cell: u32, body: String, ratio: f64, help: CellHint, unfold: Option<UnfoldHint> },
         "cells.other_balance"
-        #[error("at t = {} s {} account for, in another balance than that of the own shape: snapped through, folded, inside out or twisted round; the first of them is body `{body}` with {} J, {} J of it accounted for, V/V₀ = {}, and cell {cell} at J = {}", number(*time), bodies_hold(*count), rounded(*energy, 4), rounded(*accounted, 4), rounded(*volume, 4), rounded(*ratio, 4))]
-        #[hint("where this was not meant, begin in its own shape, with more damping or more substeps{}", if_any(unfold))]
+        #[error("at t = {} s {} account for: equilibrium in a shape that is not the rest shape (snapped through, folded, inverted or twisted); the first is body `{body}` with {} J, of which {} J are accounted for, V/V₀ = {}, and cell {cell} at J = {}", number(*time), bodies_hold(*count), rounded(*energy, 4), rounded(*accounted, 4), rounded(*volume, 4), rounded(*ratio, 4))]
+        #[hint("if this is not intended, start from the rest shape, with more damping or more substeps{}", if_any(unfold))]
         OtherBalance { time: f64, count: u64, body: String, energy: f64, accounted: f64, volume: f64, cell: u32, ratio: f64, unfold: Option<UnfoldHint> },
         "law.turned"
-        #[error("at t = {} s cell {cell} of body `{body}` is turned by {}°, which its law `linear` takes for a strain of {} %; counted per frame and body", number(*time), rounded(*angle, 3), rounded(*strain, 3))]
-        #[hint("`corotated`, the same law in axes that turn with every cell")]
+        #[error("at t = {} s cell {cell} of body `{body}` is rotated by {}°, which its law `linear` treats as a strain of {} %; counted per frame and body", number(*time), rounded(*angle, 3), rounded(*strain, 3))]
+        #[hint("`corotated`, the same law in axes that rotate with every cell")]
         Turned { time: f64, cell: u32, body: String, angle: f64, strain: f64 },
         "contact.no_room"
-        #[error("at t = {} s obstacles {first} ({first_kind}) and {second} ({second_kind}) left body `{body}` no room: node {node} {lay}, counted per frame and body; obstacles that are led must not meet", number(*time))]
+        #[error("at t = {} s obstacles {first} ({first_kind}) and {second} ({second_kind}) left no room for body `{body}`: node {node} {lay}; moving obstacles must not meet; counted per frame and body", number(*time))]
         NoRoom { time: f64, first: usize, first_kind: String, second: usize, second_kind: String, body: String, node: u32, lay: Lay },
-        "command.no_body" #[error("commands on body `{body}` ended when it was taken away")]
+        "command.no_body" #[error("commands on body `{body}` ended when it was removed")]
         CommandsEnded { body: String },
-        "command.no_body" #[error("commands on other bodies ended when these were taken away")]
+        "command.no_body" #[error("commands on other bodies ended when these were removed")]
         OtherCommandsEnded {},
         "step.no_stable_step"
         #[error("`{integrator}` has no stable step for body `{body}` (ω = {} rad/s): a motion grows as exp({} t)", number(*omega), number(*growth))]
         NoStableStep { integrator: &'static str, body: String, omega: f64, growth: f64 },
         "step.outgrown"
-        #[error("at t = {} s the largest stable step of body `{body}` had fallen to {} s, below h = {} s: what is squeezed or stretched is stiffer than at rest; substeps >= {substeps} hold there", number(*time), number(*limit), number(*h))]
+        #[error("at t = {} s the largest stable step of body `{body}` had fallen to {} s, below h = {} s: compressed or stretched parts are stiffer than at rest; substeps >= {substeps} are stable there", number(*time), number(*limit), number(*h))]
         Outgrown { time: f64, body: String, limit: f64, h: f64, substeps: f64 },
     }
 }

@@ -92,6 +92,8 @@ impl Machine {
     }
     pub(crate) fn sentence(&self) -> String {
         let Machine { simd, operations, memory } = self;
-        format!("this machine now: {simd}, {operations:.0}·10⁹ products and sums a second, {memory:.0} GB/s of memory")
+        format!(
+            "this machine now: {simd}, {operations:.0}·10⁹ products and sums per second, {memory:.0} GB/s of memory"
+        )
     }
 }

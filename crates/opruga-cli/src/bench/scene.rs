@@ -71,8 +71,8 @@ pub(crate) fn bench(call: &BenchScene, library: &Registries) -> Result<u8, Failu
     );
     if implicit {
         text += &format!(
-            "  of that on average {forces:.3} ms forces, {matrices:.3} ms matrices, {:.3} ms solving and contact\n  \
-             {iterations:.2} iterations and {products:.1} products with the matrix a frame\n",
+            "  of that on average {forces:.3} ms forces, {matrices:.3} ms matrices, {:.3} ms solving and contact\n  {iterations:.2} iterations and \
+             {products:.1} products with the matrix per frame\n",
             mean - forces - matrices,
         );
     }

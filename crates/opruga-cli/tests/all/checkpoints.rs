@@ -150,7 +150,7 @@ fn a_damaged_checkpoint_offers_the_one_before_it() {
     let refused = |offered: bool, code_expected: i32| {
         let output = opruga(folder, &["run", "--resume", "o/checkpoint", "--seconds", "1e5", "--out", "x"]);
         assert_eq!(code(&output), code_expected, "{}", said(&output));
-        let offer = "= hint: the checkpoint before it is whole, at t = ";
+        let offer = "= hint: the checkpoint before it is complete, at t = ";
         assert_eq!(said(&output).contains(offer), offered, "{}", said(&output));
         assert_eq!(said(&output).contains("--resume o/checkpoint.previous"), offered, "{}", said(&output));
         assert!(!folder.join("x").exists());

@@ -243,7 +243,7 @@ fn an_interrupted_run_closes_its_files_and_says_so() {
         }
         let pictured = more.is_empty();
         assert_eq!((there("strip.png"), there("video.mp4")), (pictured, false), "{scene}");
-        assert_eq!(said(&output).contains("no video, since the run was interrupted"), pictured, "{}", said(&output));
+        assert_eq!(said(&output).contains("no video, because the run was interrupted"), pictured, "{}", said(&output));
     }
 }
 

@@ -165,7 +165,7 @@ fn old_output_is_not_replaced_unasked() {
     assert_eq!(code(&output), 4);
     assert_eq!(
         said(&output),
-        "o: error[write.exists]: the folder already holds 4 files, among them checkpoint\n  \
+        "o: error[write.exists]: the folder already contains 4 files, among them checkpoint\n  \
          = hint: --force replaces them, --out chooses another folder\n"
     );
     assert_eq!(contents(&folder.path().join("o")), before);
@@ -175,7 +175,7 @@ fn old_output_is_not_replaced_unasked() {
     std::fs::write(folder.path().join("p/thesis.tex"), b"years of work").expect("a file");
     let output = opruga(folder.path(), &[&SHORT[..], &["p"]].concat());
     assert_eq!(code(&output), 4);
-    assert!(said(&output).contains("already holds thesis.tex"), "{}", said(&output));
+    assert!(said(&output).contains("already contains thesis.tex"), "{}", said(&output));
     assert_eq!(contents(&folder.path().join("p")).len(), 1, "nothing of ours is left beside it");
     assert_eq!(code(&opruga(folder.path(), &[&SHORT[..], &["p", "--force"]].concat())), 0);
     assert_eq!(std::fs::read(folder.path().join("p/thesis.tex")).expect("still there"), b"years of work");
@@ -191,7 +191,7 @@ fn signals_close_the_files_and_a_folder_has_one_writer() {
         let second = opruga(folder.path(), &[&SHORT[..], &[name]].concat());
         assert_eq!(code(&second), 4);
         assert!(
-            said(&second).contains("error[write.locked]: another process writes into this folder"),
+            said(&second).contains("error[write.locked]: another process is writing into this folder"),
             "{}",
             said(&second)
         );
@@ -301,7 +301,7 @@ fn calls_that_make_no_sense_are_explained() {
     let run = |set: &'static str| vec!["run", "pressures", "--no-pictures", "--out", "o", "--set", set];
     let cases: Vec<(Vec<&str>, &str)> = vec![
         (run("time.frame=0"), "error[scene.range]: `frame` is 0"),
-        (run("time.frame=1e-18"), "time would stand still"),
+        (run("time.frame=1e-18"), "time would not advance"),
         (
             run("time.frame=1e6"),
             "error[step.unstable]: the step h = 25000 s of `symplectic_euler` is unstable for body `soft`",

@@ -32,7 +32,7 @@ fn a_body_that_begins_inside_an_obstacle_is_told_of() {
     let all = printed(&output);
     let line = all.lines().find(|l| l.contains("contact.starts_inside")).unwrap_or_else(|| panic!("it is told: {all}"));
     assert!(line.contains("body `it` begins inside obstacle 0 (half_space)"), "{line}");
-    assert!(line.contains("deepest by 0.1 m") && line.contains("moved by (0, 0.1) m it would be free"), "{line}");
+    assert!(line.contains("deepest, by 0.1 m") && line.contains("a shift by (0, 0.1) m would free it"), "{line}");
     // The run reports it once, before it begins, and counts it.
     let output = opruga(folder.path(), &["run", "s.toml", "--no-pictures", "--out", "a"]);
     assert_eq!(said(&output).matches("contact.starts_inside").count(), 1, "{}", said(&output));
@@ -77,7 +77,7 @@ fn the_shift_out_of_an_obstacle_frees_the_body() {
         write(folder.path(), &scene(2, RING, &format!("[[collider]]\n{collider}\n")));
         let all = printed(&opruga(folder.path(), &["check", "s.toml"]));
         assert!(all.contains("contact.starts_inside"), "{collider}: {all}");
-        let shift = all.split("moved by (").nth(1).and_then(|t| t.split(')').next());
+        let shift = all.split("a shift by (").nth(1).and_then(|t| t.split(')').next());
         let shift = shift.unwrap_or_else(|| panic!("{collider}: {all}"));
         let output =
             opruga(folder.path(), &["check", "s.toml", "--strict", "--set", &format!("body.it.position=[{shift}]")]);

@@ -110,7 +110,7 @@ fn parts_of_files_are_chosen_as_in_scenes() {
     // A map with several layers requires a choice, and the message uses the terms of the call.
     let told = opruga(folder.path(), &["mesh", "countries-110m.json", "--size", "0.02", "--scale-to", "1"]);
     let said = text(&told.stderr);
-    assert!(code(&told) == 2 && said.contains("name one by --set layer=…") && said.contains("countries"), "{said}");
+    assert!(code(&told) == 2 && said.contains("name one with --set layer=…") && said.contains("countries"), "{said}");
 }
 
 /// The volume that tetrahedra cut off a surface is reported with numbers and with a size that avoids it; a large loss is an error.

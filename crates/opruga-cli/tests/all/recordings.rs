@@ -170,7 +170,7 @@ fn folders_around_outputs_are_made() {
         let output = opruga(folder, &["run", "pressures", "--seconds=0.1", "--no-pictures", option, path]);
         assert_eq!(code(&output), 4, "{}", said(&output));
         assert!(
-            said(&output).contains("cannot be made") || said(&output).contains("error[write."),
+            said(&output).contains("cannot be created") || said(&output).contains("error[write."),
             "{}",
             said(&output)
         );
@@ -271,7 +271,7 @@ fn faults_of_recordings_are_told() {
     refused(&["replay", "bad"], 2, "error[recording.not_one]");
     refused(&["replay", "nowhere"], 4, "error[read.failed]");
     refused(&["replay", "."], 4, "error[read.not_regular_file]");
-    refused(&["replay", "r", "--from", "9"], 2, "no frame lies from 9 s");
+    refused(&["replay", "r", "--from", "9"], 2, "there is no frame from 9 s");
     refused(&["replay", "r", "--to", "nan"], 2, "--to is NaN; allowed: 0 to 1e9");
     refused(&["replay", "r", "--fps", "0"], 2, "--fps is 0");
     if Path::new("/dev/full").exists() {
@@ -285,7 +285,7 @@ fn faults_of_recordings_are_told() {
     let output = Command::new("bash").args(["-c", &call]).current_dir(folder).output().expect("a shell");
     assert_eq!(code(&output), 4, "{}", said(&output));
     assert!(said(&output).contains("s: error[write.failed]: writing stopped after 65536 bytes"), "{}", said(&output));
-    assert!(said(&output).contains("--resume goes on"), "{}", said(&output));
+    assert!(said(&output).contains("--resume continues"), "{}", said(&output));
     assert!(folder.join("full/checkpoint").exists());
     refused(&["replay", "s", "--verify"], 0, "warning[recording.open]");
 }

@@ -79,7 +79,7 @@ fn a_sweep_that_was_stopped_anywhere_goes_on_to_the_same_table() {
             _ => opruga(at, &["sweep", "--resume=part"]),
         };
         assert_eq!(code(&output), 0, "{}", said(&output));
-        assert!(said(&output).contains("2 of 12 points are done already"), "{}", said(&output));
+        assert!(said(&output).contains("2 of 12 points are already done"), "{}", said(&output));
         assert_eq!(table(&at.join("part")), whole);
         std::fs::remove_dir_all(at.join("part")).expect("it goes");
     }
@@ -98,7 +98,7 @@ fn a_killed_sweep_has_every_row_that_was_done_and_goes_on() {
     let before = rows();
     let output = opruga(at, &[&CALL[..], &long].concat());
     assert_eq!(code(&output), 0, "{}", said(&output));
-    assert!(before < 3 || said(&output).contains("are done already") || before == 13);
+    assert!(before < 3 || said(&output).contains("are already done") || before == 13);
     swept(at, &["--set=time.substeps=256", "--out=whole"]);
     assert_eq!(table(&at.join("killed")), table(&at.join("whole")));
 }
@@ -114,8 +114,8 @@ fn another_question_a_foreign_folder_and_a_damaged_table_are_refused_and_left_as
         assert_eq!(code(&output), exit, "{arguments:?}: {}", said(&output));
         assert!(said(&output).contains(word), "{arguments:?}: {}", said(&output));
     };
-    refused(&[&CALL[..], &["--metric=energy_drift", "--out=done"]].concat(), 4, "another question: --metric");
-    refused(&[&CALL[..], &["--set=world.drag=1", "--out=done"]].concat(), 4, "another question: --set");
+    refused(&[&CALL[..], &["--metric=energy_drift", "--out=done"]].concat(), 4, "a different sweep: --metric");
+    refused(&[&CALL[..], &["--set=world.drag=1", "--out=done"]].concat(), 4, "a different sweep: --set");
     assert_eq!(contents(&at.join("done")), before);
     std::fs::create_dir(at.join("foreign")).expect("a folder");
     std::fs::write(at.join("foreign/thesis.txt"), "years of work").expect("a file");
@@ -166,7 +166,7 @@ fn bad_calls_are_refused_before_anything_is_written() {
         ),
         (
             vec!["sweep", "ball", "--set=body.ball.mass=1..2", "--sample=0", "--metric=energy_drift", "--out=o"],
-            "a sample of 0 points visits nothing\n  = allowed: 1 to 1000000\n  = hint: for example --sample 20",
+            "a sample of 0 points is empty\n  = allowed: 1 to 1000000\n  = hint: for example --sample 20",
         ),
         (vec!["sweep", "ball", "--set=body.bell.mass=1,2", "--metric=energy_drift", "--out=o"], "set.path"),
         (vec!["sweep", "bell", "--set=body.ball.mass=1,2", "--metric=energy_drift", "--out=o"], "no such file"),

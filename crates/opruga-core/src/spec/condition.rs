@@ -19,7 +19,7 @@ messages! {
     pub enum ConditionText {
         "part.condition" #[error("in {dimension}D")]
         Dimension { dimension: usize },
-        "part.condition" #[error("where `{field}` is {words}")]
+        "part.condition" #[error("if `{field}` is {words}")]
         Word { field: &'static str, words: AnyMessage },
         "part.condition" #[error("with `{field}`")]
         Given { field: &'static str },
@@ -27,7 +27,7 @@ messages! {
         GivenOneOf { fields: AnyMessage },
         "part.condition" #[error("without `{field}`")]
         NotGiven { field: &'static str },
-        "part.condition" #[error("where `{field}` is not 0")]
+        "part.condition" #[error("if `{field}` is not 0")]
         NotZero { field: &'static str },
     }
 }

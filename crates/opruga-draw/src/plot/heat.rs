@@ -45,7 +45,7 @@ pub(super) fn write(map: &HeatMap) -> String {
     svg.text(&map.y_label, [16.0, middle], size, "middle", INK, &turn);
     y += 56.0;
     let marks = [
-        (map.panels.iter().any(|panel| !panel.failed.is_empty()), "× the run has failed"),
+        (map.panels.iter().any(|panel| !panel.failed.is_empty()), "× the run failed"),
         (map.panels.iter().any(|panel| cell_indices(map).any(|at| mark(panel, at) == Some("–"))), "– no such number"),
     ];
     let notes: Vec<&str> = marks.iter().filter(|(seen, _)| *seen).map(|(_, note)| *note).collect();
@@ -220,7 +220,7 @@ mod tests {
         let text = map().to_svg().expect("a map");
         assert_eq!(text.matches(">×<").count(), 1);
         assert_eq!(text.matches(">–<").count(), 1);
-        assert!(text.contains("× the run has failed") && text.contains("– no such number"));
+        assert!(text.contains("× the run failed") && text.contains("– no such number"));
         assert!(text.contains("a &lt; b") && text.contains("height [m]"));
         let mut whole = map();
         whole.panels[0] = HeatPanel { values: vec![vec![1.0; 3]; 2], failed: Vec::new(), ..whole.panels[0].clone() };

@@ -34,10 +34,9 @@ use opruga_solve::blocks::nodes;
 /// The parameters.
 pub const SPEC: Spec = Spec {
     kind: "bdf2",
-    summary: "implicit, second order, stable for every step; damps what is much faster than the step",
-    documentation: "x₁ = (4 x₀ − x₋₁)/3 + ⅔ h v₁ and the same for velocities, solved by Newton's method. The amplitude of an \
-oscillation falls by (hω)⁴/4 in a step where hω is small. It remembers the step before; its first step is one of backward \
-Euler. One body an island.",
+    summary: "implicit, second order, stable for every step; damps motion that is much faster than the step",
+    documentation: "x₁ = (4 x₀ − x₋₁)/3 + ⅔ h v₁ and the same for velocities, solved by Newton's method. The amplitude of an oscillation falls by \
+(hω)⁴/4 in a step if hω is small. It remembers the previous step; its first step is one of backward Euler. Each body is an island of its own.",
     dimensions: &[2, 3],
     fields: fields!(of_time),
     roles: &[],

@@ -68,11 +68,11 @@ use opruga_solve::blocks::nodes;
 /// The parameters.
 pub const SPEC: Spec = Spec {
     kind: "equilibrium",
-    summary: "statics: every step ends in the balance of all forces, through a snap by arc length",
-    documentation: "F(x, 0, t) = 0 by Newton's method, downhill on the potential; velocities are zero. The state at the end \
-(`final.csv`) is the equilibrium under the loads at that time. A body that nothing holds, or a piece of one, is refused with the names of its \
-rigid modes. With `arc_length` every step goes so far along the curve of equilibria, through its limits, until the whole load \
-is on; `load_factor` in diagnostics.csv is the part that is on.",
+    summary: "statics: every step ends in the equilibrium of all forces; arc length follows a body that snaps through",
+    documentation: "F(x, 0, t) = 0 by Newton's method with descent of the potential; velocities are zero. The state at the end (`final.csv`) is the \
+equilibrium under the loads at that time. A body, or a piece of one, that can move freely is refused with the names of its rigid modes. With \
+`arc_length` every step advances by that length along the curve of equilibria, through its limit points, until the whole load is applied; \
+`load_factor` in diagnostics.csv is the part that is applied.",
     dimensions: &[2, 3],
     fields: fields!(
         of_statics,
@@ -81,7 +81,7 @@ is on; `load_factor` in diagnostics.csv is the part that is on.",
             Allowed::Integer { least: 1, greatest: 10_000 },
             "",
             Default::Integer(1),
-            "In how many parts the weight and the loads are put on in the first step.",
+            "The number of parts in which the weight and the loads are applied in the first step.",
         )
         .applies(&[Condition::NotGiven("arc_length")]),
         Field::new(
@@ -89,8 +89,8 @@ is on; `load_factor` in diagnostics.csv is the part that is on.",
             Allowed::POSITIVE,
             "m",
             Default::Absent,
-            "The way of a step along the curve of equilibria, as the root of the mean square of the displacements of all nodes. \
-Absent: the whole load at once.",
+            "The length of a step along the curve of equilibria: the root mean square of the displacements of all nodes. If it is not given, the \
+whole load is applied at once.",
         )
     ),
     roles: &[Role::Statics],

@@ -133,7 +133,7 @@ fn a_body_that_nothing_holds_is_refused_with_the_names_of_its_rigid_modes() {
             error.about.to_string().split(';').next().unwrap_or_default().to_string()
         })
     };
-    let refusal = |text: &str| Err(format!("nothing holds the body against {text}"));
+    let refusal = |text: &str| Err(format!("nothing prevents {text}"));
     assert_eq!(message(&[]), refusal("translation along x, translation along y, rotation: 3 rigid modes"));
     assert_eq!(message(&[(0, [false, true])]), refusal("translation along x, rotation: 2 rigid modes"));
     assert_eq!(message(&[(0, [true, true])]), refusal("rotation: 1 rigid mode"));

@@ -65,7 +65,8 @@ pub(crate) const ITERATIONS: Field = Field::new(
     Allowed::Integer { least: 1, greatest: 1000 },
     "",
     Default::Absent,
-    "Iterations of Newton's method at most; 100, or where `accuracy` is \"real_time\" 3, and 10 with a barrier between bodies.",
+    "The largest number of iterations of Newton's method. The default is 100. If `accuracy` is \"real_time\", it is 3, or 10 with a barrier between \
+bodies.",
 );
 /// When the iteration ends.
 pub(crate) const TOLERANCE: Field = Field::new(
@@ -73,16 +74,16 @@ pub(crate) const TOLERANCE: Field = Field::new(
     Allowed::Number { least: Bound::Closed(1e-14), greatest: Bound::Closed(0.1) },
     "",
     Default::Number(1e-9),
-    "The iteration ends when no node is corrected by more than this part of the body's extent.",
+    "The iteration ends when no node is corrected by more than this fraction of the body's extent.",
 );
 /// The allowed solvers, in words.
 macro_rules! solvers {
     () => {
-        "Who solves for the corrections: conjugate gradients, with a matrix or without one, which give the same bits on every \
-processor (where a matrix takes them more than a thousand products, as one of a nearly incompressible solid does, with a complete factor \
-in arithmetic of one order, if that finds room in 100 MB), or the sparse Cholesky factor, which is the same on processors of one class. \"auto\" is the factor for bodies in \
-the plane of 200 nodes and more and for bodies in space of 200 to 3000 nodes. \"matrix_free\" keeps no matrix and takes several times \
-as many products, of quadratic cells dozens of times as long: it is for bodies whose matrix finds no room."
+        "The linear solver. Conjugate gradients, with or without a matrix, give the same bits on every processor. If they would need more than a \
+thousand products with a matrix, for example for a nearly incompressible solid, they use a complete factor that is computed in a fixed order, \
+provided that it fits into 100 MB. The sparse Cholesky factor gives the same bits on processors of one class. \"auto\" uses the Cholesky factor for \
+bodies in the plane with 200 nodes or more and for bodies in space with 200 to 3000 nodes. \"matrix_free\" stores no matrix and needs several times \
+as many products; with quadratic cells they take dozens of times as long. It is for bodies whose matrix does not fit into memory."
     };
 }
 
@@ -100,8 +101,8 @@ pub(crate) const OTHERWISE: Field = Field::new(
     Allowed::Choice(&["error", "halve", "accept"]),
     "",
     Default::Text("error"),
-    "What happens to a step that does not converge: an error that leaves the state as it was, two steps of half the length \
-(these again, up to 1/256), or a step that counts all the same and is counted in a warning.",
+    "What happens if a step does not converge: \"error\" is an error that leaves the state unchanged, \"halve\" makes two steps of half the length \
+(these are halved again, down to 1/256), \"accept\" accepts the step and counts it in a warning.",
 );
 
 /// The number of Newton iterations in statics.
@@ -110,22 +111,22 @@ pub(crate) const ITERATIONS_OF_STATICS: Field = Field::new(
     Allowed::Integer { least: 1, greatest: 1000 },
     "",
     Default::Integer(200),
-    "Iterations of Newton's method at most, for every part of the load.",
+    "The largest number of iterations of Newton's method for every part of the load.",
 );
 /// The linear solver of statics.
 pub(crate) const LINEAR_SOLVER_OF_STATICS: Field = Field {
     documentation: concat!(
         solvers!(),
-        " Without inertia the equations of a slender body take conjugate gradients many products, most of all without a matrix. \
-`arc_length` factors a matrix, and is refused with \"matrix_free\"."
+        " Without inertia, conjugate gradients need many products for a slender body, most of all without a matrix. `arc_length` factors a matrix \
+and cannot be combined with \"matrix_free\"."
     ),
     ..LINEAR_SOLVER
 };
 /// What to do without convergence in statics.
 pub(crate) const OTHERWISE_OF_STATICS: Field = Field {
-    documentation: "What happens where no balance is found: an error that leaves the state as it was, two steps of half the load and half the \
-way of what is held (these again, up to 1/256), or a state that counts all the same and is counted in a warning. With \
-`arc_length` the way along the curve is halved in any case.",
+    documentation: "What happens if no equilibrium is found: \"error\" is an error that leaves the state unchanged, \"halve\" makes two steps with \
+half of the load and half of the motion of pins (these are halved again, down to 1/256), \"accept\" accepts the state and counts it in a warning. \
+With `arc_length` the step along the curve is halved in any case.",
     ..OTHERWISE
 };
 
@@ -150,17 +151,16 @@ pub(crate) const ACCURACY: Field = Field::new(
     Allowed::Choice(&["exact", "real_time"]),
     "",
     Default::Text("exact"),
-    "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: three iterations \
-from the motion of the last step, each with the factor or at most 1000 products of a matrix that is kept as long as it leads \
-to the end of a step; a fifth of what is out of balance may be left, a twentieth by `bdf2`, which damps slow motions little and aims \
-at a thousandth, and is made up for in the steps that follow. Where that \
-would make energy, as when a soft body strikes the floor, the step is solved exactly, which takes several times as long. Beside bodies that a \
-barrier keeps apart, iterations that it cuts short do not count, and a twentieth may be left. Measured \
-against exact steps of the same length, of clamped cubes and beams that swing under their weight: amplitude within 3 %, period \
-within 1 %, at rest within 1 % of the statics. Steps that end with more left are counted in a warning (`step.cut_off`) with the \
-size of what is left. Not for results that are compared with others, for bodies that are slender and of many thousand nodes, \
-or where a motion is decided by little, as in buckling. `implicit_midpoint`, which damps nothing, and `newmark`, which remembers \
-it in its acceleration, would add up what is left, and refuse the setting.",
+    "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: three iterations, which start from \
+the motion of the last step. Each iteration uses the factor, or at most 1000 products, of a matrix that is kept as long as the steps converge with \
+it. A fifth of the forces out of balance may remain as a residual (a twentieth with `bdf2`, which damps slow motions little and aims at a \
+thousandth); the following steps make up for it. If that would create energy, for example when a soft body strikes the floor, the step is solved \
+exactly, which takes several times as long. For bodies that a barrier keeps apart, iterations that it cuts short do not count, and a twentieth may \
+remain. Compared with exact steps of the same length, clamped cubes and beams that swing under their weight have an amplitude within 3 %, a period \
+within 1 %, and a state of rest within 1 % of that of statics. Steps that end with a larger residual are counted in a warning (`step.cut_off`), \
+which reports its size. Do not use the setting for results that are compared with others, for slender bodies of many thousand nodes, or for motions \
+that depend on small differences, such as buckling. `implicit_midpoint`, which damps nothing, and `newmark`, which remembers the residual in its \
+acceleration, would accumulate residuals, so they refuse the setting.",
 );
 
 /// Integrators that keep the residual of a step.

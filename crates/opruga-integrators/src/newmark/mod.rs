@@ -37,10 +37,10 @@ use opruga_solve::blocks::times;
 pub const SPEC: Spec = Spec {
     kind: "newmark",
     summary: "implicit, second order, stable for every step: average acceleration, or generalised-α by its spectral radius",
-    documentation: "x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁), v₁ = v₀ + h ((1 − γ) a₀ + γ a₁), solved by Newton's method. Average \
-acceleration (β = ¼, γ = ½) damps nothing; with `spectral_radius` it is the generalised-α method, which damps what is faster \
-than the step. While obstacles hold nodes, average acceleration gives way to the steps of `implicit_midpoint` in contact, so that bodies come to rest. It \
-remembers the acceleration. One body an island.",
+    documentation: "x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁), v₁ = v₀ + h ((1 − γ) a₀ + γ a₁), solved by Newton's method. Average acceleration (β = \
+¼, γ = ½) damps nothing; with `spectral_radius` it is the generalised-α method, which damps motion that is faster than the step. While obstacles \
+hold nodes, average acceleration is replaced by the steps of `implicit_midpoint` in contact, so that bodies come to rest. The integrator remembers \
+the acceleration. Each body is an island of its own.",
     dimensions: &[2, 3],
     fields: fields!(
         of_time,
@@ -49,8 +49,8 @@ remembers the acceleration. One body an island.",
             Allowed::FRACTION,
             "",
             Default::Absent,
-            "The factor by which the fastest oscillations fall in a step: 1 keeps them, 0 takes them out at once. Absent: the \
-rule of average acceleration.",
+            "The factor by which the amplitude of the fastest oscillations falls in a step: 1 keeps them, 0 removes them in one step. If it is not \
+given, average acceleration is used.",
         )
     ),
     roles: &[],

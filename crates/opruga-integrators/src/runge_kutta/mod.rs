@@ -43,9 +43,9 @@ use std::ops::Range;
 /// The parameters: none.
 pub const SPEC: Spec = Spec {
     kind: "runge_kutta",
-    summary: "fourth order: the classical Runge–Kutta rule",
-    documentation: "y = y₀ + h/6 (k₀ + 2 k₁ + 2 k₂ + k₃) with the slopes k = (v, a) at the start, twice in the middle and at the end. \
-Four forces per step. Stable without damping for h ω ≤ 2.828, where it takes (hω)⁶/72 of the energy per step.",
+    summary: "fourth order: the classical Runge–Kutta method",
+    documentation: "y = y₀ + h/6 (k₀ + 2 k₁ + 2 k₂ + k₃) with the slopes k = (v, a) at the start, twice in the middle and at the end. Four forces \
+per step. Stable without damping for h ω ≤ 2.828; it then removes (hω)⁶/72 of the energy per step.",
     dimensions: &[2, 3],
     fields: &[],
     roles: &[],

@@ -18,7 +18,7 @@ use std::ops::Range;
 /// The parameters: none.
 pub const SPEC: Spec = Spec {
     kind: "symplectic_euler",
-    summary: "first order, energy stays bounded: the thesis's rule",
+    summary: "first order, energy stays bounded: the integrator of the thesis",
     documentation: "v₁ = v₀ + h a(x₀, v₀), x₁ = x₀ + h v₁. One force per step. Stable without damping for h ω < 2.",
     dimensions: &[2, 3],
     fields: &[],

@@ -20,7 +20,7 @@ fn among(count: usize, cells: usize) -> String {
 
 terms! {
     /// What helps if a number cannot be read.
-    pub(crate) enum NumberHint = "part.number_hint" { Comma = "write a point, not a comma" }
+    pub(crate) enum NumberHint = "part.number_hint" { Comma = "write a decimal point, not a comma" }
 }
 
 terms! {
@@ -73,30 +73,30 @@ messages! {
         "part.scan" #[error("the file ends where {wanted} should follow")]
         #[value("end of file")] #[hint("the file is cut off")]
         Ends { wanted: AnyMessage },
-        "part.scan" #[error("the file ends in the middle of its last line, maybe of a number")]
-        #[value("{word}")] #[allowed("a line break behind the last word")]
-        #[hint("end the last line with a line break if the file is whole; if not, it is cut off")]
+        "part.scan" #[error("the file ends in the middle of its last line, possibly in a number")]
+        #[value("{word}")] #[allowed("a line break after the last word")]
+        #[hint("if the file is complete, end its last line with a line break; if not, it is cut off")]
         CutLine { word: String },
-        "part.scan" #[error("{of} has something behind it")] #[value("{word}")] #[allowed("the end of the line")]
+        "part.scan" #[error("something follows {of}")] #[value("{word}")] #[allowed("the end of the line")]
         Behind { of: Expected, word: String },
-        "part.scan" #[error("`{word}` stands where `{wanted}` should")] #[value("{word}")] #[allowed("{wanted}")]
+        "part.scan" #[error("found `{word}` instead of `{wanted}`")] #[value("{word}")] #[allowed("{wanted}")]
         Other { word: String, wanted: String },
-        "part.scan" #[error("`{word}` stands where {what} should")] #[value("{word}")] #[allowed("a whole number")]
+        "part.scan" #[error("found `{word}` instead of {what}")] #[value("{word}")] #[allowed("a whole number")]
         NotWhole { word: String, what: Expected },
-        "part.scan" #[error("`{word}` stands where {what} should")] #[value("{word}")] #[allowed("{allowed}")] #[hint("{}", if_any(hint))]
+        "part.scan" #[error("found `{word}` instead of {what}")] #[value("{word}")] #[allowed("{allowed}")] #[hint("{}", if_any(hint))]
         NotNumber { word: String, what: Expected, allowed: NumberRange, hint: Option<NumberHint> },
         "scene.not_finite" #[error("{what} is not finite")] #[value("{number}")] #[allowed("a finite number")]
         NotFiniteNumber { what: Expected, number: f64 },
-        "part.scan" #[error("{count} {what} are promised, but only {rest} bytes follow")]
+        "part.scan" #[error("{count} {what} are declared, but only {rest} bytes follow")]
         #[value("{count}")] #[allowed("at most {most}")] #[hint("the file is cut off")]
         Promised { count: u64, what: Expected, rest: u64, most: u64 },
         "part.scan" #[error("there is a second section `{section}`")] #[value("{section}")] #[allowed("one")]
         SecondSection { section: String },
-        "part.scan" #[error("`{word}` is not a type of numbers")] #[value("{word}")] #[allowed("{allowed}")]
+        "part.scan" #[error("`{word}` is not a number type")] #[value("{word}")] #[allowed("{allowed}")]
         NumberType { word: String, allowed: &'static str },
-        "part.scan" #[error("the points have values `{name}` twice")] #[value("{name}")] #[allowed("a name of its own for every array")]
+        "part.scan" #[error("the array `{name}` of the points is given twice")] #[value("{name}")] #[allowed("a name of its own for every array")]
         PointValuesTwice { name: String },
-        "part.scan" #[error("the cells have values `{name}` twice")] #[value("{name}")] #[allowed("a name of its own for every array")]
+        "part.scan" #[error("the array `{name}` of the cells is given twice")] #[value("{name}")] #[allowed("a name of its own for every array")]
         CellValuesTwice { name: String },
     }
 
@@ -106,7 +106,7 @@ messages! {
         "mesh.empty" #[error("the file is empty")] #[value("0 bytes")] #[allowed("a mesh")]
         Empty {},
         "mesh.format" #[error("the file is not a mesh of MFEM or Medit")] #[value("{word}")]
-        #[allowed("`MFEM mesh v1.0` or `MeshVersionFormatted 2` at its head")]
+        #[allowed("`MFEM mesh v1.0` or `MeshVersionFormatted 2` at its start")]
         NeitherMfemNorMedit { word: String },
         "mesh.unsupported_element" #[error("{} (type {number}) cannot be read", one(element))] #[value("{number}")]
         #[allowed("points, lines of 2 or 3 nodes, triangles of 3 or 6, quadrilaterals of 4, tetrahedra of 4 or 10, hexahedra of 8")]
@@ -123,30 +123,30 @@ messages! {
         "mesh.duplicate_node" #[error("two nodes have the number {number}")] #[value("{number}")]
         #[allowed("a number of its own for every node")]
         NodeTwice { number: u64 },
-        "mesh.components" #[error("nodes have {before} numbers `{name}`, and others {components}")] #[value("{components}")] #[allowed("{before}")]
+        "mesh.components" #[error("some nodes have {before} numbers `{name}`, others have {components}")] #[value("{components}")] #[allowed("{before}")]
         Components { before: usize, name: String, components: usize },
-        "mesh.index" #[error("element {element} names node {node}, which is not there")] #[value("{node}")] #[allowed("{listed}")]
+        "mesh.index" #[error("element {element} names node {node}, which does not exist")] #[value("{node}")] #[allowed("{listed}")]
         NoNode { element: u64, node: u64, listed: Listed },
-        "mesh.index" #[error("a value names node {node}, which is not there")] #[value("{node}")] #[allowed("{listed}")]
+        "mesh.index" #[error("a value names node {node}, which does not exist")] #[value("{node}")] #[allowed("{listed}")]
         NoNodeOfValue { node: u64, listed: Listed },
         "mesh.index" #[error("{element} {index} names vertex {vertex}")] #[value("{vertex}")] #[allowed("{least} to {most}")]
         NoVertex { element: ElementName, index: usize, vertex: u64, least: u64, most: u64 },
-        "mesh.empty" #[error("the file holds no elements")] #[value("0")] #[allowed("at least one element")]
+        "mesh.empty" #[error("the file contains no elements")] #[value("0")] #[allowed("at least one element")]
         NoElements {},
-        "mesh.dimension" #[error("the file holds points only")] #[value("{element}")]
+        "mesh.dimension" #[error("the file contains only points")] #[value("{element}")]
         #[allowed("lines, triangles, quadrilaterals, tetrahedra or hexahedra")]
         PointsOnly { element: ElementName },
-        "mesh.dimension" #[error("the file holds a surface in space, and nothing that fills it")] #[value("{element}")]
+        "mesh.dimension" #[error("the file contains a surface in space, but nothing that fills it")] #[value("{element}")]
         #[allowed("tetrahedra or hexahedra")]
         #[hint("`kind = \"surface\"` reads surfaces; with `filling = \"tetrahedra\"` it fills them")]
         SurfaceInSpace { element: ElementName },
-        "mesh.dimension" #[error("the file holds elements of space, but the scene lies in the plane")] #[value("{element}")]
-        #[allowed("triangles or quadrilaterals")] #[hint("`dimension = 3` at the head of the scene")]
+        "mesh.dimension" #[error("the file contains elements of space, but the scene is in the plane")] #[value("{element}")]
+        #[allowed("triangles or quadrilaterals")] #[hint("`dimension = 3` at the top of the scene")]
         SpaceInPlane { element: ElementName },
-        "mesh.dimension" #[error("node {node} lies outside of the plane of the first node")] #[value("{z}")]
-        #[allowed("z = {plane}")] #[hint("`dimension = 3` at the head of the scene")]
+        "mesh.dimension" #[error("node {node} lies outside the plane of the first node")] #[value("{z}")]
+        #[allowed("z = {plane}")] #[hint("`dimension = 3` at the top of the scene")]
         OutOfPlane { node: u64, z: String, plane: String },
-        "mesh.dimension" #[error("the file holds cells that fill a body, and no surface alone")] #[value("3")]
+        "mesh.dimension" #[error("the file contains cells that fill a body, not a surface")] #[value("3")]
         #[allowed("triangles and quadrilaterals")] #[hint("`kind = \"mesh\"` reads filled bodies")]
         NoSurface {},
         "shape.too_large" #[error("the mesh has {nodes} nodes")] #[value("{nodes}")] #[allowed("at most {most}")]
@@ -159,19 +159,19 @@ messages! {
         "mesh.mixed_dimension" #[error("{element} {index} is not part of a cell")] #[value("{index}")]
         #[allowed("faces, edges and corners of the cells, or a body of one dimension")]
         NoPartOfCell { element: ElementName, index: u64 },
-        "mesh.degenerate_element" #[error("{element} {index} has no area for its size")] #[value("{area}")]
+        "mesh.degenerate_element" #[error("{element} {index} has almost no area for its size")] #[value("{area}")]
         #[allowed("more than {least} of its longest edge squared")]
         NoArea { element: ElementName, index: u64, area: String, least: String },
-        "mesh.degenerate_element" #[error("{element} {index} has no volume for its size")] #[value("{volume}")]
+        "mesh.degenerate_element" #[error("{element} {index} has almost no volume for its size")] #[value("{volume}")]
         #[allowed("more than {least} of its longest edge cubed")]
         NoVolume { element: ElementName, index: u64, volume: String, least: String },
         "mesh.inverted" #[error("{element} {index} folds over itself{}", among(*count, *cells))] #[value("{measure}")] #[allowed("{order}")]
         Folded { element: ElementName, index: u64, count: usize, cells: usize, measure: String, order: CornerOrder },
         "mesh.inverted" #[error("{element} {index} is inverted{}", among(*count, *cells))] #[value("{measure}")] #[allowed("{order}")]
-        #[hint("{turn} turns such cells round, and counts them")]
+        #[hint("{turn} flips and counts such cells")]
         Inverted { element: ElementName, index: u64, count: usize, cells: usize, measure: String, order: CornerOrder, turn: Setting },
         "mesh.inverted" #[error("{element} {index} is inverted{}", among(*cells, *cells))] #[value("{measure}")] #[allowed("{order}")]
-        #[hint("the whole file runs the other way: {turn} turns its cells round, and counts them")]
+        #[hint("all cells of the file have the opposite orientation: {turn} flips and counts them")]
         AllInverted { element: ElementName, index: u64, cells: usize, measure: String, order: CornerOrder, turn: Setting },
         "mesh.topology" #[error("{problem}")]
         Topology { problem: MeshError },
@@ -179,10 +179,10 @@ messages! {
         #[value("{edges}")] #[allowed("at most two cells at a face")]
         Crowded { first: u64, second: u64, edges: usize },
         "mesh.unreferenced" #[error("node {first} belongs to no cell")] #[value("{first}")] #[allowed("nodes of cells")]
-        #[hint("{leave_out} leaves such nodes out, and counts them")]
+        #[hint("{leave_out} leaves such nodes out and counts them")]
         LooseNode { first: u64, leave_out: Setting },
-        "mesh.unreferenced" #[error("{count} nodes belong to no cell, the first is node {first}")] #[value("{first}")] #[allowed("nodes of cells")]
-        #[hint("{leave_out} leaves such nodes out, and counts them")]
+        "mesh.unreferenced" #[error("{count} nodes belong to no cell; the first is node {first}")] #[value("{first}")] #[allowed("nodes of cells")]
+        #[hint("{leave_out} leaves such nodes out and counts them")]
         LooseNodes { count: usize, first: u64, leave_out: Setting },
     }
 
@@ -205,11 +205,11 @@ messages! {
         Lines { count: u64, section: String },
         "mesh.left_out" #[error("z = {z} of all nodes is left out")] #[value("{z}")]
         PlaneOffset { z: String },
-        "mesh.left_out" #[error("{count} more things are left out")] #[value("{count}")]
+        "mesh.left_out" #[error("{count} more items are left out")] #[value("{count}")]
         More { count: usize },
-        "mesh.flipped" #[error("{} of {cells} turned round", counted(*count as u64, "inverted cell", "inverted cells"))] #[value("{count}")]
+        "mesh.flipped" #[error("{} of {cells} flipped", counted(*count as u64, "inverted cell", "inverted cells"))] #[value("{count}")]
         Turned { count: usize, cells: usize },
-        "mesh.unreferenced" #[error("{} left out", counted(*count as u64, "node that no cell names is", "nodes that no cell names are"))] #[value("{count}")]
+        "mesh.unreferenced" #[error("{} left out", counted(*count as u64, "node that no cell uses is", "nodes that no cell uses are"))] #[value("{count}")]
         Unreferenced { count: usize },
     }
 }

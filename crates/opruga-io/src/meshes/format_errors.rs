@@ -8,9 +8,9 @@ messages! {
     /// Errors in a Gmsh file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum GmshError {
-        "msh.syntax" #[error("`{word}` stands between sections")] #[value("{word}")] #[allowed("a section such as $Nodes")]
+        "msh.syntax" #[error("`{word}` is between sections")] #[value("{word}")] #[allowed("a section such as $Nodes")]
         BetweenSections { word: String },
-        "msh.syntax" #[error("the section ${section} comes behind the elements")] #[value("${section}")] #[allowed("before $Elements")]
+        "msh.syntax" #[error("the section ${section} comes after the elements")] #[value("${section}")] #[allowed("before $Elements")]
         BehindElements { section: String },
         "msh.syntax" #[error("the elements come before the nodes")] #[value("$Elements")] #[allowed("$Nodes")]
         ElementsFirst {},
@@ -23,21 +23,21 @@ messages! {
         FileKind { kind: u32 },
         "msh.version" #[error("numbers have {size} bytes")] #[value("{size}")] #[allowed("8")]
         NumberSize { size: u32 },
-        "msh.endianness" #[error("{number} stands where 1 should")] #[value("{number}")]
+        "msh.endianness" #[error("{number} was found instead of 1")] #[value("{number}")]
         #[allowed("1, in the order of the file's bytes")]
         Endianness { number: i32 },
         "msh.syntax" #[error("a group has {dimension} dimensions")] #[value("{dimension}")] #[allowed("0 to 3")]
         GroupDimension { dimension: usize },
-        "msh.syntax" #[error("the name of a group does not stand in quotes")] #[value("{text}")] #[allowed("\"name\"")]
+        "msh.syntax" #[error("the name of a group is not in quotes")] #[value("{text}")] #[allowed("\"name\"")]
         GroupQuotes { text: String },
-        "msh.syntax" #[error("group {group} of {dimension} dimensions has the name `{name}` already")] #[value("{group}")]
+        "msh.syntax" #[error("group {group} of {dimension} dimensions already has the name `{name}`")] #[value("{group}")]
         #[allowed("one name for every group of a dimension")]
         GroupTwice { group: i64, dimension: usize, name: String },
         "msh.syntax" #[error("the section ${section} has no end")] #[value("${section}")] #[allowed("$End{section}")] #[hint("the file is cut off")]
         NoEnd { section: String },
-        "msh.syntax" #[error("step, components and count of values are missing")] #[value("{tags}")] #[allowed("3 whole tags or more")]
+        "msh.syntax" #[error("step, components and count of values are missing")] #[value("{tags}")] #[allowed("3 or more whole tags")]
         FewTags { tags: usize },
-        "mesh.index" #[error("a value names element {element}, which is not there")] #[value("{element}")] #[allowed("the number of an element")]
+        "mesh.index" #[error("a value names element {element}, which does not exist")] #[value("{element}")] #[allowed("the number of an element")]
         NoElement { element: u64 },
         "mesh.duplicate_node" #[error("a value names node {node} twice")] #[value("{node}")] #[allowed("every node once")]
         NodeValueTwice { node: u64 },
@@ -52,13 +52,13 @@ messages! {
         "msh.syntax" #[error("two entities of {dimension} dimensions have the number {entity}")] #[value("{entity}")]
         #[allowed("a number of its own for every entity of a dimension")]
         EntityTwice { dimension: usize, entity: i32 },
-        "msh.size" #[error("numbers of {what} from {lowest} to {highest} are promised, but those from {low} to {high} are there")]
+        "msh.size" #[error("numbers of {what} from {lowest} to {highest} are declared, but the file has those from {low} to {high}")]
         #[value("{lowest}, {highest}")] #[allowed("{low}, {high}")]
-        #[hint("the head of the section is wrong, or what it tells of is missing")]
+        #[hint("the header of the section is wrong, or a part of its content is missing")]
         Bounds { what: Expected, lowest: u64, highest: u64, low: u64, high: u64 },
-        "msh.syntax" #[error("nodes are parametric or not, but not {parametric}")] #[value("{parametric}")] #[allowed("0 or 1")]
+        "msh.syntax" #[error("the flag of parametric nodes is {parametric}")] #[value("{parametric}")] #[allowed("0 or 1")]
         Parametric { parametric: i32 },
-        "msh.size" #[error("{promised} {what} are promised, but {there} are there")] #[value("{promised}")] #[allowed("{there}")]
+        "msh.size" #[error("{promised} {what} are declared, but there are {there}")] #[value("{promised}")] #[allowed("{there}")]
         Promised { promised: u64, what: Expected, there: usize },
         "msh.syntax" #[error("an entity of {dimension} dimensions has elements of the kind {element}")] #[value("{dimension}")] #[allowed("{wanted}")]
         ElementOfEntity { dimension: usize, element: ElementName, wanted: usize },
@@ -73,7 +73,7 @@ messages! {
         Version { version: u32 },
         "medit.syntax" #[error("the dimension is {dimension}")] #[value("{dimension}")] #[allowed("2 or 3")]
         Dimension { dimension: usize },
-        "medit.syntax" #[error("there are vertices twice")] #[value("Vertices")] #[allowed("Dimension, then Vertices once")]
+        "medit.syntax" #[error("vertices are given twice")] #[value("Vertices")] #[allowed("Dimension, then Vertices once")]
         VerticesTwice {},
         "medit.syntax" #[error("the vertices come before the dimension")] #[value("Vertices")] #[allowed("Dimension, then Vertices once")]
         VerticesFirst {},
@@ -102,10 +102,10 @@ messages! {
         BehindEnd { word: String },
         "mfem.syntax" #[error("the dimension is {dimension}")] #[value("{dimension}")] #[allowed("1, 2 or 3")]
         Dimension { dimension: usize },
-        "mfem.syntax" #[error("`{section}` stands before `dimension`")] #[value("{section}")] #[allowed("dimension")]
+        "mfem.syntax" #[error("`{section}` comes before `dimension`")] #[value("{section}")] #[allowed("dimension")]
         BeforeDimension { section: String },
         "mfem.curved" #[error("curved elements (`nodes`) cannot be read")] #[value("nodes")] #[allowed("`vertices` with coordinates")]
-        #[hint("save the mesh without `nodes`, its sides straight; curved cells of second order can be read from Gmsh and VTK files")]
+        #[hint("save the mesh without `nodes`, with straight sides; curved cells of second order can be read from Gmsh and VTK files")]
         Curved {},
         "mfem.syntax" #[error("`{word}` is not a section that can be read")] #[value("{word}")] #[allowed("dimension, elements, boundary, vertices")]
         Section { word: String },
@@ -130,9 +130,9 @@ messages! {
         "mesh.unsupported_element" #[error("elements have {nodes} nodes")] #[value("{nodes}")] #[allowed("4 (tetrahedra) or 3 (triangles)")]
         #[hint("TetGen writes linear tetrahedra without the option -o2")]
         Corners { nodes: usize },
-        "tetgen.syntax" #[error("element {element} stands where element {wanted} should")] #[value("{element}")] #[allowed("{wanted}")]
+        "tetgen.syntax" #[error("found element {element} instead of element {wanted}")] #[value("{element}")] #[allowed("{wanted}")]
         Order { element: u64, wanted: u64 },
-        "tetgen.size" #[error("the file goes on behind what its head promises")] #[value("more lines")] #[allowed("as many lines as promised")]
+        "tetgen.size" #[error("the file continues after the lines that its header declares")] #[value("more lines")] #[allowed("as many lines as declared")]
         Behind {},
     }
 }

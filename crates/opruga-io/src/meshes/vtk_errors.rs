@@ -28,7 +28,7 @@ messages! {
         CellNodes { cell: u64, element: ElementName, nodes: usize, wanted: usize },
         "mesh.index" #[error("cell {cell} names node {node}")] #[value("{node}")] #[allowed("0 to {most}")]
         NoNodeOfCell { cell: u64, node: i128, most: i128 },
-        "vtk.syntax" #[error("the file does not begin as VTK does")] #[value("{head}")] #[allowed("# vtk DataFile Version 3.0")]
+        "vtk.syntax" #[error("the file does not begin like a VTK file")] #[value("{head}")] #[allowed("# vtk DataFile Version 3.0")]
         Head { head: String },
         "vtk.syntax" #[error("`{word}` is not a kind of file")] #[value("{word}")] #[allowed("ASCII or BINARY")]
         FileKind { word: String },
@@ -59,7 +59,7 @@ messages! {
         ValuesOfPoints { values: u64, points: usize },
         "vtk.syntax" #[error("a field of texts cannot be read")] #[value("string")] #[allowed("numbers")]
         Texts {},
-        "vtk.syntax" #[error("`{word}` stands before CELL_DATA and POINT_DATA")] #[value("{word}")] #[allowed("CELL_DATA or POINT_DATA before it")]
+        "vtk.syntax" #[error("`{word}` comes before CELL_DATA and POINT_DATA")] #[value("{word}")] #[allowed("CELL_DATA or POINT_DATA before it")]
         BeforeData { word: String },
         "vtk.syntax" #[error("`{word}` is not a number of components")] #[value("{word}")] #[allowed("1 to 4")]
         Components { word: String },
@@ -68,18 +68,18 @@ messages! {
     /// Errors in a VTK XML file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum VtuError {
-        "vtu.syntax" #[error("the file is not a text in UTF-8")] #[value("byte {byte}")] #[hint("it is cut off, or no VTU")]
+        "vtu.syntax" #[error("the file is not a text in UTF-8")] #[value("byte {byte}")] #[hint("it is cut off, or is not a VTU file")]
         Encoding { byte: usize },
-        "vtu.syntax" #[error("this is not well-formed XML: {reason}")] #[value("XML")] #[hint("the file is cut off, or no VTU")]
+        "vtu.syntax" #[error("this is not well-formed XML: {reason}")] #[value("XML")] #[hint("the file is cut off, or is not a VTU file")]
         Xml { reason: String },
         "vtu.syntax" #[error("the file holds `{kind}`")] #[value("{kind}")] #[allowed("<VTKFile type=\"UnstructuredGrid\">")]
         Kind { kind: String },
         "vtu.compressor" #[error("data compressed by `{name}` cannot be read")] #[value("{name}")]
         #[allowed("vtkZLibDataCompressor, or none")] #[hint("ParaView saves with other compressors too")]
         Compressor { name: String },
-        "vtu.syntax" #[error("`{word}` is not a type of headers")] #[value("{word}")] #[allowed("UInt32, UInt64")]
+        "vtu.syntax" #[error("`{word}` is not a header type")] #[value("{word}")] #[allowed("UInt32, UInt64")]
         HeaderType { word: String },
-        "vtu.syntax" #[error("`{word}` is not an order of bytes")] #[value("{word}")] #[allowed("LittleEndian, BigEndian")]
+        "vtu.syntax" #[error("`{word}` is not a byte order")] #[value("{word}")] #[allowed("LittleEndian, BigEndian")]
         ByteOrder { word: String },
         "vtu.syntax" #[error("there is no piece")] #[value("0")] #[allowed("<Piece> in <UnstructuredGrid>")]
         NoPiece {},
@@ -103,10 +103,10 @@ messages! {
         NotOfArray { word: String, range: super::errors::NumberRange },
         "vtu.size" #[error("there is no appended data")] #[value("appended")] #[allowed("<AppendedData>")] #[hint("the file is cut off")]
         NothingAppended {},
-        "vtu.size" #[error("the array begins behind the end of the appended data")] #[value("{offset}")] #[allowed("0 to {most}")]
+        "vtu.size" #[error("the array begins after the end of the appended data")] #[value("{offset}")] #[allowed("0 to {most}")]
         #[hint("the file is cut off")]
         BehindAppended { offset: String, most: usize },
-        "vtu.syntax" #[error("`{word}` is not a format of arrays")] #[value("{word}")] #[allowed("ascii, binary, appended")]
+        "vtu.syntax" #[error("`{word}` is not an array format")] #[value("{word}")] #[allowed("ascii, binary, appended")]
         ArrayFormat { word: String },
         "vtu.size" #[error("the array has {there} values, not {count}")] #[value("{there}")] #[allowed("{count}")]
         #[hint("the file is cut off, or its counts are wrong")]

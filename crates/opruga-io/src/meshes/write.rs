@@ -32,7 +32,7 @@ opruga_math::messages! {
         GappyValues { count: usize },
         "part.left_out" #[error("groups: {}", counted(*count as u64, "name", "names"))]
         GroupNames { count: usize },
-        "part.left_out" #[error("names of {}: numbers in the order of the alphabet stand for them", counted(*count as u64, "group of cells", "groups of cells"))]
+        "part.left_out" #[error("names of {}: numbers in alphabetical order replace them", counted(*count as u64, "group of cells", "groups of cells"))]
         NamesOfCellGroups { count: usize },
         "part.left_out" #[error("names of {}", counted(*count as u64, "value of cells", "values of cells"))]
         NamesOfCellValues { count: usize },
@@ -48,7 +48,7 @@ opruga_math::messages! {
     /// The notice that a part is omitted.
     #[derive(Clone, Debug, PartialEq)]
     pub enum NotInFormat {
-        "mesh.left_out" #[error("left out, since the format has no place for it: {what}")]
+        "mesh.left_out" #[error("left out, because the format cannot store it: {what}")]
         LeftOutOfFormat { what: LeftOut },
     }
 }
@@ -63,9 +63,9 @@ opruga_math::messages! {
         "mesh.write" #[error("files ending in `.{ending}` cannot be written")] #[value("{ending}")] #[allowed("{WRITTEN}")]
         Ending { ending: String },
         "mesh.write" #[error("cells of second order are not written to {format} files")] #[value("{cells}")] #[allowed("linear cells")]
-        #[hint("`.msh`, `.vtk` and `.vtu` files take them")]
+        #[hint("`.msh`, `.vtk` and `.vtu` files can store them")]
         SecondOrder { format: &'static str, cells: usize },
-        "mesh.write" #[error("TetGen has no quadrilaterals and hexahedra")] #[value("{cells}")] #[allowed("triangles or tetrahedra")]
+        "mesh.write" #[error("TetGen has no quadrilaterals or hexahedra")] #[value("{cells}")] #[allowed("triangles or tetrahedra")]
         Boxes { cells: usize },
     }
 }

@@ -13,15 +13,15 @@ opruga_math::messages! {
         NotOne {},
         /// Another version of the program wrote it.
         "recording.version" #[error("the recording has version {found}; this program reads version {VERSION}")] #[value("{found}")]
-        #[allowed("a recording of version {VERSION}")] #[hint("the version of the program that wrote it can read it")]
+        #[allowed("a recording of version {VERSION}")] #[hint("use the version of the program that wrote it")]
         Version { found: u32 },
         /// It ends within its header: the run that wrote it did not begin.
-        "recording.cut_off" #[error("the recording is cut off in its head: it has {found} bytes of {expected}")]
+        "recording.cut_off" #[error("the recording is cut off in its header: it has {found} of {expected} bytes")]
         #[allowed("a recording of version {VERSION}")]
         CutOff { found: u64, expected: u64 },
         /// A checksum does not match, or the parts are inconsistent.
         "recording.damaged" #[error("the recording is damaged between bytes {from} and {to}")] #[value("bytes {from} to {to}")]
-        #[allowed("whole chunks")]
+        #[allowed("complete chunks")]
         Damaged { from: u64, to: u64 },
         /// There is no such frame.
         "recording.no_frame" #[error("the recording has no frame {frame}")] #[value("{frame}")] #[allowed("frames {first} to {last}")]
@@ -30,7 +30,7 @@ opruga_math::messages! {
         "recording.no_frame" #[error("the recording has no frame {frame}")] #[value("{frame}")] #[allowed("none: it has no frames")]
         NoFrames { frame: u64 },
         /// It does not contain the state of that frame, which must be computed from an earlier one.
-        "recording.not_kept" #[error("the recording keeps one state in {every} frames, and not that of frame {frame}")] #[value("{frame}")]
+        "recording.not_kept" #[error("the recording keeps one state in {every} frames, but not that of frame {frame}")] #[value("{frame}")]
         #[allowed("every {every}th frame, and the last")]
         NotKept { frame: u64, every: u64 },
         /// The system could not read it.

@@ -89,11 +89,11 @@ messages! {
         Wholes {},
         "part.scene_allowed" #[error("the angle in radians, counter-clockwise")]
         Angle {},
-        "part.scene_allowed" #[error("the speed of turning in rad/s, counter-clockwise")]
+        "part.scene_allowed" #[error("the angular velocity in rad/s, counter-clockwise")]
         Spin {},
         "part.scene_allowed" #[error("the axis times the angle about it in radians: three numbers")]
         AngleInSpace {},
-        "part.scene_allowed" #[error("the axis times the speed of turning about it in rad/s: three numbers")]
+        "part.scene_allowed" #[error("the axis times the angular speed about it in rad/s: three numbers")]
         SpinInSpace {},
         "part.scene_allowed" #[error("1 to {dimension} whole numbers from 1")]
         Counts { dimension: usize },
@@ -109,7 +109,7 @@ messages! {
         ThereAreNone {},
         "part.scene_allowed" #[error("rings apart from each other, or one inside the other")]
         RingsApart {},
-        "part.scene_allowed" #[error("in a ring holes, of negative radius, and in a hole rings")]
+        "part.scene_allowed" #[error("only holes (negative radius) inside a ring, and only rings inside a hole")]
         HolesInRings {},
         "part.scene_allowed" #[error("holes inside a ring of positive radius")]
         HolesInside {},
@@ -132,9 +132,9 @@ messages! {
         Sections { name: String },
         "part.scene_hint" #[error("write {name} = [ {{ … }} ]")]
         Inline { name: String },
-        "part.scene_hint" #[error("`{table}.kind` was set to `{kind}`, and the other fields stayed; --set {table}={kind} takes its defaults")]
+        "part.scene_hint" #[error("`{table}.kind` was set to `{kind}`, but the other fields were kept; --set {table}={kind} uses its defaults")]
         KindSet { table: String, kind: &'static str },
-        "part.scene_hint" #[error("`{table}.kind` was set to `{kind}`, and the other fields stayed; --set '{table}={{kind=\"{kind}\"{needed}}}' replaces them")]
+        "part.scene_hint" #[error("`{table}.kind` was set to `{kind}`, but the other fields were kept; --set '{table}={{kind=\"{kind}\"{needed}}}' replaces them")]
         KindSetWith { table: String, kind: &'static str, needed: String },
         "part.scene_hint" #[error("`{name}` has {count} copies: `{name}[0]` … `{name}[{last}]`")]
         Copies { name: String, count: usize, last: usize },
@@ -146,7 +146,7 @@ messages! {
         SpinsInSpace {},
         "part.scene_hint" #[error("at the start the body lies between {low} and {high}")]
         Extent { low: String, high: String },
-        "part.scene_hint" #[error("every body needs a name of its own; many alike are `copies`")]
+        "part.scene_hint" #[error("every body needs a unique name; use `copies` for many identical bodies")]
         OwnName {},
         "part.scene_hint" #[error("the command `do = \"change\"` gives a body other models or another integrator")]
         Change {},
@@ -162,7 +162,7 @@ messages! {
         GradientInSpace {},
         "part.scene_hint" #[error("`opruga list` shows the scenes that come with the program")]
         ListScenes {},
-        "part.scene_hint" #[error("commands begin and end with a frame, the first at their time or later; here one begins every {} s", number(*frame))]
+        "part.scene_hint" #[error("commands begin and end with the first frame that begins at their time or later; here a frame begins every {} s", number(*frame))]
         Frames { frame: f64 },
     }
 
@@ -181,12 +181,12 @@ messages! {
         TooLarge { field: String, value: String },
         "scene.length" #[error("`{field}` has {}", counted(*count as u64, "number", "numbers"))] #[value("{value}")]
         Length { field: String, count: usize, value: String },
-        "scene.range" #[error("t does not rise: {time} follows {before}")] #[value("{value}")]
+        "scene.range" #[error("t does not increase: {time} follows {before}")] #[value("{value}")]
         NotRising { time: f64, before: f64, value: String },
         "scene.type" #[error("`{field}` is a list of lists")] #[value("{value}")]
         #[hint("write the numbers of all of them one after another, in one list")]
         Lists { field: String, value: String },
-        "scene.range" #[error("`rotation` is {value}: rounding loses where so large an angle ends in its turn")] #[value("{value}")]
+        "scene.range" #[error("`rotation` is {value}: rounding loses the direction of so large an angle")] #[value("{value}")]
         #[allowed("angles within 1e6 radians")] #[hint("whole turns of 6.283185307179586 radians change nothing")]
         Angle { value: String },
         "scene.missing" #[error("{fields} {} missing in `{table}`", are(*count))]
@@ -221,7 +221,7 @@ messages! {
     /// Errors in a body, its shape or its initial motion.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum BodyError {
-        "scene.not_here" #[error("a body that a command adds has no copies")] #[hint("write one command for every body")]
+        "scene.not_here" #[error("a body that a command adds cannot have copies")] #[hint("write one command for every body")]
         NoCopies {},
         "scene.no_values" #[error("the cells of the mesh have no numbers `{name}`")] #[value("{name}")]
         NoCellNumbers { name: String },
@@ -231,11 +231,11 @@ messages! {
         NoMass {},
         "scene.conflict" #[error("the body has `{first}` and `{second}`")] #[allowed("exactly one of {MASSES}")]
         SeveralMasses { first: String, second: String },
-        "scene.shape" #[error("`{field}` is about cells, and the shape has none")]
+        "scene.shape" #[error("`{field}` applies to cells, but the shape has none")]
         #[hint("filled shapes are `grid`, files with a `filling`, and `mesh`")]
         NoCells { field: &'static str },
-        "scene.range" #[error("`scale` is {value}: products of lengths so small are zero")] #[value("{value}")] #[allowed("from 1e-70")]
-        #[hint("coordinates are in metres: `scale = 1e-6` makes micrometres of them")]
+        "scene.range" #[error("`scale` is {value}: products of such small lengths are zero")] #[value("{value}")] #[allowed("from 1e-70")]
+        #[hint("coordinates are in metres: `scale = 1e-6` turns them into micrometres")]
         Tiny { value: String },
         "scene.range" #[error("`{field}` is {value}: products of such lengths overflow")] #[value("{value}")]
         #[allowed("coordinates within 1e70 m of the origin of the shape")]
@@ -251,7 +251,7 @@ messages! {
         SheetThickness {},
         "scene.shape" #[error("a coordinate of the shape is {value}")] #[allowed("finite coordinates")]
         NotFiniteShape { value: f64 },
-        "shape.flipped" #[error("the points of `{body}` run clockwise")] #[hint("its edges run against them")]
+        "shape.flipped" #[error("the points of `{body}` run clockwise")] #[hint("its edges run counter-clockwise, against the order of the points")]
         Clockwise { body: String },
         "scene.conflict" #[error("the body has `angular_velocity` and `velocity.angular`")] #[value("{value}")] #[allowed("one of them")]
         TwoSpins { value: String },
@@ -261,29 +261,29 @@ messages! {
         "scene.no_values" #[error("the nodes of the mesh have no vectors `{name}`")] #[value("{name}")]
         #[hint("vectors of nodes are `$NodeData` of Gmsh, `POINT_DATA` of VTK and `<PointData>` of VTU files")]
         NoNodeVectors { name: String },
-        "scene.no_values" #[error("`{name}` would stand in a mesh file, and the shape is a `{kind}`")] #[value("{name}")]
+        "scene.no_values" #[error("`{name}` must come from a mesh file, but the shape is a `{kind}`")] #[value("{name}")]
         #[hint("`kind = \"mesh\"` reads one")]
         NotAMeshFile { name: String, kind: String },
-        "scene.length" #[error("`{name}` has {} a node", counted(*components as u64, "number", "numbers"))] #[value("{components}")]
+        "scene.length" #[error("`{name}` has {} per node", counted(*components as u64, "number", "numbers"))] #[value("{components}")]
         #[allowed("2, or 3 of which the last is 0")] #[hint("a velocity is a vector")]
         ComponentsInPlane { name: String, components: usize },
-        "scene.length" #[error("`{name}` has {} a node", counted(*components as u64, "number", "numbers"))] #[value("{components}")]
+        "scene.length" #[error("`{name}` has {} per node", counted(*components as u64, "number", "numbers"))] #[value("{components}")]
         #[allowed("3")] #[hint("a velocity is a vector")]
         ComponentsInSpace { name: String, components: usize },
         "scene.not_finite" #[error("`{name}` of node {node} is {value}")] #[value("{value}")]
         #[allowed("finite numbers for every node")] #[hint("nodes are counted from 0")]
         NodeValue { name: String, node: usize, value: String },
         "scene.dimension" #[error("`{name}` of node {node} leaves the plane")] #[value("{z}")] #[allowed("0 along z")]
-        #[hint("nodes are counted from 0; `dimension = 3` at the head of a scene in space")]
+        #[hint("nodes are counted from 0; `dimension = 3` at the top of a scene in space")]
         LeavesPlane { name: String, node: usize, z: f64 },
         "scene.range" #[error("{problem}")]
         Rotation { problem: MeshError },
         "scene.range" #[error("`{name}`, turned with the body, is {value}")] #[value("{value}")] #[allowed("finite numbers")]
         Turned { name: String, value: f64 },
         "scene.conflict"
-        #[error("node {node} of body `{body}` is held by `{pin}`{} too, which leads it elsewhere along {axis} at t = {time} s", in_line(line))]
+        #[error("node {node} of body `{body}` is also held by `{pin}`{}, which moves it elsewhere along {axis} at t = {time} s", in_line(line))]
         #[allowed("one motion for every node along every axis")]
-        #[hint("let the selectors have no nodes in common, or the pins different `axes`")]
+        #[hint("use selectors without common nodes, or give the pins different `axes`")]
         PinnedTwice { node: u32, body: String, pin: String, line: Option<usize>, axis: &'static str, time: f64 },
         "scene.range" #[error("`axes` is \"{letters}\"")] #[value("{letters}")] #[allowed("one of \"x\", \"y\", \"xy\"")] #[hint("there is no z in 2D")]
         Axes { letters: String },
@@ -305,26 +305,26 @@ messages! {
         ChangesNothing {},
         "scene.range" #[error("the command begins at {at} s, before `{body}` is added at {added} s")] #[value("{at}")] #[allowed("a time from {added}")]
         BeforeAdded { at: f64, body: String, added: f64 },
-        "scene.range" #[error("the command begins at {at} s, after `{body}` is taken away at {removed} s")] #[value("{at}")]
+        "scene.range" #[error("the command begins at {at} s, after `{body}` is removed at {removed} s")] #[value("{at}")]
         #[allowed("a time before {removed}")]
         AfterRemoved { at: f64, body: String, removed: f64 },
         "command.never" #[error("the command begins at {at} s, after the end at {end} s")] #[value("{at}")]
-        #[hint("it only comes about in a run with a larger --seconds")]
+        #[hint("it takes effect only in a run with a larger --seconds")]
         AfterEnd { at: f64, end: f64 },
         "command.never" #[error("the command begins at {at} s, and no frame of the run begins then or later")] #[value("{at}")]
-        #[hint("commands begin with a frame; this one only comes about in a run with a larger --seconds")]
+        #[hint("commands begin with a frame; this one takes effect only in a run with a larger --seconds")]
         NoFrame { at: f64 },
-        "command.never" #[error("the command begins at {at} s and ends at {until} s, before a frame begins")] #[value("{until}")]
+        "command.never" #[error("the command begins at {at} s and ends at {until} s, and no frame begins in between")] #[value("{until}")]
         BetweenFrames { at: f64, until: f64 },
-        "command.never" #[error("`{parameter}` is set at {first} s and again at {second} s, before a frame begins")] #[value("{first}")]
+        "command.never" #[error("`{parameter}` is set at {first} s and again at {second} s, and no frame begins in between")] #[value("{first}")]
         SetAgain { parameter: String, first: f64, second: f64 },
         "scene.range" #[error("`{parameter}` cannot be {value}")] #[value("{value}")]
         CannotBe { parameter: String, value: String },
-        "scene.unknown_parameter" #[error("there is no parameter that changes in the run `{parameter}`")]
+        "scene.unknown_parameter" #[error("`{parameter}` is not a parameter that can change during a run")]
         NotInRun { parameter: String },
         "scene.unknown_parameter" #[error("there is no collider `{collider}`")]
         NoCollider { collider: String },
-        "scene.unknown_parameter" #[error("there is no model of this body `{model}`")]
+        "scene.unknown_parameter" #[error("this body has no model `{model}`")]
         NoModel { model: String },
         "scene.unknown_parameter" #[error("there is no body `{body}`")]
         NoBodyOfPath { body: String },
@@ -343,19 +343,19 @@ messages! {
         NoBodyCalled { body: String },
         "scene.unknown_name" #[error("there is no body {index}")] #[value("{index}")]
         NoBodyAt { index: i64 },
-        "scene.selects_nothing" #[error("the nodes that the load selects on `{body}` hold no whole facet of its boundary")]
-        #[allowed("all nodes of one facet at least: an edge of the outline, or a triangle of the surface")]
+        "scene.selects_nothing" #[error("no facet of the boundary of `{body}` has all of its nodes selected by the load")]
+        #[allowed("all nodes of at least one facet: an edge of the outline, or a triangle of the surface")]
         #[hint("`side`, `group` and `boundary` select whole sides; `kind = \"force\"` acts on nodes")]
         NoFacet { body: String },
-        "scene.selects_nothing" #[error("the nodes that the load selects on `{body}` hold no whole facet of its boundary")]
+        "scene.selects_nothing" #[error("no facet of the boundary of `{body}` has all of its nodes selected by the load")]
         #[allowed("bodies that have a boundary")] #[hint("a chain has none; `kind = \"force\"` acts on nodes")]
         NoBoundary { body: String },
         "scene.selects_nothing" #[error("the load acts on the volume of cells, and `{body}` has no cells")] #[value("\"body_force\"")]
         #[allowed("bodies that are filled: `grid`, shapes with a `filling`, volume meshes")]
         #[hint("`kind = \"force\"` acts on nodes; `world.gravity` on whatever has a mass")]
         NoCellsToLoad { body: String },
-        "scene.selects_nothing" #[error("the nodes that the load selects on `{body}` hold no whole cell of it")]
-        #[allowed("all nodes of one cell at least")]
+        "scene.selects_nothing" #[error("no cell of `{body}` has all of its nodes selected by the load")]
+        #[allowed("all nodes of at least one cell")]
         #[hint("without `select` the load acts on all cells; `group` selects those of a mesh file")]
         NoCell { body: String },
         "scene.length" #[error("`record` is empty")] #[value("[]")]
@@ -364,10 +364,10 @@ messages! {
         RecordedTwice { word: &'static str },
         "scene.unknown_word" #[error("`record` contains {value}")] #[value("{value}")]
         Records { value: String },
-        "scene.no_stress" #[error("`{word}` is recorded of `{body}`, none of whose models knows a stress")] #[value("{word}")]
+        "scene.no_stress" #[error("`{word}` is recorded for `{body}`, none of whose models has a stress")] #[value("{word}")]
         #[allowed("bodies with a model {kinds}")] #[hint("`reaction` and `contact` are forces, which every body has")]
         NoStress { word: &'static str, body: String, kinds: String },
-        "scene.selector" #[error("a selector has exactly one key, here are {count}")] #[value("{value}")]
+        "scene.selector" #[error("a selector has exactly one key, but here are {count}")] #[value("{value}")]
         #[hint("combine sets with {{ and = [ … ] }} or {{ or = [ … ] }}")]
         Keys { count: usize, value: String },
         "scene.selector" #[error("`{field}` is {value}")] #[value("{value}")] #[allowed("true")]
@@ -376,14 +376,14 @@ messages! {
         Corners { count: usize, value: String },
         "scene.range" #[error("`normal` is zero")] #[allowed("a vector that is not zero")]
         NoNormal {},
-        "scene.length" #[error("`{field}` is empty")] #[value("[]")] #[allowed("a list of one selector at least")]
+        "scene.length" #[error("`{field}` is empty")] #[value("[]")] #[allowed("a list of at least one selector")]
         NoSelectors { field: String },
         "scene.unknown_field" #[error("there is no selector `{word}`")] #[value("{word}")]
         NoSelector { word: String },
         "scene.missing" #[error("`{one}` is one corner of a box, and the other one, `{other}`, is missing")]
-        #[hint("both corners, or neither: then all that is seen is shown")]
+        #[hint("give both corners, or neither to show everything")]
         OneCorner { one: &'static str, other: &'static str },
-        "scene.range" #[error("the box that pictures show has no inside")] #[value("{high}")] #[allowed("on every axis more than `low` = {low}")]
+        "scene.range" #[error("the box that pictures show is empty")] #[value("{high}")] #[allowed("on every axis more than `low` = {low}")]
         EmptyBox { low: String, high: String },
         "scene.dimension" #[error("`{field}` turns the camera of a scene in space")] #[allowed("in scenes with `dimension = 3`")]
         Camera { field: &'static str },

@@ -31,7 +31,7 @@ messages! {
         "svg.outside" #[error("`{link}` is not an element of this file")] #[value("{link}")]
         #[allowed("href = \"#id\" of this file")] #[hint("other files are never read")]
         Outside { link: String },
-        "svg.cycle" #[error("`#{id}` contains itself")] #[value("{id}")] #[hint("an element cannot be drawn inside of itself")]
+        "svg.cycle" #[error("`#{id}` contains itself")] #[value("{id}")] #[hint("an element cannot be drawn inside itself")]
         Cycle { id: String },
         "svg.unsupported" #[error("a <use> cannot give an <svg> another size")] #[value("use")]
         #[hint("give the <svg> itself its `width` and `height`")]
@@ -39,10 +39,10 @@ messages! {
         "svg.unsupported" #[error("the size of a `viewBox` is unknown")] #[value("{element}")]
         #[hint("give its element `width` and `height`")]
         SizeOfView { element: String },
-        "svg.unsupported" #[error("<{element}> has a frame that cuts {percent} % of what is in it off")] #[value("{element}")]
-        #[allowed("contents inside of the frame")] #[hint("`overflow=\"visible\"` shows all of it")]
+        "svg.unsupported" #[error("<{element}> has a frame that cuts off {percent} % of its content")] #[value("{element}")]
+        #[allowed("content inside the frame")] #[hint("`overflow=\"visible\"` shows all of it")]
         Framed { element: String, percent: String },
-        "svg.unsupported" #[error("`clip-path` cuts {percent} % of what is drawn off")] #[value("{value}")]
+        "svg.unsupported" #[error("`clip-path` cuts off {percent} % of what is drawn")] #[value("{value}")]
         #[allowed("clip paths around all that is drawn")] #[hint("apply it in the drawing program")]
         Clipped { percent: String, value: String },
         "svg.syntax" #[error("`{attribute}` cannot be read: {reason}")] #[value("{found}")]
@@ -65,11 +65,11 @@ messages! {
         "svg.colour" #[error("`{property}` is not a number")] #[value("{value}")] #[allowed("0 to 1")]
         Share { property: String, value: String },
         "svg.colour" #[error("the fill cannot be painted")] #[value("{value}")]
-        #[allowed("a colour such as #ffac33 or gold, a gradient of this file, none")] #[hint("{colours} reads the outline alone")]
+        #[allowed("a colour such as #ffac33 or gold, a gradient of this file, none")] #[hint("{colours} reads only the outline")]
         Colour { value: String, colours: Setting },
         "svg.style" #[error("a style sheet may set `{property}` here, which changes outlines")] #[value("{property}: {value}")]
-        #[allowed("rules without conditions, behind names, `.class` and `#id`")]
-        #[hint("let the drawing program write attributes instead of a sheet")]
+        #[allowed("rules without conditions, with selectors that are names, `.class` and `#id`")]
+        #[hint("let the drawing program write attributes instead of a style sheet")]
         Style { property: String, value: String },
         "svg.syntax" #[error("the file is <{element}>, not a drawing")] #[value("{element}")] #[allowed("<svg>")]
         NoDrawing { element: String },
@@ -77,7 +77,7 @@ messages! {
         Xml { reason: String, found: String },
         "limit.elements" #[error("invalid XML: {reason}")] #[value("{found}")]
         Elements { reason: String, found: String },
-        "svg.entity" #[error("invalid XML: {reason}")] #[value("{found}")] #[hint("entities from outside of the file are never read")]
+        "svg.entity" #[error("invalid XML: {reason}")] #[value("{found}")] #[hint("entities from outside the file are never read")]
         OutsideEntity { reason: String, found: String },
         "svg.entity" #[error("invalid XML: {reason}")] #[value("{found}")] #[hint("entities may not contain one another")]
         EntityLoop { reason: String, found: String },
@@ -107,7 +107,7 @@ messages! {
         Animations { count: usize },
         "svg.gradient" #[error("{} painted in the mean of the colours", counted(*count as u64, "gradient is", "gradients are"))] #[value("{count}")]
         Gradients { count: usize },
-        "svg.style" #[error("{} behind a selector that is not read: other colours may be meant", counted(*count as u64, "shape has a rule of a style sheet", "shapes have rules of style sheets"))]
+        "svg.style" #[error("{} with a selector that is not read: other colours may be intended", counted(*count as u64, "shape has a rule of a style sheet", "shapes have rules of style sheets"))]
         #[value("{count}")]
         Styled { count: usize },
         "svg.fill_rule" #[error("{} no `fill-rule` and would have fewer holes by the non-zero rule", counted(*count as u64, "shape names", "shapes name"))] #[value("{count}")]
@@ -118,11 +118,11 @@ messages! {
     /// Errors in a map.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum MapError {
-        "map.unknown_layer" #[error("there is no layer `{layer}`")] #[value("{layer}")] #[allowed("no {setting}: only a topology has some")]
+        "map.unknown_layer" #[error("there is no layer `{layer}`")] #[value("{layer}")] #[allowed("no {setting}: only a topology has layers")]
         NoLayers { layer: String, setting: Setting },
         "map.unknown_layer" #[error("there is no layer `{layer}`")] #[value("{layer}")] #[allowed("{known}")]
         NoLayer { layer: String, known: String },
-        "map.unknown_layer" #[error("the map has {count} layers")] #[value("")] #[allowed("{known}")] #[hint("name one by {setting}")]
+        "map.unknown_layer" #[error("the map has {count} layers")] #[value("")] #[allowed("{known}")] #[hint("name one with {setting}")]
         SeveralLayers { count: usize, known: String, setting: Setting },
         "map.syntax" #[error("a position has {count} numbers")] #[value("{count}")] #[allowed("two or three numbers")]
         Position { count: usize },
@@ -137,19 +137,19 @@ messages! {
         NoArc { arc: i64, least: i64, most: i64 },
         "map.syntax" #[error("a ring is not closed")] #[value("{count}")] #[allowed("four or more positions, the last like the first")]
         OpenRing { count: usize },
-        "map.hole" #[error("hole {hole} lies outside of its polygon")] #[value("{position}")]
-        #[allowed("holes inside of the first ring of a polygon")] #[hint("islands are polygons of their own")]
+        "map.hole" #[error("hole {hole} lies outside its polygon")] #[value("{position}")]
+        #[allowed("holes inside the first ring of a polygon")] #[hint("islands are polygons of their own")]
         Hole { hole: usize, position: String },
-        "map.unknown_feature" #[error("`{feature}` is nothing")] #[value("{feature}")] #[allowed("features with polygons")]
+        "map.unknown_feature" #[error("`{feature}` is empty")] #[value("{feature}")] #[allowed("features with polygons")]
         Nothing { feature: String },
         "map.unknown_feature" #[error("`{feature}` is a feature without geometry")] #[value("{feature}")] #[allowed("features with polygons")]
         NoGeometry { feature: String },
-        "map.unknown_feature" #[error("`{feature}` is nothing but points and lines")] #[value("{feature}")] #[allowed("features with polygons")]
+        "map.unknown_feature" #[error("`{feature}` has only points and lines")] #[value("{feature}")] #[allowed("features with polygons")]
         PointsAndLines { feature: String },
         "map.unknown_feature" #[error("no polygon belongs to `{feature}`")] #[value("{feature}")]
         #[allowed("the `id` of a feature, or a text among its properties")]
         NoFeature { feature: String },
-        "shape.no_area" #[error("the map holds no polygon")] #[value("0")]
+        "shape.no_area" #[error("the map contains no polygon")] #[value("0")]
         NoPolygon {},
         "map.range" #[error("({x}, {y}) is not a place on the globe")] #[value("{x}, {y}")]
         #[allowed("latitudes from -{most} to {most}, longitudes from -540 to 540")] #[hint("{projection} takes coordinates as they are")]
@@ -167,9 +167,9 @@ messages! {
         Empty { count: usize },
         "map.antimeridian" #[error("{} in one piece", counted(*count as u64, "outline crosses the antimeridian and is", "outlines cross the antimeridian and are"))] #[value("{count}")]
         Over { count: usize },
-        "map.antimeridian" #[error("{count} polygons that were cut along the antimeridian are one again")] #[value("{count}")]
+        "map.antimeridian" #[error("{count} polygons that were cut along the antimeridian are joined again")] #[value("{count}")]
         Cut { count: usize },
-        "map.antimeridian" #[error("{} moved by 360° beside the others", counted(*count as u64, "polygon is", "polygons are"))] #[value("{count}")]
+        "map.antimeridian" #[error("{} moved by 360° next to the others", counted(*count as u64, "polygon is", "polygons are"))] #[value("{count}")]
         Beside { count: usize },
         "map.pole" #[error("{} cut along the antimeridian and closed along the pole", counted(*count as u64, "outline around a pole is", "outlines around a pole are"))]
         #[value("{count}")]
@@ -185,9 +185,9 @@ messages! {
         Font { reason: String, bytes: usize },
         "font.no_glyph" #[error("`{letter}` is not a letter")] #[value("{letter}")]
         NoLetter { letter: String },
-        "font.script" #[error("`{letter}` is of a script whose letters are not set one by one from left to right")] #[value("{letter}")]
-        #[allowed("letters such as Latin, Greek or Cyrillic ones, without marks of their own")]
-        #[hint("draw the text in a drawing program and turn it into paths of an SVG file")]
+        "font.script" #[error("`{letter}` belongs to a script whose letters are not set one by one from left to right")] #[value("{letter}")]
+        #[allowed("letters such as Latin, Greek or Cyrillic ones, without combining marks")]
+        #[hint("write the text in a drawing program and convert it to paths in an SVG file")]
         Script { letter: String },
         "font.no_glyph" #[error("the font `{font}` has no letter `{letter}`")] #[value("{letter}")]
         NoGlyph { font: String, letter: String },

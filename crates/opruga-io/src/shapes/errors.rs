@@ -8,9 +8,9 @@ messages! {
     /// The change of an area or a volume.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum Change {
-        "part.change" #[error("{off} {unit} ({percent} %) of {whole} {unit} lost")]
+        "part.change" #[error("{off} {unit} ({percent} %) of {whole} {unit} are lost")]
         Lost { off: String, unit: &'static str, percent: String, whole: String },
-        "part.change" #[error("{off} {unit} ({percent} %) of {whole} {unit} added")]
+        "part.change" #[error("{off} {unit} ({percent} %) of {whole} {unit} are added")]
         Added { off: String, unit: &'static str, percent: String, whole: String },
     }
 
@@ -21,7 +21,7 @@ messages! {
         Corner { angle: String },
         "part.thin_cause" #[error("the outline is finer there than {spacing}")]
         Finer { spacing: Setting },
-        "part.thin_cause" #[error("the refinement has added as many nodes as it may")]
+        "part.thin_cause" #[error("the refinement has added as many nodes as it is allowed to add")]
         Unfinished {},
     }
 
@@ -30,7 +30,7 @@ messages! {
     pub(crate) enum ShapeHint {
         "part.shape_hint" #[error("use a smaller {spacing}")]
         SmallerSpacing { spacing: Setting },
-        "part.shape_hint" #[error("take a larger {spacing}, or a drawing of fewer points")]
+        "part.shape_hint" #[error("use a larger {spacing}, or a drawing with fewer points")]
         LargerSpacing { spacing: Setting },
         "part.shape_hint" #[error("{spacing} keeps the volume within {percent} %")]
         SpacingKeeps { spacing: Setting, percent: f64 },
@@ -38,7 +38,7 @@ messages! {
         SmallerRemesh { remesh: Setting },
         "part.shape_hint" #[error("{remesh} works")]
         RemeshWorks { remesh: Setting },
-        "part.shape_hint" #[error("use a smaller {remesh}: no length from {} m on that was tried works", number(*length))]
+        "part.shape_hint" #[error("use a smaller {remesh}: none of the tried lengths of {} m or more works", number(*length))]
         NoRemeshWorks { remesh: Setting, length: f64 },
         "part.shape_hint" #[error("round the corner off in the drawing, or use {lattice}")]
         RoundCorner { lattice: Setting },
@@ -59,7 +59,7 @@ messages! {
         "part.shape_hint" #[error("{cap} closes it, {sheet} keeps it as cloth")]
         CapOrSheet { cap: Setting, sheet: Setting },
         "part.shape_hint"
-        #[error("{} at the place of another: {weld} joins them; or {cap}, {sheet}", counted(*count as u64, "vertex lies", "vertices lie"))]
+        #[error("{} at the position of another: {weld} joins them; or {cap}, {sheet}", counted(*count as u64, "vertex lies", "vertices lie"))]
         Weld { count: usize, weld: Setting, cap: Setting, sheet: Setting },
     }
 
@@ -81,32 +81,32 @@ messages! {
         "scene.shape" #[error("edges of {length} m make the surface enclose {part} of its volume")] #[value("{length}")]
         #[allowed("a length that keeps the volume within {percent} %")]
         RemeshEncloses { length: f64, part: String, percent: f64 },
-        "shape.no_area" #[error("the file holds no closed outline")] #[value("{extent}")]
+        "shape.no_area" #[error("the file contains no closed outline")] #[value("{extent}")]
         #[allowed("outlines that enclose area, of an extent from 1e-150 to 1e150")]
         NoOutline { extent: String },
         "shape.no_area" #[error("no outline is left")] #[value("{least}")]
         NoneLeft { least: f64 },
-        "limit.nodes" #[error("nodes {} m apart would be {nodes}", number(*spacing))] #[value("{}", number(*spacing))]
-        #[allowed("from {least} m on: at most {most} nodes")]
+        "limit.nodes" #[error("with nodes {} m apart, there would be {nodes} nodes", number(*spacing))] #[value("{}", number(*spacing))]
+        #[allowed("{least} m or more: at most {most} nodes")]
         TooFineOutline { spacing: f64, nodes: String, least: String, most: u64 },
     }
 
     /// What has changed while a body was made from the contents of a file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ShapeNotice {
-        "shape.lost_volume" #[error("the filling leaves {change}")] #[value("{kept}")]
+        "shape.lost_volume" #[error("with the filling, {change}")] #[value("{kept}")]
         #[allowed("{warned} % of the volume, above 25 % is an error")]
         Filling { change: Change, kept: String, warned: f64 },
-        "shape.lost_volume" #[error("edges of {} m leave {change}", number(*length))] #[value("{kept}")]
+        "shape.lost_volume" #[error("with edges of {} m, {change}", number(*length))] #[value("{kept}")]
         Remeshed { length: f64, change: Change, kept: String },
         "shape.thinned" #[error("{} {nodes} nodes, {} m apart: {change}", counted(*given as u64, "point of the file becomes", "points of the file become"), number(*spacing))]
         #[value("{given}")] #[hint("a smaller {finer} keeps finer detail, {lattice} carries all of it")]
         Thinned { given: usize, nodes: usize, spacing: f64, change: Change, finer: Setting, lattice: Setting },
-        "shape.thinned" #[error("{nodes} nodes {} m apart leave {change}", number(*spacing))] #[value("{kept}")]
+        "shape.thinned" #[error("with {nodes} nodes {} m apart, {change}", number(*spacing))] #[value("{kept}")]
         #[hint("a smaller {finer} keeps finer detail, {lattice} carries all of it")]
         Coarse { nodes: usize, spacing: f64, change: Change, kept: String, finer: Setting, lattice: Setting },
         "shape.nested" #[error("{}", counted(*count as u64, "outline lies within one of another element and is a hole there", "outlines lie within those of other elements and are holes there"))]
-        #[value("{count}")] #[hint("{union} keeps what any element paints, {parity} says that holes are meant")]
+        #[value("{count}")] #[hint("{union} keeps what any element paints, {parity} confirms that holes are intended")]
         Nested { count: usize, union: Setting, parity: Setting },
         "shape.thin_triangles"
         #[error("{count} of {} {} angles below {least}°, the smallest {angle}° at ({x}, {y}): {cause}", counted(*triangles as u64, "triangle", "triangles"), if *count == 1 { "has" } else { "have" })]
@@ -118,11 +118,11 @@ messages! {
         #[value("{count}")]
         Dropped { count: usize, outlines: usize, least: f64 },
         "shape.overlap"
-        #[error("{}: {overlap} keeps what any of them covers, {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
+        #[error("{}: {overlap} keeps what any of them covers; {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
         #[value("{count}")]
         Union { count: usize, left: usize, overlap: Setting },
         "shape.overlap"
-        #[error("{}: {overlap} keeps what an odd number of them encloses, {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
+        #[error("{}: {overlap} keeps what an odd number of them encloses; {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
         #[value("{count}")]
         EvenOdd { count: usize, left: usize, overlap: Setting },
     }

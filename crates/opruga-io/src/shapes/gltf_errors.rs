@@ -36,8 +36,8 @@ messages! {
         NoScene {},
         "gltf.index" #[error("there is no {what} {index}")] #[value("{index}")] #[allowed("below {count}")]
         NoEntry { what: &'static str, index: usize, count: usize },
-        "gltf.tree" #[error("node {node} has two parents, or is its own")] #[value("{node}")] #[allowed("one parent for every node")]
-        #[hint("give each place a node of its own that names the same mesh")]
+        "gltf.tree" #[error("node {node} has two parents, or is its own parent")] #[value("{node}")] #[allowed("one parent for every node")]
+        #[hint("give each instance a node of its own that names the same mesh")]
         Parents { node: usize },
         "gltf.depth" #[error("nodes are nested more than {deepest} deep, or contain themselves")] #[value("{node}")] #[allowed("at most {deepest} levels")]
         Depth { deepest: usize, node: usize },
@@ -56,14 +56,14 @@ messages! {
         Accessor { kind: String, component: u32, wanted: &'static str, components: String },
         "gltf.unsupported" #[error("the accessor has no bufferView")] #[value("none")]
         NoView {},
-        "gltf.size" #[error("{rows} rows of {each} bytes do not lie within the view and its buffer of {bytes} bytes")] #[value("{rows}")]
+        "gltf.size" #[error("{rows} rows of {each} bytes do not fit into the view and its buffer of {bytes} bytes")] #[value("{rows}")]
         #[hint("the file is cut off, or the view is too short")]
         Rows { rows: u64, each: u64, bytes: usize },
-        "gltf.syntax" #[error("the buffer has neither an address nor a binary chunk")]
+        "gltf.syntax" #[error("the buffer has neither a URI nor a binary chunk")]
         NoBytes {},
-        "gltf.syntax" #[error("the data address is not base64")] #[allowed("data:…;base64,…")]
+        "gltf.syntax" #[error("the data URI is not base64")] #[allowed("data:…;base64,…")]
         Base64 {},
-        "gltf.size" #[error("the buffer promises {promised} bytes and has {bytes}")] #[value("{bytes}")] #[allowed("{promised} bytes")]
+        "gltf.size" #[error("the buffer declares {promised} bytes, but has {bytes}")] #[value("{bytes}")] #[allowed("{promised} bytes")]
         Buffer { promised: u64, bytes: usize },
     }
 
@@ -74,7 +74,7 @@ messages! {
         Scenes { count: usize },
         "gltf.skin" #[error("{} left out", counted(*count as u64, "skin, by which vertices follow bones, is", "skins, by which vertices follow bones, are"))] #[value("{count}")]
         Skins { count: usize },
-        "gltf.morph" #[error("{} left out", counted(*count as u64, "part with shapes to morph into has them", "parts with shapes to morph into have them"))] #[value("{count}")]
+        "gltf.morph" #[error("{} left out", counted(*count as u64, "part with morph targets has them", "parts with morph targets have them"))] #[value("{count}")]
         Morphs { count: usize },
         "gltf.animation" #[error("{} left out", counted(*count as u64, "animation is", "animations are"))] #[value("{count}")]
         Animations { count: usize },

@@ -20,7 +20,7 @@ fn polygons(count: usize) -> String {
 
 /// The number of pairs, exactly or as a lower bound.
 fn pairs(count: usize, complete: bool) -> String {
-    if complete { counted(count as u64, "pair", "pairs") } else { format!("{count} pairs and more") }
+    if complete { counted(count as u64, "pair", "pairs") } else { format!("at least {count} pairs") }
 }
 
 messages! {
@@ -36,7 +36,7 @@ messages! {
         "mesh.degenerate_face" #[error("a face crosses or touches itself, or encloses nothing")]
         #[allowed("{CORNERS}")]
         Crossing {},
-        "mesh.degenerate_face" #[error("a face is far from flat: a corner lies {off} of its size off its plane")]
+        "mesh.degenerate_face" #[error("a face is far from flat: the distance of a corner from its plane is {off} of its size")]
         #[allowed("{CORNERS}")]
         Bent { off: String },
     }
@@ -44,7 +44,7 @@ messages! {
     /// Errors in a surface of any format.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum SurfaceError {
-        "mesh.empty" #[error("the file holds no triangles")] #[value("0")] #[allowed("at least one triangle")]
+        "mesh.empty" #[error("the file contains no triangles")] #[value("0")] #[allowed("at least one triangle")]
         NoTriangles {},
         "mesh.index" #[error("{problem}")]
         Index { problem: MeshError },
@@ -54,10 +54,10 @@ messages! {
         Filling { problem: MeshError },
         "mesh.duplicate_element" #[error("triangles {first} and {second} have the same corners")] #[value("{second}")] #[hint("leave one of them out")]
         SameCorners { first: u32, second: u32 },
-        "mesh.degenerate_face" #[error("triangle {triangle} has no area for its size")] #[value("{area}")]
+        "mesh.degenerate_face" #[error("triangle {triangle} has almost no area for its size")] #[value("{area}")]
         #[allowed("an area above {least} of its longest edge squared")]
         NoArea { triangle: u32, area: String, least: String },
-        "mesh.degenerate_face" #[error("triangle {triangle} names a place twice where vertices within {distance} m are joined")]
+        "mesh.degenerate_face" #[error("triangle {triangle} has two corners at the same vertex if vertices within {distance} m are joined")]
         #[value("{distance}")] #[hint("use a smaller {weld}, or leave the triangle out")]
         Joined { triangle: u32, distance: f64, weld: Setting },
         "mesh.degenerate_face" #[error("triangle {triangle} names a vertex twice")] #[value("{corners}")] #[allowed("three different vertices")]
@@ -78,17 +78,17 @@ messages! {
         "mesh.dimension" #[error("a closed surface is flat: it encloses no volume")] #[value("{volume}")]
         #[allowed("a volume above 1e-12 of its extent cubed")]
         Flat { volume: String },
-        "mesh.non_manifold" #[error("parts of the surface hang together by a vertex: {positions}")] #[value("{count}")]
-        #[allowed("triangles that go once around every vertex")] #[hint("move the parts apart, or give each a vertex of its own")]
+        "mesh.non_manifold" #[error("parts of the surface are joined only at a vertex: {positions}")] #[value("{count}")]
+        #[allowed("triangles that form one fan around every vertex")] #[hint("move the parts apart, or give each a vertex of its own")]
         Pinched { positions: String, count: usize },
         "mesh.non_manifold" #[error("more than two triangles meet at {}: {positions}", counted(*count as u64, "edge", "edges"))]
         #[value("{count}")] #[allowed("at most two")]
         CrowdedEdges { count: usize, positions: String },
-        "mesh.non_orientable" #[error("the surface has only one side, as a Möbius band")] #[value("{facet}")]
+        "mesh.non_orientable" #[error("the surface has only one side, like a Möbius strip")] #[value("{facet}")]
         OneSided { facet: u32 },
         "mesh.self_intersection"
         #[error("the surface meets itself: triangle {first} around ({first_center}) crosses, touches or overlaps triangle {second} around ({second_center})")]
-        #[value("{}", pairs(*count, *complete))] #[allowed("triangles that meet at common vertices and edges only")]
+        #[value("{}", pairs(*count, *complete))] #[allowed("triangles that meet only at common vertices and edges")]
         #[hint("{keep} takes the surface as it is")]
         MeetsItself { first: u32, first_center: String, second: u32, second_center: String, count: usize, complete: bool, keep: Setting },
         "mesh.size" #[error("the surface has no extent, or one out of range")] #[value("{extent}")] #[allowed("an extent from 1e-150 to 1e150")]
@@ -111,19 +111,19 @@ messages! {
         #[error("{count} of {} {}; the thinnest is triangle {thinnest}, with an area of {} of its longest edge squared", counted(*triangles as u64, "triangle", "triangles"), if *count == 1 { "is a sliver" } else { "are slivers" }, number(*area))]
         #[value("{count}")] #[allowed("areas from {least}")] #[hint("{remesh} makes nearly equilateral triangles")]
         Slivers { count: usize, triangles: usize, thinnest: usize, area: f64, least: String, remesh: Setting },
-        "mesh.unreferenced" #[error("{} left out", counted(*count as u64, "vertex that no triangle names is", "vertices that no triangle names are"))] #[value("{count}")]
+        "mesh.unreferenced" #[error("{} left out", counted(*count as u64, "vertex that no triangle uses is", "vertices that no triangle uses are"))] #[value("{count}")]
         UnreferencedVertices { count: usize },
-        "mesh.scale" #[error("the surface is {} m large", number(*extent))] #[value("{extent}")]
-        #[allowed("{} m to {} m, where {size} is not given", number(*least), number(*most))]
+        "mesh.scale" #[error("the extent of the surface is {} m", number(*extent))] #[value("{extent}")]
+        #[allowed("{} m to {} m, if {size} is not given", number(*least), number(*most))]
         Scale { extent: f64, least: f64, most: f64, size: Setting },
         "mesh.welded" #[error("{count} of {vertices} vertices {} joined to others", are(*count))] #[value("{count}")]
         Welded { count: usize, vertices: usize },
         "mesh.capped" #[error("{} closed by fans of triangles", counted(*count as u64, "free boundary is", "free boundaries are"))] #[value("{count}")]
         Capped { count: usize },
-        "mesh.flipped" #[error("{} turned", counted(*count as u64, "triangle that faces against its neighbours is", "triangles that face against their neighbours are"))]
+        "mesh.flipped" #[error("{} flipped", counted(*count as u64, "triangle oriented against its neighbours is", "triangles oriented against their neighbours are"))]
         #[value("{count}")]
         Against { count: usize },
-        "mesh.flipped" #[error("{} turned", counted(*count as u64, "component that is inside out is", "components that are inside out are"))] #[value("{count}")]
+        "mesh.flipped" #[error("{} flipped", counted(*count as u64, "component that is inside out is", "components that are inside out are"))] #[value("{count}")]
         InsideOut { count: usize },
         "mesh.not_compared" #[error("too many triangles lie over one another: not all were compared, and some may cross")]
         NotCompared {},
@@ -153,9 +153,9 @@ messages! {
         "obj.syntax" #[error("statement `{word}` cannot be read")] #[value("{word}")]
         #[allowed("v, vt, vn, vp, f, l, p, o, g, s, usemtl, mtllib, # comments")]
         Statement { word: String },
-        "mesh.index" #[error("a face names a `{what}` that is not there")] #[allowed("no `{what}`: the file has none")]
+        "mesh.index" #[error("a face names a `{what}` that does not exist")] #[allowed("no `{what}`: the file has none")]
         NoExtras { what: &'static str },
-        "mesh.index" #[error("a face names a `{what}` that is not there")] #[allowed("1 to {count}, or -{count} to -1")]
+        "mesh.index" #[error("a face names a `{what}` that does not exist")] #[allowed("1 to {count}, or -{count} to -1")]
         NoExtra { what: &'static str, count: i64 },
         "mesh.index" #[error("there is no vertex {vertex}")] #[value("{vertex}")] #[allowed("1 to {count}")]
         NoVertexOfFile { vertex: i64, count: usize },
@@ -176,14 +176,14 @@ messages! {
     /// Errors in a PLY file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum PlyError {
-        "ply.size" #[error("the header promises {count} of `{element}`, but only {rest} bytes follow")] #[value("{count}")]
+        "ply.size" #[error("the header declares {count} of `{element}`, but only {rest} bytes follow")] #[value("{count}")]
         #[allowed("at most {most}")] #[hint("the file is cut off")]
         Promised { count: u64, element: String, rest: usize, most: usize },
         "ply.syntax" #[error("`vertex` has no properties x, y, z")] #[value("vertex")]
         NoCoordinates {},
         "ply.syntax" #[error("`face` has no list vertex_indices")] #[value("face")]
         NoIndices {},
-        "ply.syntax" #[error("there is no element `{element}` before its use")] #[value("{element}")]
+        "ply.syntax" #[error("the file does not declare the element `{element}`, or declares it too late")] #[value("{element}")]
         NoElement { element: &'static str },
         "mesh.index" #[error("face {face} names vertex {vertex}")] #[value("{vertex}")] #[allowed("0 to {most}")]
         NoVertexOfFace { face: u64, vertex: f64, most: usize },
@@ -199,7 +199,7 @@ messages! {
         Count {},
         "ply.syntax" #[error("the property cannot be read")] #[allowed("property list TYPE TYPE name, below an element")]
         ListProperty {},
-        "ply.syntax" #[error("the count of a list is not a whole number")] #[allowed("a whole type")]
+        "ply.syntax" #[error("the count of a list is not a whole number")] #[allowed("an integer type")]
         ListCount {},
         "ply.syntax" #[error("the property cannot be read")] #[allowed("property TYPE name, below an element")]
         Property {},
@@ -232,7 +232,7 @@ messages! {
     /// Errors in an STL file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum StlError {
-        "stl.size" #[error("at byte 80 the header promises {triangles} triangles, but the file has {length} bytes")] #[value("{length}")]
+        "stl.size" #[error("at byte 80 the header declares {triangles} triangles, but the file has {length} bytes")] #[value("{length}")]
         #[allowed("{promised} bytes")] #[hint("the file is cut off, or it is not an STL file")]
         Promised { triangles: u64, length: usize, promised: u64 },
         "stl.size" #[error("the file has {length} bytes")] #[value("{length}")]
@@ -251,9 +251,9 @@ messages! {
     /// Parts of an STL file that are ignored.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum StlNotice {
-        "stl.normal" #[error("{}: the order of the corners tells the side", counted(*count as u64, "normal is not a number", "normals are not numbers"))] #[value("{count}")]
+        "stl.normal" #[error("{}: the order of the corners determines the side", counted(*count as u64, "normal is not a number", "normals are not numbers"))] #[value("{count}")]
         Broken { count: usize },
-        "stl.normal" #[error("{}: the order of the corners tells the side", counted(*count as u64, "normal points against its triangle", "normals point against their triangles"))]
+        "stl.normal" #[error("{}: the order of the corners determines the side", counted(*count as u64, "normal points against its triangle", "normals point against their triangles"))]
         #[value("{count}")]
         Against { count: usize },
     }

@@ -310,7 +310,7 @@ fn polygons_of_maps_are_found_by_name_with_holes_and_islands() {
     // A road exists, but has no area; nor is it offered as the name that may have been meant.
     let error = &map(&text, ", feature = \"Road\"").expect_err("a line")[0];
     assert_eq!((error.code, error.hint.as_deref()), ("map.unknown_feature", None));
-    assert_eq!(error.message, "`Road` is nothing but points and lines");
+    assert_eq!(error.message, "`Road` has only points and lines");
     let error = &map(&text, ", feature = \"Roar\"").expect_err("misspelt")[0];
     assert_eq!((error.code, error.hint.as_deref()), ("map.unknown_feature", None));
     let error = &map(&text, ", feature = \"Island\"").expect_err("misspelt")[0];

@@ -172,7 +172,7 @@ scene.toml:14:10: error[scene.unknown_field]: there is no field `selct` in `pin`
             r#"scene.toml:13:8: error[scene.duplicate_name]: two bodies are called `ball`, first in line 8
  13 | name = "ball"
     |        ^^^^^^
-  = hint: every body needs a name of its own; many alike are `copies`"#,
+  = hint: every body needs a unique name; use `copies` for many identical bodies"#,
         ),
         (
             with("velocity = [1, 2, 3]\n"),
@@ -193,7 +193,7 @@ scene.toml:14:10: error[scene.unknown_field]: there is no field `selct` in `pin`
             r#"scene.toml:12:27: error[scene.length]: `and` is empty
  12 | pin = [{ select = { and = [] } }]
     |                           ^^
-  = allowed: a list of one selector at least"#,
+  = allowed: a list of at least one selector"#,
         ),
         (
             with("pin = [{ select = { node = 8 } }]\n"),
@@ -212,20 +212,20 @@ scene.toml:14:10: error[scene.unknown_field]: there is no field `selct` in `pin`
         ),
         (
             with("[[load]]\nkind = \"traction\"\nbody = \"ball\"\nvalue = [0, 1]\nselect = { node = 0 }\n"),
-            r#"scene.toml:16:10: error[scene.selects_nothing]: the nodes that the load selects on `ball` hold no whole facet of its boundary
+            r#"scene.toml:16:10: error[scene.selects_nothing]: no facet of the boundary of `ball` has all of its nodes selected by the load
  16 | select = { node = 0 }
     |          ^^^^^^^^^^^^
-  = allowed: all nodes of one facet at least: an edge of the outline, or a triangle of the surface
+  = allowed: all nodes of at least one facet: an edge of the outline, or a triangle of the surface
   = hint: `side`, `group` and `boundary` select whole sides; `kind = "force"` acts on nodes"#,
         ),
         (
             with(&format!(
                 "{LATE}[[load]]\nkind = \"pressure\"\nbody = \"late\"\nvalue = 1\nselect = {{ nodes = [0, 2] }}\n"
             )),
-            r#"scene.toml:20:10: error[scene.selects_nothing]: the nodes that the load selects on `late` hold no whole facet of its boundary
+            r#"scene.toml:20:10: error[scene.selects_nothing]: no facet of the boundary of `late` has all of its nodes selected by the load
  20 | select = { nodes = [0, 2] }
     |          ^^^^^^^^^^^^^^^^^^
-  = allowed: all nodes of one facet at least: an edge of the outline, or a triangle of the surface
+  = allowed: all nodes of at least one facet: an edge of the outline, or a triangle of the surface
   = hint: `side`, `group` and `boundary` select whole sides; `kind = "force"` acts on nodes"#,
         ),
         (
@@ -233,7 +233,7 @@ scene.toml:14:10: error[scene.unknown_field]: there is no field `selct` in `pin`
                 "kind = \"ring\", radius = 1.0, vertices = 8",
                 "kind = \"line\", from = [0, 0], to = [1, 0], segments = 2",
             ),
-            r#"scene.toml:12:1: error[scene.selects_nothing]: the nodes that the load selects on `ball` hold no whole facet of its boundary
+            r#"scene.toml:12:1: error[scene.selects_nothing]: no facet of the boundary of `ball` has all of its nodes selected by the load
  12 | [[load]]
     | ^^^^^^^^
   = allowed: bodies that have a boundary
@@ -244,7 +244,7 @@ scene.toml:14:10: error[scene.unknown_field]: there is no field `selct` in `pin`
             r#"scene.toml:13:8: error[scene.duplicate_name]: two bodies are called `ball`, first in line 8
  13 | name = "ball"
     |        ^^^^^^
-  = hint: every body needs a name of its own; many alike are `copies`
+  = hint: every body needs a unique name; use `copies` for many identical bodies
 scene.toml:20:8: error[scene.unknown_name]: there is no body `bell`
  20 | body = "bell"
     |        ^^^^^^
@@ -331,7 +331,7 @@ scene.toml:20:8: error[scene.unknown_name]: there is no body `bell`
         ),
         (
             HEAD.replace("seconds = 1", "seconds = 1\nframe = 1e-18"),
-            r#"scene.toml:5:9: error[scene.range]: a step of 6.25e-20 s is lost in 1 s: time would stand still
+            r#"scene.toml:5:9: error[scene.range]: a step of 6.25e-20 s is lost in rounding at 1 s: time would not advance
  5 | frame = 1e-18
    |         ^^^^^
   = allowed: a step that changes the time"#,
@@ -363,7 +363,7 @@ scene.toml:20:8: error[scene.unknown_name]: there is no body `bell`
         ),
         (
             with("[[command]]\ndo = \"drag\"\nat = 2\nbody = \"ball\"\npath = [[2, 0, 0], [1, 0, 0]]\n"),
-            r#"scene.toml:16:20: error[scene.range]: t does not rise: 1 follows 2
+            r#"scene.toml:16:20: error[scene.range]: t does not increase: 1 follows 2
  16 | path = [[2, 0, 0], [1, 0, 0]]
     |                    ^^^^^^^^^
   = allowed: a path [[t, x, y], …] of finite numbers with rising t"#,
@@ -422,7 +422,7 @@ fn placements_beyond_all_measure_name_their_field() {
     for (field, parts) in [
         ("rotation = 1e200", ["`rotation` is 1e200", "angles within 1e6 radians", "whole turns of 6.283185307179586"]),
         ("rotation = -1e7", ["`rotation` is -1e7", "angles within 1e6 radians", "whole turns of 6.283185307179586"]),
-        ("scale = 1e-320", ["`scale` is 1e-320: products of lengths so small are zero", "from 1e-70", "in metres"]),
+        ("scale = 1e-320", ["`scale` is 1e-320: products of such small lengths are zero", "from 1e-70", "in metres"]),
     ] {
         let said = said(&with(field));
         assert!(said.contains(&format!(" | {field}")), "{said}");

@@ -78,25 +78,25 @@ fn clip_paths_that_cut_nothing_off_are_taken() {
     }
     let wound = "<path d=\"M20 20H80V80H20ZM25 25H75V75H25Z\"";
     for (name, inside, message) in [
-        ("half", format!("{}{clipped}", clip("<rect width=\"50\" height=\"100\"/>")), "cuts 50 % of what is drawn off"),
-        ("all", format!("{}{clipped}", clip("")), "cuts 100 % of what is drawn off"),
+        ("half", format!("{}{clipped}", clip("<rect width=\"50\" height=\"100\"/>")), "cuts off 50 % of what is drawn"),
+        ("all", format!("{}{clipped}", clip("")), "cuts off 100 % of what is drawn"),
         // A ring of corners inside a star, one of whose tips reaches into the ring.
         (
             "a notch",
             format!("{}{clipped}", clip("<path d=\"M0 0H100V100H0ZM45 45H55V55H45Z\" clip-rule=\"evenodd\"/>")),
-            "cuts 8 %",
+            "cuts off 8 %",
         ),
         (
             "a hole by the even-odd rule",
             format!("{}{clipped}", clip(&format!("{wound} clip-rule=\"evenodd\"/>"))),
-            "cuts 100 %",
+            "cuts off 100 %",
         ),
         (
             "in units of its box",
             format!(
                 "<clipPath id=\"c\" clipPathUnits=\"objectBoundingBox\"><rect width=\"0.5\" height=\"1\"/></clipPath>{clipped}"
             ),
-            "cuts 50 %",
+            "cuts off 50 %",
         ),
         ("a function", format!("{disc} clip-path=\"inset(0)\"/>"), "`clip-path` cannot be read"),
         ("no clip path", format!("<g id=\"c\"/>{clipped}"), "`clip-path` cannot be read"),
@@ -291,7 +291,7 @@ fn drawings_inside_a_drawing_have_their_place_and_scale() {
         (
             svg("viewBox=\"4 0 10 10\" preserveAspectRatio=\"xMinYMin\""),
             "svg.unsupported",
-            "<svg> has a frame that cuts 50 %",
+            "<svg> has a frame that cuts off 50 %",
         ),
         (svg("viewBox=\"0 0 0 10\""), "svg.syntax", "`viewBox` cannot be read"),
         (svg("viewBox=\"0 0 1 1\" preserveAspectRatio=\"middle\""), "svg.syntax", "`preserveAspectRatio`"),

@@ -196,7 +196,7 @@ fn texts_cut_off_within_their_last_number_are_refused_with_its_line() {
             let text = &whole[..whole.len() - 1 - number.len() + kept];
             let error = outcome(text).expect_err(&number[..kept]);
             assert_eq!(
-                error.message, "the file ends in the middle of its last line, maybe of a number",
+                error.message, "the file ends in the middle of its last line, possibly in a number",
                 "{name} {kept}"
             );
             assert_eq!(
@@ -205,7 +205,7 @@ fn texts_cut_off_within_their_last_number_are_refused_with_its_line() {
                 "{name}"
             );
             let hint = error.hint.unwrap_or_default();
-            assert!(hint.starts_with("end the last line with a line break"), "{hint}");
+            assert!(hint.starts_with("if the file is complete, end its last line with a line break"), "{hint}");
         }
     }
     // Marks show that a file is complete, and so does a comment after the last number.

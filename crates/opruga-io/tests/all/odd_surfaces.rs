@@ -223,7 +223,10 @@ fn what_tetrahedra_lose_of_the_volume_is_told_and_refused_where_it_is_much() {
             told += 1;
             let value: f64 = notice.about.value.as_deref().and_then(|v| v.parse().ok()).expect("a number");
             assert!(notice.about.code == "shape.lost_volume" && (value - kept).abs() < 1e-3, "{notice}");
-            assert!(notice.about.message.contains(" m³ (") && notice.about.message.ends_with(" m³ lost"), "{notice}");
+            assert!(
+                notice.about.message.contains(" m³ (") && notice.about.message.ends_with(" m³ are lost"),
+                "{notice}"
+            );
             let hint = notice.about.hint.as_deref().and_then(|hint| hint.split(['=', '`']).nth(2)).expect("a spacing");
             assert!(of(hint.trim().parse().expect("a number")).expect("a filling").1.is_empty(), "{hint}");
         }

@@ -172,7 +172,7 @@ fn wrong_overrides_are_explained() {
             "time.substeps=0",
             "--set time.substeps=0: error[scene.range]: `substeps` is 0\n  = allowed: a whole number from 1 to 1000000",
         ),
-        ("seed.x=1", "--set seed.x=1: error[set.path]: `seed` is a whole number, it has no fields"),
+        ("seed.x=1", "--set seed.x=1: error[set.path]: `seed` is a whole number, which has no fields"),
         ("world.gravity=[1", "--set world.gravity=[1: error[set.value]: the value is not TOML"),
         (
             "body.ball.mass=nan",
@@ -316,7 +316,7 @@ fn commands_that_never_act_are_told() {
     let set = |at: f64| format!("[[command]]\ndo = \"set\"\nat = {at}\npath = \"world.gravity\"\nvalue = [{at}, 0]\n");
     let remove = |at: f64| format!("[[command]]\ndo = \"remove\"\nat = {at}\nbody = \"ball\"\n");
     let drag = "[[command]]\ndo = \"drag\"\nat = 0.005\nbody = \"ball\"\npath = [[0.005, 0, 0], [0.012, 1, 0]]\n";
-    let between = "the command begins at 0.005 s and ends at 0.012 s, before a frame begins";
+    let between = "the command begins at 0.005 s and ends at 0.012 s, and no frame begins in between";
     let last = "and no frame of the run begins then or later";
     let cases = [
         (push(0.005, 0.012), Some((between.to_string(), 15))),
@@ -326,7 +326,7 @@ fn commands_that_never_act_are_told() {
         (push(0.016, 0.017), None),
         (
             set(0.005) + &set(0.012),
-            Some(("`world.gravity` is set at 0.005 s and again at 0.012 s, before a frame begins".into(), 14)),
+            Some(("`world.gravity` is set at 0.005 s and again at 0.012 s, and no frame begins in between".into(), 14)),
         ),
         (set(0.012) + &set(0.02), None),
         (remove(0.983_333), None),
@@ -360,7 +360,8 @@ fn rings_lie_apart_or_inside_one_of_the_other_sign() {
     let meet = |a: u32, b: u32| format!("the rings {a} and {b} cross or touch");
     let alike =
         |inner: u32, outer: u32| format!("ring {inner} lies inside ring {outer}, and their radii have the same sign");
-    let alone = |ring: u32| format!("ring {ring} is a hole, by its negative radius, and lies inside no other ring");
+    let alone =
+        |ring: u32| format!("ring {ring} is a hole, because its radius is negative, but it lies inside no other ring");
     let fine = String::new;
     for (centers, radii, vertices, expected) in [
         ("[[0, 0], [2.5, 0], [0, 0]]", "[1, 1, -0.4]", 40, fine()),

@@ -100,13 +100,13 @@ fn what_an_outline_loses_to_its_spacing_is_told_in_figures() {
         assert_eq!((*code, value.as_str()), ("shape.thinned", "1000"));
         assert!(message.starts_with("1000 points of the file become 63 nodes, 0.1 m apart: "), "{message}");
         // A polygon of 63 sides has π²·⅔/63² less than the circle: 0.17 %.
-        assert!(message.contains(" m² (0.1") && message.ends_with(" m² lost"), "{message}");
+        assert!(message.contains(" m² (0.1") && message.ends_with(" m² are lost"), "{message}");
         assert!((left / PI - 1.0).abs() < 2e-3);
     }
     // Five points are not many, but a triangle made from a circle has lost more than half of its area.
     let (left, told) = of("<circle r=\"1\"/>", 2.0);
     let [(code, value, message)] = &told[..] else { panic!("{told:?}") };
-    assert!(*code == "shape.thinned" && message.contains("3 nodes 2 m apart leave "), "{message}");
+    assert!(*code == "shape.thinned" && message.contains("3 nodes 2 m apart, "), "{message}");
     // The circle was approximated by lines within a fraction of the spacing, which lose a little, too.
     assert!((value.parse::<f64>().expect("a number") - left / PI).abs() < 5e-3, "{value}: {left}");
     assert!(of("<circle r=\"1\"/>", 0.3).1.is_empty(), "{:?}", of("<circle r=\"1\"/>", 0.3).1);

@@ -173,7 +173,7 @@ fn a_spacing_that_makes_too_many_nodes_is_refused_before_they_are_made() {
     assert_eq!((errors[0].code, &errors[0].path[..]), ("limit.nodes", "body.0.shape.spacing"));
     // With the suggested spacing there are as many nodes as allowed.
     let allowed = errors[0].allowed.as_deref().expect("what is allowed");
-    let least: f64 = allowed.split(' ').nth(1).and_then(|word| word.parse().ok()).expect("a number");
+    let least: f64 = allowed.split(' ').next().and_then(|word| word.parse().ok()).expect("a number");
     assert!((1.0 / (0.866 * least * least) / (1u64 << 25) as f64 - 1.0).abs() < 0.01, "{allowed}");
     // Curves are divided as finely as the spacing requires.
     let circles = "<circle r=\"1\"/>".repeat(1_000);
@@ -333,5 +333,5 @@ fn what_is_left_out_is_listed_up_to_fifty_and_counted() {
     let file = include_str!("../data/meshes/mujoco/cube_41_ascii_vol_gmshApp.msh").to_string() + &sections;
     let (_, notices) = space("kind = \"mesh\", file = \"a.msh\"", &[("a.msh", file.as_bytes())]).expect("a cube");
     assert_eq!(notices.len(), 50);
-    assert_eq!(notices[49].about.message, "31 more things are left out");
+    assert_eq!(notices[49].about.message, "31 more items are left out");
 }

@@ -9,7 +9,7 @@ messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
         /// A three-dimensional body.
-        "model.dimension" #[error("the published program is plane")] #[allowed("dimension = 2")]
+        "model.dimension" #[error("the published program is two-dimensional")] #[allowed("dimension = 2")]
         Dimension {},
         /// A body without facets.
         "model.open_surface" #[error("the body has no outline")]

@@ -5,12 +5,12 @@ use opruga_core::spec::{Allowed, Default, Field, Role, Spec};
 /// The parameters of `as_published`.
 pub const SPEC: Spec = Spec {
     kind: "as_published",
-    summary: "the published program of the thesis, slips included: springs, its \"volume\", doubled pressure, ramp, pointer",
+    summary: "the published program of the thesis, including its errors: springs, its \"volume\", doubled pressure, ramp, pointer",
     documentation: "One step of the program in D. Križaić's thesis (2012, 3.3 and 4), in its pixels with y downwards, for use with \
-`symplectic_euler`, a step of 0.001 s, `node_mass = 1` and world gravity 0 (the model brings its own). Its floor is an ordinary collider: a half-space \
-at y = 500 with normal [0, -1], restitution 0.5, friction 0. It is no potential: energy is not conserved, and its work is entered as work from outside. \
-An edge of no length makes its forces infinite or no number, as published. For the physics use `mass_spring` with `pressure`; the eleven differences \
-(E1 to E11) are told in the documentation of the module.",
+`symplectic_euler`, a step of 0.001 s, `node_mass = 1` and world gravity 0 (the model brings its own). Its floor is an ordinary collider: a \
+half-space at y = 500 with normal [0, -1], restitution 0.5, friction 0. It has no potential: energy is not conserved, and its work counts as work \
+from outside. An edge without length makes its forces infinite or not a number, as published. For the physics use `mass_spring` with `pressure`; the \
+documentation of the module describes the eleven differences (E1 to E11).",
     dimensions: &[2],
     fields: &[
         Field::new("stiffness", Allowed::NOT_NEGATIVE, "kg/s²", Default::Number(1600.0), "Spring constant KS."),
@@ -41,14 +41,14 @@ An edge of no length makes its forces infinite or no number, as published. For t
             Allowed::Path,
             "px",
             Default::Absent,
-            "Where the mouse is over time: `[[t, x, y], …]`, straight between its points; the button is held from the first to the last.",
+            "The position of the mouse over time: `[[t, x, y], …]`, linear between its points; the button is held from the first to the last.",
         ),
         Field::new(
             "held",
             Allowed::Curve,
             "s",
             Default::Absent,
-            "When the button is held instead: `[[press, release], …]`; at each press the vertex nearest to the pointer is taken.",
+            "When the button is held instead: `[[press, release], …]`; each press takes the vertex nearest to the pointer.",
         ),
     ],
     roles: &[Role::Published],

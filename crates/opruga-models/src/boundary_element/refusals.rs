@@ -11,7 +11,7 @@ terms! {
     pub enum NoSolution = "part.no_solution" {
         Singular = "G is singular",
         NotFinite = "the stiffness is not finite",
-        NegativeOfMany = "the stiffness has negative eigenvalues, and more than 1000 vertices",
+        NegativeOfMany = "the stiffness has negative eigenvalues and more than 1000 vertices",
         ManyNegative = "more than a twentieth of the stiffness has negative eigenvalues",
     }
 }
@@ -39,22 +39,22 @@ messages! {
         /// Facets with opposite orientations.
         "model.orientation"
         #[error("{problem}")]
-        #[allowed("facets that all face the same way")]
+        #[allowed("facets that all have the same orientation")]
         Orientation { problem: MeshError },
         /// Facets that intersect.
         "model.crossing_surface"
-        #[error("{count} pairs of facets cross or touch, the first of them facets {first} and {second}")]
+        #[error("{count} pairs of facets cross or touch; the first are facets {first} and {second}")]
         #[allowed("a boundary that does not meet itself")]
         Crossing { count: usize, first: u32, second: u32 },
         /// A facet without a normal.
         "model.degenerate_facet"
-        #[error("facet {facet} has a measure of {} with an edge of {} m", number(*measure), number(*edge))]
+        #[error("facet {facet} is degenerate: its measure is {} and an edge of it has {} m", number(*measure), number(*edge))]
         #[allowed("more than 1e-10 of the edge (in space, of its square)")]
         Degenerate { facet: usize, measure: f64, edge: f64 },
         /// Nodes that are not on the surface.
         "model.inner_nodes"
-        #[error("{count} of {nodes} nodes are not on the boundary, the first of them node {first}")]
-        #[allowed("nodes of the boundary alone, since the method knows no others")]
+        #[error("{count} of {nodes} nodes are not on the boundary; the first is node {first}")]
+        #[allowed("only nodes of the boundary, because the method has no others")]
         #[hint("the surface without its filling, such as `polygon` or `svg` in the plane and `box`, `icosphere` or `surface` in space")]
         InnerNodes { count: usize, nodes: usize, first: usize },
         /// Several solids.
@@ -65,28 +65,28 @@ messages! {
         SeveralSolids { solids: usize },
         /// A boundary inside another one, while the solid is the exterior.
         "model.nested_exterior"
-        #[error("`exterior` is true, and facet {facet} belongs to a boundary inside another one")] #[parameters("exterior")]
+        #[error("`exterior` is true, but facet {facet} belongs to a boundary inside another one")] #[parameters("exterior")]
         #[allowed("cavities beside one another")]
         NestedExterior { facet: u32 },
         /// More vertices than dense matrices allow.
         "limit.memory"
-        #[error("the boundary has {nodes} vertices, whose dense matrices take about {} bytes while they are made", number(*bytes))]
+        #[error("the boundary has {nodes} vertices, whose dense matrices take about {} bytes during their assembly", number(*bytes))]
         #[allowed("at most {most} vertices")]
         #[hint("a coarser surface (`spacing`), or `fem` on its filling")]
         TooMany { nodes: usize, bytes: f64, most: usize },
         /// The page has no dense systems.
         "model.not_on_the_page"
-        #[error("the page does not compute boundary elements")]
+        #[error("the web page does not compute boundary elements")]
         #[hint("the studio and the command line do")]
         Page {},
         /// The preparation was stopped on request.
         "run.broken_off"
-        #[error("the preparation was broken off")]
+        #[error("the preparation was interrupted")]
         Ended {},
         /// A singular system.
         "model.singular"
         #[error("the equations of the boundary have no solution: {reason}")]
-        #[hint("facets of more even size")]
+        #[hint("facets of more uniform size")]
         Singular { reason: NoSolution },
     }
 }
@@ -97,7 +97,7 @@ messages! {
     pub enum TurnedFacets {
         /// Facets of cavities.
         "mesh.turned"
-        #[error("facets were turned, so that the solid is behind each: those of a boundary inside another one bound a cavity")]
+        #[error("facets were flipped so that the solid is behind each of them; a boundary inside another one bounds a cavity")]
         Turned {},
     }
 }

@@ -31,7 +31,7 @@ messages! {
         NoGroupsOfCells { name: String },
         /// Thermal growth to zero or below.
         "model.temperature"
-        #[error("cell {cell} would be {growth} times as long by `thermal_expansion` = {expansion} 1/K from {reference} K to {now} K")] #[parameters("thermal_expansion")]
+        #[error("cell {cell} would become {growth} times as long with `thermal_expansion` = {expansion} 1/K from {reference} K to {now} K")] #[parameters("thermal_expansion")]
         #[allowed("more than 0")] #[hint("steel has 1.2e-5 1/K, rubber 2e-4 1/K")]
         NoGrowth { cell: u32, growth: f64, expansion: f64, reference: f64, now: f64 },
         /// Linear cells near incompressibility.
@@ -39,7 +39,7 @@ messages! {
         #[hint("`order = 2` for the body, or `locking = \"nodal_volume\"`")]
         LinearCellsLock { ratio: f64, cells: Simplices, most: f64 },
         /// Nodal volumes together with thermal expansion.
-        "model.locking" #[error("`locking` is \"nodal_volume\", and the body expands by heat, which the volumes of nodes do not know")] #[value("\"nodal_volume\"")] #[parameters("locking")]
+        "model.locking" #[error("`locking` is \"nodal_volume\", which does not support thermal expansion, but the body has it")] #[value("\"nodal_volume\"")] #[parameters("locking")]
         #[allowed("\"refuse\" or \"accept\"")] #[hint("`order = 2` for the body, or quadrilaterals and hexahedra, do not lock either")]
         NodalVolumeAndHeat {},
         /// Nodal volumes in plane stress.
@@ -47,20 +47,20 @@ messages! {
         #[allowed("\"refuse\" or \"accept\"")] #[hint("leave `locking` out")]
         NodalVolumeInPlaneStress {},
         /// Nodal volumes for cells that do not lock.
-        "model.locking" #[error("`locking` is \"nodal_volume\", but the cells are no linear triangles or tetrahedra, and do not lock")] #[value("\"nodal_volume\"")] #[parameters("locking")]
+        /// Values of cells that the mesh does not have.
+        /// A mesh without values of cells.
+        "model.locking" #[error("`locking` is \"nodal_volume\", but the cells are not linear triangles or tetrahedra and do not lock")] #[value("\"nodal_volume\"")] #[parameters("locking")]
         #[allowed("\"refuse\" or \"accept\"")] #[hint("leave `locking` out")]
         NodalVolumeOfOthers {},
-        /// Values of cells that the mesh does not have.
-        "model.no_values" #[error("`{field}` is \"{name}\", and the cells of the mesh have no such numbers")] #[value("\"{name}\"")] #[parameters(field)] #[allowed("{known}")]
+        "model.no_values" #[error("`{field}` is \"{name}\", but the cells of the mesh have no such numbers")] #[value("\"{name}\"")] #[parameters(field)] #[allowed("{known}")]
         #[hint("`{instead}` gives one number for all cells")]
         NoValues { field: &'static str, name: String, known: String, instead: &'static str },
-        /// A mesh without values of cells.
-        "model.no_values" #[error("`{field}` is \"{name}\", and the cells of the mesh have no such numbers")] #[value("\"{name}\"")] #[parameters(field)]
-        #[allowed("none, the mesh has no numbers of cells")] #[hint("`{instead}` gives one number for all cells")]
+        "model.no_values" #[error("`{field}` is \"{name}\", but the cells of the mesh have no such numbers")] #[value("\"{name}\"")] #[parameters(field)]
+        #[allowed("none: the mesh has no numbers for its cells")] #[hint("`{instead}` gives one number for all cells")]
         NoValuesAtAll { field: &'static str, name: String, instead: &'static str },
         /// A value of a cell that is out of range.
         "model.cell_value" #[error("`{field}` of cell {cell} is {value}")] #[value("{value}")] #[parameters(field)] #[allowed("{allowed}")]
-        #[hint("the numbers are in the file of the mesh; `{instead}` gives one for all cells")]
+        #[hint("the numbers are in the mesh file; `{instead}` gives one number for all cells")]
         CellValue { field: &'static str, cell: usize, value: String, allowed: AllowedValues, instead: &'static str },
         /// A cell that is inverted at rest.
         "model.inverted_cell" #[error("cell {cell} with the nodes {nodes} is inverted at rest: det ∂X/∂ξ = {determinant}")]
@@ -75,7 +75,7 @@ messages! {
         Measure { problem: MeshError },
         /// No thickness for which the stress across the plane is zero.
         "run.no_thickness"
-        #[error("cell {cell} has no positive thickness without stress across the plane at t = {} s: it is stretched or inverted beyond what its material can follow in plane stress", number(*time))]
+        #[error("cell {cell} has no positive thickness with zero stress across the plane at t = {} s: it is stretched or inverted beyond what its material can follow in plane stress", number(*time))]
         NoThicknessLeft { cell: u32, time: f64 },
     }
 }

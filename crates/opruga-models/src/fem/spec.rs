@@ -7,17 +7,17 @@ use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
 /// The parameters of `fem`.
 pub const SPEC: Spec = Spec {
     kind: "fem",
-    summary: "an elastic solid by finite elements, of a choice of materials",
-    documentation: "Energy U = Σ V ψ(F) over the points of the cells, F = ∂x/∂X; force −∂U/∂x. Triangles and tetrahedra of first and second order, quadrilaterals and \
-hexahedra. E and ν mean what they say at small strain in every material; μ = E/2(1 + ν), λ = Eν/((1 + ν)(1 − 2ν)). \
-Quadratic triangles and tetrahedra (`order = 2` of the body, the default) neither lock in bending nor near incompressibility. \
-Quadrilaterals and hexahedra bend and twist with the strains of assumed stresses: exactly where they are rectangular, up to ν = 0.4999. \
-Linear triangles and tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` says otherwise: \
-`nodal_volume` is the remedy. \
-In the plane the body is a slice of a long one (plane strain) or a plate that thins freely (plane stress), as deep as the body's `thickness`. \
-Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's strain: none under rigid motion. \
-Heat: with `thermal_expansion` a body that is free grows by g = 1 + α (T − T₀) and has no stress, U = Σ V g³ ψ(F/g) (`linear`: ψ(ε − αΔT 1)); in plane strain it grows \
-by 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature while the scene runs. Equations, sources and measurements: docs/finite-elements.md.",
+    summary: "an elastic solid by finite elements, with a choice of materials",
+    documentation: "Energy U = Σ V ψ(F) over the points of the cells, F = ∂x/∂X; force −∂U/∂x. Triangles and tetrahedra of first and second order, \
+quadrilaterals and hexahedra. In every material, E and ν are Young's modulus and Poisson's ratio at small strain; μ = E/2(1 + ν), λ = Eν/((1 + ν)(1 \
+− 2ν)). Quadratic triangles and tetrahedra (`order = 2` of the body, the default) neither lock in bending nor near incompressibility. Quadrilaterals \
+and hexahedra bend and twist with the strains of assumed stresses: exactly if they are rectangular, up to ν = 0.4999. Linear triangles and \
+tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` says otherwise: `nodal_volume` is the remedy. In the \
+plane the body is a slice of a long one (plane strain) or a plate that thins freely (plane stress), as deep as the body's `thickness`. Damping is \
+that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's strain: none under rigid motion. Heat: with `thermal_expansion` an \
+unconstrained body expands by the factor g = 1 + α (T − T₀) and has no stress, U = Σ V g³ ψ(F/g) (`linear`: ψ(ε − αΔT 1)); in plane strain it \
+expands by the factor 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature while the scene runs. Equations, sources and measurements: \
+docs/finite-elements.md.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -39,7 +39,7 @@ by 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature whil
             Allowed::Text,
             "",
             Default::OneOf(&YOUNGS_MODULUS),
-            "The name of numbers of the mesh file, one per cell, that are Young's modulus [Pa].",
+            "The name of the numbers in the mesh file, one per cell, that are Young's modulus [Pa].",
         ),
         Field::new(
             "poissons_ratio",
@@ -54,7 +54,7 @@ by 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature whil
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of numbers of the mesh file, one per cell, that are Poisson's ratio.",
+            "The name of the numbers in the mesh file, one per cell, that are Poisson's ratio.",
         ),
         Field::new(
             "damping",
@@ -69,14 +69,15 @@ by 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature whil
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of numbers of the mesh file, one per cell, that are the retardation time [s].",
+            "The name of the numbers in the mesh file, one per cell, that are the retardation time [s].",
         ),
         Field::new(
             "thermal_expansion",
             Allowed::ANY,
             "1/K",
             Default::Absent,
-            "Coefficient α of linear thermal expansion: what is free grows by 1 + α (T − T₀) in every direction; 0 where the scene is silent.",
+            "Coefficient α of linear thermal expansion. An unconstrained body expands by the factor 1 + α (T − T₀) in every direction. The default \
+is 0.",
         )
         .applies(&[Condition::NotGiven("thermal_expansion_of_cells")]),
         Field::new(
@@ -84,14 +85,14 @@ by 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature whil
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of numbers of the mesh file, one per cell, that are the coefficient of thermal expansion [1/K].",
+            "The name of the numbers in the mesh file, one per cell, that are the coefficient of thermal expansion [1/K].",
         ),
         Field::new(
             "temperature",
             Allowed::NOT_NEGATIVE,
             "K",
             Default::Absent,
-            "Temperature T; that of rest where the scene is silent.",
+            "Temperature T; the default is the reference temperature.",
         )
         .applies(&[Condition::NotGiven("temperature_of_cells"), Condition::GivenOneOf(&EXPANSION)]),
         Field::new(
@@ -99,7 +100,7 @@ by 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature whil
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of numbers of the mesh file, one per cell, that are the temperature [K].",
+            "The name of the numbers in the mesh file, one per cell, that are the temperature [K].",
         )
         .applies(&[Condition::GivenOneOf(&EXPANSION)]),
         Field::new(
@@ -115,7 +116,7 @@ by 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature whil
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of numbers of the mesh file, one per cell, that are the temperature of rest [K].",
+            "The name of the numbers in the mesh file, one per cell, that are the temperature of rest [K].",
         )
         .applies(&[Condition::GivenOneOf(&EXPANSION)]),
         Field::new(
@@ -123,15 +124,16 @@ by 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature whil
             Allowed::Choice(&["lumped", "consistent"]),
             "",
             Default::Text("lumped"),
-            "Whether every node has a mass of its own, or the mass is that of the shape functions, ρ∫N_i N_j, which couples the nodes of a \
-cell: waves are then too fast where lumped masses make them too slow. For implicit integrators and natural frequencies.",
+            "With \"lumped\", every node has a mass of its own. With \"consistent\", the mass matrix is that of the shape functions, ρ∫N_i N_j, \
+which couples the nodes of a cell; waves are then too fast, while lumped masses make them too slow. Consistent masses are for implicit integrators \
+and natural frequencies.",
         ),
         Field::new(
             "plane",
             Allowed::Choice(&["strain", "stress"]),
             "",
             Default::Text("strain"),
-            "Whether nothing moves across the plane, or no stress acts across it.",
+            "With \"strain\", nothing moves across the plane; with \"stress\", no stress acts across it.",
         )
         .applies(&[Condition::Dimension(2)]),
         Field::new(
@@ -147,15 +149,16 @@ cell: waves are then too fast where lumped masses make them too slow. For implic
             Allowed::Text,
             "",
             Default::Absent,
-            "The group of cells of the mesh that are of this material; all cells where the scene is silent.",
+            "The group of cells of the mesh that have this material; the default is all cells.",
         ),
         Field::new(
             "locking",
             Allowed::Choice(&["refuse", "accept", "nodal_volume"]),
             "",
             Default::Text("refuse"),
-            "What holds for linear triangles and tetrahedra above ν = 0.45: they are refused, or accepted although they lock, or resist \
-the volumes of nodes instead of those of cells, which does not lock (for them alone, and not in plane stress).",
+            "What happens with linear triangles and tetrahedra above ν = 0.45: \"refuse\" is an error, \"accept\" accepts them although they lock, \
+and with \"nodal_volume\" they resist changes of the volumes of nodes instead of those of cells, which does not lock (only for these cells, and not \
+in plane stress).",
         ),
     ], roles: &[Role::OwnsCells], };
 

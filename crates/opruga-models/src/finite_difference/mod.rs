@@ -93,7 +93,7 @@ opruga_math::messages! {
         TorsionOfSurface {},
         /// Torsion of a curve without curvature.
         "model.no_torsion"
-        #[error("the curve is straight at node {node}, where its torsion has no value")]
+        #[error("the curve is straight at node {node}, where its torsion is undefined")]
         #[hint("leave `torsion` out, or bend the rest shape")]
         NoFrame { node: u32 },
         /// An edge has no length at rest.
@@ -110,7 +110,7 @@ opruga_math::messages! {
     pub enum FiniteDifferenceWarning {
         /// Edges are crushed or folded.
         "finite_difference.folded"
-        #[error("edges of a curve or a surface are shorter than 0.58 of their length at rest, where their law gives way, or fold back on their neighbours, counted in the last state: they may stay so")]
+        #[error("edges of a curve or a surface are shorter than 0.58 of their length at rest, where their law softens, or are folded back on their neighbours; they may stay so; counted in the last state")]
         #[hint("lower loads, or shorter steps before it folds; springs (`mass_spring`) resist any compression")]
         Folded {},
     }

@@ -22,14 +22,14 @@ messages! {
         Quadratic { count: usize },
         /// A cell that has no volume or is inverted.
         "model.inverted_cell"
-        #[error("cell {cell} has no volume or is turned inside out at rest: det ∂X/∂ξ = {} of a cell {} m long", number(*determinant), number(*size))]
+        #[error("cell {cell} has no volume or is inverted at rest: det ∂X/∂ξ = {} for a cell {} m long", number(*determinant), number(*size))]
         #[allowed("more than 1e-12 of its size")]
         InvertedCell { cell: usize, determinant: f64, size: f64 },
         /// Linear cells near incompressibility.
         "model.locking"
         #[error("`poissons_ratio` is {} for triangles or tetrahedra, which lock near incompressibility", number(*ratio))] #[value("{}", number(*ratio))] #[parameters("poissons_ratio")]
         #[allowed("at most {}", number(*most))]
-        #[hint("`locking = \"accept\"` takes them as they are, and `fem` has `order = 2` and `locking = \"nodal_volume\"`")]
+        #[hint("`locking = \"accept\"` accepts them; `fem` also has `order = 2` and `locking = \"nodal_volume\"`")]
         Locks { ratio: f64, most: f64 },
         /// An unknown material.
         "scene.unknown_name"
@@ -37,11 +37,11 @@ messages! {
         NoMaterial { name: String },
         /// The reason why quadrilaterals and hexahedra have no potential, as a part of a refusal.
         "part.no_potential"
-        #[error("forces of quadrilaterals and hexahedra, with F at the middle of each dual face, are the gradient of no energy; triangles and tetrahedra have one (`simplices = true`, `order = 1`)")]
+        #[error("forces of quadrilaterals and hexahedra, with F at the middle of each dual face, are not the gradient of an energy; triangles and tetrahedra have one (`simplices = true`, `order = 1`)")]
         NoPotentialOfFaces {},
         /// No thickness for which the stress across the plane is zero.
         "run.no_thickness"
-        #[error("cell {cell} has no positive thickness without stress across the plane at t = {} s: it is stretched or turned inside out beyond what its material can follow in plane stress", number(*time))]
+        #[error("cell {cell} has no positive thickness with zero stress across the plane at t = {} s: it is stretched or inverted beyond what its material can follow in plane stress", number(*time))]
         NoThickness { cell: usize, time: f64 },
     }
 }

@@ -7,13 +7,12 @@ use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
 pub const SPEC: Spec = Spec {
     kind: "finite_volume",
     summary: "an elastic solid by finite volumes: tractions on the faces of the dual cell of each node",
-    documentation: "The force on a node is the traction P N of the first Piola–Kirchhoff stress, summed over the faces of its dual cell: \
-those between the middles of edges, sides and cells. On triangles and tetrahedra F is constant, and forces, energy and Hessian are those of linear finite elements \
-(`fem` with `order = 1`). On quadrilaterals and hexahedra F is taken at the middle of each dual face; forces are then no gradient, their tangent is not symmetric, \
-and explicit integrators and `equilibrium` alone step them. The ledger has no elastic energy of such bodies. \
-Materials, E and ν, plane strain and plane stress mean what they mean in `fem`. \
-Limits: triangles and tetrahedra lock in bending and above ν = 0.45, where they are refused unless `locking` says otherwise; there is no damping of its own (`world.drag`). \
-Equations and measurements: docs/finite-volumes.md. \
+    documentation: "The force on a node is the traction P N of the first Piola–Kirchhoff stress, summed over the faces of its dual cell: those \
+between the middles of edges, sides and cells. On triangles and tetrahedra F is constant, and forces, energy and Hessian are those of linear finite \
+elements (`fem` with `order = 1`). On quadrilaterals and hexahedra F is taken at the middle of each dual face; forces are then not a gradient, their \
+tangent is not symmetric, and only explicit integrators and `equilibrium` can step them. The ledger has no elastic energy of such bodies. Materials, \
+E and ν, plane strain and plane stress have the same meaning as in `fem`. Limits: triangles and tetrahedra lock in bending and above ν = 0.45, where \
+they are refused unless `locking` says otherwise; there is no damping of its own (`world.drag`). Equations and measurements: docs/finite-volumes.md. \
 Source: Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003, Finite volume methods for the simulation of skeletal muscle.",
     dimensions: &[2, 3],
     fields: &[
@@ -37,7 +36,7 @@ Source: Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003, Finite volume methods for the
             Allowed::Choice(&["strain", "stress"]),
             "",
             Default::Text("strain"),
-            "Whether nothing moves across the plane, or no stress acts across it.",
+            "With \"strain\", nothing moves across the plane; with \"stress\", no stress acts across it.",
         )
         .applies(&[Condition::Dimension(2)]),
         Field::new(
@@ -53,7 +52,7 @@ Source: Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003, Finite volume methods for the
             Allowed::Choice(&["refuse", "accept"]),
             "",
             Default::Text("refuse"),
-            "What holds for triangles and tetrahedra above ν = 0.45: they are refused, or accepted although they lock.",
+            "What happens with triangles and tetrahedra above ν = 0.45: \"refuse\" is an error, \"accept\" accepts them although they lock.",
         ),
     ],
     roles: &[Role::OwnsCells],

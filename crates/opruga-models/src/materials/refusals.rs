@@ -20,17 +20,17 @@ messages! {
         TooLarge { material: String, determinant: f64 },
         /// A deformation for which plane stress has no thickness.
         "model.no_value"
-        #[error("`{material}` has no value at this deformation gradient, whose determinant is {determinant}: no positive thickness is without stress across the plane")]
+        #[error("`{material}` has no value at this deformation gradient, whose determinant is {determinant}: no positive thickness gives zero stress across the plane")]
         #[allowed("det F > 0, and stretches that the law can follow")]
         NoThicknessAcross { material: String, determinant: f64 },
         /// A Poisson's ratio that allows no second constant of Mooney–Rivlin.
         "model.not_convex"
-        #[error("`poissons_ratio` is {ratio}, with which `mooney_rivlin` is not convex, whatever the `mooney_share`")] #[value("{ratio}")] #[parameters("poissons_ratio", "mooney_share")]
-        #[allowed("at least {least}, so that {share} <= ν/(1 − 2ν)")] #[hint("a smaller `mooney_share` allows a smaller one, down to 0")]
+        #[error("`poissons_ratio` is {ratio}, for which `mooney_rivlin` is not convex with any `mooney_share`")] #[value("{ratio}")] #[parameters("poissons_ratio", "mooney_share")]
+        #[allowed("at least {least}, so that {share} <= ν/(1 − 2ν)")] #[hint("a smaller `mooney_share` allows a smaller `poissons_ratio`, down to 0")]
         NeverConvex { ratio: f64, least: String, share: String },
         /// A second constant of Mooney–Rivlin that is too large.
-        "model.not_convex" #[error("`mooney_share` is {share} with `poissons_ratio` = {ratio}, and not convex")] #[value("{share}")] #[parameters("mooney_share", "poissons_ratio")]
-        #[allowed("at most {most} = ν/(1 − 2ν)")] #[hint("a larger `poissons_ratio` allows a larger one")]
+        "model.not_convex" #[error("`mooney_share` is {share}, for which the law is not convex with `poissons_ratio` = {ratio}")] #[value("{share}")] #[parameters("mooney_share", "poissons_ratio")]
+        #[allowed("at most {most} = ν/(1 − 2ν)")] #[hint("a larger `poissons_ratio` allows a larger `mooney_share`")]
         NotConvex { share: f64, ratio: f64, most: String },
     }
 }

@@ -9,19 +9,20 @@ const AMOUNT: &[&str] = &["nRT", "pressure"];
 pub const SPEC: Spec = Spec {
     kind: "pressure",
     summary: "ideal gas inside closed boundaries: isothermal or adiabatic, with ambient pressure, ramp, leak and heating",
-    documentation: "P V = nRT (isothermal, U = −nRT ln(V/V₀) + P_a V) or P V^γ = P₀ V₀^γ (adiabatic, \
-U = P₀ V₀^γ V^{1−γ}/(γ−1) + P_a V); force (P − P_a) ∂V/∂x on every node, half of an edge's in 2D and a third of a triangle's in 3D. \
-V is the enclosed area times thickness in 2D, the enclosed volume in 3D, by the divergence theorem, and sides of quadratic cells and of boxes bend in it as the cells do, so that an even pressure leaves an even stress; holes count negative by their orientation, \
-and every closed boundary that lies in no other one is a chamber of its own with the same parameters. In a solid body the gas belongs \
-into its cavities: `inside = \"cavities\"`, each a chamber of its own. \
-`diagnostics.csv` has the columns `NAME.volume` [m³], `NAME.pressure` [Pa] and `NAME.nRT` [J]: volume and nRT (P V also of an adiabatic gas, whose temperature changes) of all chambers of the body NAME, \
-and the mean of their pressures weighed by volume. A body of several chambers has besides `NAME.chamber1.volume`, `NAME.chamber1.pressure`, \
-`NAME.chamber1.nRT`, `NAME.chamber2.volume` and so on, in the order of the boundaries in the shape, that of a chamber being the first of its facets. \
-Below V_s = max(`smallest_volume` V₀, the volume of `largest_pressure`) the pressure stays P(V_s), through zero and for a body turned inside out: \
-U remains a function of V with continuous slope, so no energy is made; the passage is as short as V_s is small, and a step that does \
-not resolve it misses some per cent of the energy, which the ledger shows. A far smaller V_s than the default wants finer steps: one that \
-jumps from a thousandth of the volume to its other side feels a thousandfold push, and gains each time. Without ambient pressure U has no minimum in V. \
-Source: Matyka and Ollila 2003; thesis 3.3.",
+    documentation: "P V = nRT (isothermal, U = −nRT ln(V/V₀) + P_a V) or P V^γ = P₀ V₀^γ (adiabatic, U = P₀ V₀^γ V^{1−γ}/(γ−1) + P_a V); force (P − \
+P_a) ∂V/∂x on every node, which is half of that on an edge in 2D and a third of that on a triangle in 3D. V is the enclosed area times thickness in \
+2D and the enclosed volume in 3D, by the divergence theorem. The sides of quadratic cells and of boxes are curved in V as they are in the cells, so \
+that a uniform pressure causes a uniform stress. Holes count as negative because of their orientation. Every closed boundary that lies in no other \
+one is a chamber of its own with the same parameters. In a solid body the gas belongs in the cavities: with `inside = \"cavities\"`, each cavity is \
+a chamber of its own. `diagnostics.csv` has the columns `NAME.volume` [m³], `NAME.pressure` [Pa] and `NAME.nRT` [J]: volume and nRT (P V also for an \
+adiabatic gas, whose temperature changes) of all chambers of the body NAME, and the mean of their pressures weighted by volume. A body with several \
+chambers also has `NAME.chamber1.volume`, `NAME.chamber1.pressure`, `NAME.chamber1.nRT`, `NAME.chamber2.volume` and so on. Chambers are in the order \
+of the boundaries in the shape, each at the place of its first facet. Below V_s = max(`smallest_volume` V₀, the volume of `largest_pressure`) the \
+pressure keeps the value P(V_s), also when the volume passes zero and the body is inverted. U is then still a function of V with a continuous slope, \
+so no energy is created. The smaller V_s is, the shorter is this passage. A step that does not resolve it loses a few per cent of the energy; the \
+ledger shows the loss. If V_s is much smaller than the default, use shorter steps: a step that jumps from a thousandth of the volume to the other \
+side of zero feels a force a thousand times as large, and each such jump adds energy. Without ambient pressure U has no minimum in V. Source: Matyka \
+and Ollila 2003; thesis 3.3.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -29,8 +30,8 @@ Source: Matyka and Ollila 2003; thesis 3.3.",
             Allowed::NOT_NEGATIVE,
             "J",
             Default::OneOf(AMOUNT),
-            "Amount of gas times temperature; exactly one of `nRT` and `pressure`. A command that sets either fills the chamber anew, \
-             whatever had leaked.",
+            "Amount of gas times temperature; exactly one of `nRT` and `pressure`. A command that sets either one refills the chamber, whatever has \
+leaked.",
         )
         .starts_at(20.0),
         Field::new(
@@ -46,15 +47,15 @@ Source: Matyka and Ollila 2003; thesis 3.3.",
             Allowed::NOT_NEGATIVE,
             "Pa",
             Default::Number(0.0),
-            "Pressure P_a outside; equal to `pressure` it makes the rest shape an equilibrium.",
+            "Pressure P_a outside; if it equals `pressure`, the rest shape is an equilibrium.",
         ),
         Field::new(
             "inside",
             Allowed::Choice(&["boundary", "cavities"]),
             "",
             Default::Text("boundary"),
-            "Where the gas is: within the boundary, less its holes, as in a balloon; or within the holes of the boundary, as in the \
-             cavity of a solid.",
+            "Where the gas is: inside the boundary but outside its holes, as in a balloon; or inside the holes of the boundary, as in the cavity of \
+a solid.",
         ),
         Field::new(
             "process",
@@ -83,23 +84,22 @@ Source: Matyka and Ollila 2003; thesis 3.3.",
             Allowed::NOT_NEGATIVE,
             "1/s",
             Default::Number(0.0),
-            "Rate λ of loss: d(nRT)/dt = −λ (1 − P_a/P) nRT, which is −λ (P − P_a) V, so that in a volume that stays the same the \
-             pressure nears that outside by e^(−λt); air flows in where it is lower than that. What has leaked stays lost when the \
-             rate changes.",
+            "Rate λ of loss: d(nRT)/dt = −λ (1 − P_a/P) nRT, which is −λ (P − P_a) V. At constant volume, the pressure approaches that outside as \
+e^(−λt); if it is lower than that outside, air flows in. Gas that has leaked stays lost when the rate changes.",
         ),
         Field::new(
             "temperature",
             Allowed::CurveNotNegative,
             "",
             Default::Absent,
-            "T/T₀ over time: `[[t, factor], …]`, straight between its points.",
+            "T/T₀ over time: `[[t, factor], …]`, linear between its points.",
         ),
         Field::new(
             "largest_pressure",
             Allowed::POSITIVE,
             "Pa",
             Default::Absent,
-            "Cap on the pressure inside; every substep in which it acts is counted.",
+            "Upper limit of the pressure inside; every substep in which it acts is counted.",
         ),
         Field::new(
             "smallest_volume",

@@ -8,16 +8,16 @@ const PUBLISHED: Condition = Condition::Word("scheme", &["as_published"]);
 /// The parameters of `shape_matching`.
 pub const SPEC: Spec = Spec {
     kind: "shape_matching",
-    summary: "clusters of nodes that are drawn to their rest shape, rotated or fitted to where the nodes are",
-    documentation: "Energy U = (1 − β) U_R + β U_A with U = ½ κ Σ m |x − g|² over the nodes of every cluster: U_R is the least over all rotations and \
-translations of the rest shape, U_A the least over all linear or quadratic maps of it. The force is the gradient, the Hessian is exact. \
-κ is a stiffness per mass: what no map of the cluster can follow swings with √κ, strains that a linear map can follow with √((1 − β)κ), rotation and \
-translation not at all, for every step and every number of nodes. Without `region` and `groups` the whole body is one cluster. \
-Clusters overlap; the mass of a node is shared evenly among its clusters. It needs no edges and no cells; directions in which a cluster has no extent stay free. \
-`scheme = \"as_published\"` is the goal of the paper with the fitted map divided by the D-th root of its determinant: it has no potential, so explicit \
-integrators alone step it; with `goal_step` its stiffness α/h² depends on the step of the scene. \
-Limits: κ is no Young's modulus, and stiffness does not grow where cells are small. Equations and measurements: docs/shape-matching.md. \
-Source: Müller, Heidelberger, Teschner, Gross 2005, Meshless deformations based on shape matching.",
+    summary: "clusters of nodes that are pulled to their rest shape, rotated or fitted to the positions of the nodes",
+    documentation: "Energy U = (1 − β) U_R + β U_A with U = ½ κ Σ m |x − g|² over the nodes of every cluster: U_R is the least over all rotations \
+and translations of the rest shape, U_A the least over all linear or quadratic maps of it. The force is the gradient, the Hessian is exact. κ is a \
+stiffness per mass. Motions that no map of the cluster can follow swing with √κ, strains that a linear map can follow swing with √((1 − β)κ), and \
+rotation and translation do not swing, for every step and every number of nodes. Without `region` and `groups` the whole body is one cluster. \
+Clusters overlap; the mass of a node is shared evenly among its clusters. It needs no edges and no cells; directions in which a cluster has no \
+extent stay free. `scheme = \"as_published\"` is the goal of the paper with the fitted map divided by the D-th root of its determinant: it has no \
+potential, so only explicit integrators can step it; with `goal_step` its stiffness α/h² depends on the step of the scene. Limits: κ is not Young's \
+modulus, and stiffness does not increase with smaller cells. Equations and measurements: docs/shape-matching.md. Source: Müller, Heidelberger, \
+Teschner, Gross 2005, Meshless deformations based on shape matching.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -33,7 +33,8 @@ Source: Müller, Heidelberger, Teschner, Gross 2005, Meshless deformations based
             Allowed::Number { least: Bound::Open(0.0), greatest: Bound::Closed(1.0) },
             "",
             Default::OneOf(STIFFNESS),
-            "The part α of the way to its goal that a node goes in a substep h, so κ = α/h²: it depends on the step; with `scheme = \"as_published\"` alone.",
+            "The fraction α of the distance to its goal that a node moves in a substep h, so κ = α/h² depends on the step. Only with `scheme = \
+\"as_published\"`.",
         )
         .starts_at(0.05)
         .applies(&[PUBLISHED]),
@@ -42,14 +43,14 @@ Source: Müller, Heidelberger, Teschner, Gross 2005, Meshless deformations based
             Allowed::FRACTION,
             "",
             Default::Number(0.0),
-            "Share β of the energy of the fitted map: 0 is a body that keeps its shape, 1 one that any fitted map may strain.",
+            "Share β of the energy of the fitted map: with 0 the body keeps its shape, with 1 any fitted map may strain it.",
         ),
         Field::new(
             "fit",
             Allowed::Choice(&["linear", "quadratic"]),
             "",
             Default::Text("linear"),
-            "Whether the fitted map stretches and shears, or bends and twists too.",
+            "With \"linear\", the fitted map stretches and shears; with \"quadratic\", it also bends and twists.",
         )
         .applies(&[Condition::NotZero("fit_share")]),
         Field::new(
@@ -57,7 +58,7 @@ Source: Müller, Heidelberger, Teschner, Gross 2005, Meshless deformations based
             Allowed::POSITIVE,
             "m",
             Default::Absent,
-            "Edge of the boxes of the rest shape that are clusters; neighbouring boxes overlap by half.",
+            "Edge of the boxes, in the rest shape, that form clusters; neighbouring boxes overlap by half.",
         )
         .applies(&[Condition::NotGiven("groups")]),
         Field::new(
@@ -65,14 +66,15 @@ Source: Müller, Heidelberger, Teschner, Gross 2005, Meshless deformations based
             Allowed::Text,
             "",
             Default::Absent,
-            "Names of groups of nodes of the mesh that are clusters, with commas between them; every node is in one at least.",
+            "Names of groups of nodes of the mesh that are clusters, separated by commas; every node must be in at least one.",
         ),
         Field::new(
             "scheme",
             Allowed::Choice(&["potential", "as_published"]),
             "",
             Default::Text("potential"),
-            "Whether the force is the gradient of U, or the published one that keeps the volume of the fitted map.",
+            "With \"potential\", the force is the gradient of U; with \"as_published\", it is the published force, which keeps the volume of the \
+fitted map.",
         ),
     ],
     roles: &[],

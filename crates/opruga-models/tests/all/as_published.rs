@@ -295,6 +295,6 @@ fn refusals() {
     );
     assert_eq!(
         refusal(&Mesh::icosphere(1.0, 1).unwrap(), &AsPublished, values!(as_published)),
-        "model.dimension as_published: the published program is plane; allowed: dimension = 2"
+        "model.dimension as_published: the published program is two-dimensional; allowed: dimension = 2"
     );
 }

@@ -22,13 +22,13 @@ fn what_has_no_meaning_is_refused_with_what_is_allowed() {
         |plane: &str| values!(fem, youngs_modulus: 1.0, poissons_ratio: 0.4999, locking: "nodal_volume", plane: plane);
     assert_eq!(of(&triangles, nodal("strain")), "built");
     assert!(of(&triangles, nodal("stress")).contains("in plane stress"), "{}", of(&triangles, nodal("stress")));
-    assert!(of(&boxes, nodal("strain")).contains("no linear triangles"), "{}", of(&boxes, nodal("strain")));
+    assert!(of(&boxes, nodal("strain")).contains("not linear triangles"), "{}", of(&boxes, nodal("strain")));
     let thin = values!(fem, youngs_modulus: 1.0, poissons_ratio: 0.49, plane: "stress");
     assert_eq!(of(&triangles, thin), "built");
     assert_eq!(of(&boxes, fem(0.4999)), "built");
     assert_eq!(of(&triangles.clone().into_quadratic().unwrap(), fem(0.4999)), "built");
     assert!(of(&boxes, values!(fem)).starts_with("model.one_of"));
-    assert!(of(&boxes, values!(fem, youngs_modulus_of_cells: "E")).contains("the mesh has no numbers of cells"));
+    assert!(of(&boxes, values!(fem, youngs_modulus_of_cells: "E")).contains("the mesh has no numbers for its cells"));
     assert!(of(&boxes, values!(fem, youngs_modulus: 1.0, cells: "bone")).contains("it has none"));
     let mooney = values!(fem, material: "mooney_rivlin", youngs_modulus: 1.0, poissons_ratio: 0.1, mooney_share: 0.2);
     assert!(of(&boxes, mooney).contains("at most 0.125"));

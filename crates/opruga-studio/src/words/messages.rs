@@ -109,13 +109,13 @@ impl Language {
                 let name = self.done(&Step::Set(path.clone()));
                 either!(
                     self,
-                    "`{name}` can be left out at the start alone: Reset, and then ×",
+                    "`{name}` can be left out only at the start: press Reset, and then ×",
                     "`{name}` se može izostaviti samo na početku: „Na početak”, pa ×"
                 )
             }
             Report::ContactAtTheStartAlone => either!(
                 self,
-                "Contact is switched on and off at the start alone: Reset first",
+                "Contact can be switched on and off only at the start: press Reset first",
                 "Dodir se uključuje i isključuje samo na početku: najprije „Na početak”"
             ),
             Report::AtTheEnd(time, list) => {
@@ -124,13 +124,13 @@ impl Language {
                 let warnings = if count == 1 { "1 warning".into() } else { format!("{count} warnings") };
                 either!(
                     self,
-                    "The command line ends here, at t = {time:.2} s, with {warnings}: {list}. In the window time goes on",
+                    "The command line ends here, at t = {time:.2} s, with {warnings}: {list}. In the window, time continues",
                     "Naredbeni redak ovdje završava, u t = {time:.2} s; upozorenja ({count}): {list}. U prozoru vrijeme teče dalje"
                 )
             }
             Report::RecordingEnds(time) => either!(
                 self,
-                "The recording ends here, at t = {time:.2} s. What follows is computed: a new run",
+                "The recording ends here, at t = {time:.2} s. What follows is computed as a new run",
                 "Snimka ovdje završava, u t = {time:.2} s. Što slijedi tek se računa: to je novi tijek"
             ),
             Report::OwnCourse(time) => either!(
@@ -151,7 +151,7 @@ impl Language {
             }
             Report::Copy(name) => either!(
                 self,
-                "`{name}` is one of several copies; take `copies` out of the scene to change them one by one",
+                "`{name}` is one of several copies; remove `copies` from the scene to change them one by one",
                 "`{name}` je jedna od više kopija; ukloni `copies` iz prizora da ih mijenjaš jednu po jednu"
             ),
             Report::Scaled(by) => either!(
@@ -184,11 +184,11 @@ impl Language {
             Report::Unreadable(file) => either!(self, "{file} cannot be read", "{file} se ne može pročitati"),
             Report::Written(files) => format!("{} {}", self.kept(), files.join(", ")),
             Report::NoFolder(folder, why) => {
-                either!(self, "the folder {folder} cannot be made: {why}", "mapa {folder} ne može nastati: {why}")
+                either!(self, "the folder {folder} cannot be created: {why}", "mapa {folder} ne može nastati: {why}")
             }
             Report::FolderFull(folder) => either!(self, "{folder} is full", "mapa {folder} je puna"),
             Report::NoDownload(file) => {
-                either!(self, "the browser does not take the file {file}", "preglednik ne prima datoteku {file}")
+                either!(self, "the browser does not accept the file {file}", "preglednik ne prima datoteku {file}")
             }
             Report::NothingToDraw => either!(self, "there is nothing to draw", "nema se što nacrtati"),
             Report::LinkCopied => self.link_copied().into(),
@@ -204,7 +204,7 @@ impl Language {
             ),
             Report::AddressCut => either!(
                 self,
-                "the scene in the address is not whole: the address may have been cut off when it was copied",
+                "the scene in the address is not complete: the address may have been cut off when it was copied",
                 "prizor u adresi nije cjelovit: adresa je možda odrezana pri kopiranju"
             ),
             Report::AddressTooLarge(most) => either!(
@@ -214,8 +214,8 @@ impl Language {
             ),
             Report::WindowLost(file) => either!(
                 self,
-                "The last window was lost, probably with its graphics driver. What was done is saved in {file}, and goes on here: \
-                 time stands at the last moment that was kept",
+                "The last window was lost, probably because of its graphics driver. Your work is saved in {file} and continues here, at the last \
+moment that was kept",
                 "Posljednji prozor je izgubljen, vjerojatno s grafičkim upravljačkim programom. Učinjeno je spremljeno u {file} i \
                  nastavlja se ovdje: vrijeme stoji na zadnjem sačuvanom trenutku"
             ),

@@ -92,7 +92,7 @@ fn a_folder_that_cannot_be_written_is_told_and_nothing_is_left() {
     let session = open("heart");
     let refused =
         Folder::at(room.0.join("out")).scene("heart", &session.saved(), session.files(), session.registries());
-    assert!(refused.is_err_and(|said| said.to_string().contains("cannot be made")));
+    assert!(refused.is_err_and(|said| said.to_string().contains("cannot be created")));
     assert_eq!(std::fs::read_dir(&room.0).expect("a folder").count(), 1);
 }
 

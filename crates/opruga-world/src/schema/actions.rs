@@ -8,21 +8,16 @@ const CURVE: Field = Field::new(
     Allowed::Curve,
     "s, 1",
     Default::Absent,
-    "A factor over time, linear between its rows; 1 where the scene is silent.",
+    "A factor over time, linear between its rows; the default is 1.",
 );
 const LOAD_CHILDREN: &[Child] = &[
     child(
         "body",
         Holds::BodyReference,
         true,
-        "The body, of the scene or added by a command; the name of a body with copies means all of them, `NAME[i]` one.",
+        "The body, from the scene or added by a command; the name of a body with copies means all of them, `NAME[i]` means one.",
     ),
-    child(
-        "select",
-        Holds::Selector,
-        false,
-        "Which nodes; all where the scene is silent. Places move along with every copy.",
-    ),
+    child("select", Holds::Selector, false, "Which nodes; the default is all. Positions move along with every copy."),
 ];
 
 /// `[[load]]`, by `kind`.
@@ -39,8 +34,8 @@ pub const LOADS: &[Section] = &[
     Section {
         spec: &section(
             "central_force",
-            "A force of one size on every selected node, towards a point that stays where it is",
-            "A node at the point itself feels none.",
+            "A force of the same magnitude on every selected node, towards a fixed point",
+            "There is no force on a node at the point itself.",
             &[
                 Field::new(
                     "value",
@@ -80,8 +75,8 @@ pub const LOADS: &[Section] = &[
         spec: &section(
             "body_force",
             "A force per volume at rest",
-            "It is spread over the cells all of whose nodes are selected, by their shape functions: on a node acts the force times the integral of its \
-function over the volume; in 2D the volume is the area times the body's `thickness`.",
+            "It is spread over the cells all of whose nodes are selected, by their shape functions: the force on a node is the value times the \
+integral of its function over the volume; in 2D the volume is the area times the body's `thickness`.",
             &[Field::new("value", Allowed::Vector, "N/m³", Default::Required, "The force per volume."), CURVE],
         ),
         children: LOAD_CHILDREN,
@@ -93,14 +88,14 @@ const AT: Field = Field::new(
     Allowed::NOT_NEGATIVE,
     "s",
     Default::Required,
-    "When it begins: with the first frame that begins then or later.",
+    "When it begins: with the first frame that begins at this time or later.",
 );
 const UNTIL: Field = Field::new(
     "until",
     Allowed::NOT_NEGATIVE,
     "s",
     Default::Required,
-    "When it ends: with the first frame that begins then or later.",
+    "When it ends: with the first frame that begins at this time or later.",
 );
 
 /// `[[command]]`, by `do`.
@@ -108,7 +103,7 @@ pub const COMMANDS: &[Section] = &[
     Section {
         spec: &section(
             "drag",
-            "Pull a node toward a moving pointer by a critically damped spring",
+            "Pull a node towards a moving pointer by a critically damped spring",
             "",
             &[
                 AT,
@@ -117,7 +112,7 @@ pub const COMMANDS: &[Section] = &[
                     Allowed::NOT_NEGATIVE,
                     "s",
                     Default::Absent,
-                    "When it ends: with the first frame that begins then or later; the end of the path where the scene is silent.",
+                    "When it ends: with the first frame that begins at this time or later; the default is the end of the path.",
                 ),
                 Field::new("path", Allowed::Path, "s, m", Default::Required, "The path of the pointer."),
                 Field::new(
@@ -125,24 +120,25 @@ pub const COMMANDS: &[Section] = &[
                     Allowed::POSITIVE,
                     "N/m",
                     Default::Absent,
-                    "Stiffness of the spring; chosen from the body where the scene is silent.",
+                    "Stiffness of the spring; by default it is chosen for the body.",
                 ),
                 Field::new(
                     "largest_force",
                     Allowed::POSITIVE,
                     "N",
                     Default::Absent,
-                    "The largest force, every time it acts is counted; that of the spring stretched by ten sizes of the body where the scene is silent.",
+                    "The largest force; each time it acts is counted. The default is the force of the spring stretched by ten times the size of the \
+body.",
                 ),
             ],
         ),
         children: &[
-            child("body", Holds::BodyReference, true, "The body; of copies one, `NAME[i]`."),
+            child("body", Holds::BodyReference, true, "The body; for copies, one of them: `NAME[i]`."),
             child(
                 "node",
                 Holds::Node,
                 false,
-                "What is held: a node, the node nearest to the pointer at the beginning (so too where the scene is silent), or the nearest point of a facet.",
+                "What is pulled: a node, the node nearest to the pointer at the beginning (the default), or the nearest point of a facet.",
             ),
         ],
     },
@@ -158,7 +154,7 @@ pub const COMMANDS: &[Section] = &[
     Section {
         spec: &section(
             "pin",
-            "Hold nodes where they are at the beginning",
+            "Hold nodes where they are when the command begins",
             "",
             &[
                 AT,
@@ -168,7 +164,7 @@ pub const COMMANDS: &[Section] = &[
                     Allowed::Choice(&["x", "y", "z", "xy", "xz", "yz", "xyz"]),
                     "",
                     Default::Absent,
-                    "The axes that are held; all where the scene is silent.",
+                    "The axes along which nodes are held; the default is all axes.",
                 ),
             ],
         ),
@@ -177,8 +173,8 @@ pub const COMMANDS: &[Section] = &[
     Section {
         spec: &section(
             "free",
-            "Let go of nodes that are held",
-            "Pins of the body, and of commands before this one, hold these nodes no longer.",
+            "Release nodes that are held",
+            "Pins of the body and of earlier commands no longer hold these nodes.",
             &[AT],
         ),
         children: LOAD_CHILDREN,
@@ -205,7 +201,8 @@ pub const COMMANDS: &[Section] = &[
         spec: &section(
             "change",
             "Give a body other models or another integrator while it moves",
-            "Positions and velocities stay. What a model remembers, such as the amount of its gas, stays with the first of its kind; a kind that the body did not have begins as at the start of a scene. What is silent stays as it was.",
+            "Positions and velocities do not change. The first model of a kind keeps what the body's model of that kind remembers, such as the \
+amount of its gas; a kind that the body did not have begins as at the start of a scene. What is not given does not change.",
             &[AT],
         ),
         children: &[
@@ -213,7 +210,7 @@ pub const COMMANDS: &[Section] = &[
                 "body",
                 Holds::BodyReference,
                 true,
-                "The body; the name of a body with copies means all of them, `NAME[i]` one.",
+                "The body; the name of a body with copies means all of them, `NAME[i]` means one.",
             ),
             child("models", Holds::Models, false, "Its models from now on, as in `[[body]]`."),
             child("integrator", Holds::Integrator, false, "Its own integrator from now on."),
@@ -226,7 +223,7 @@ pub const COMMANDS: &[Section] = &[
     Section {
         spec: &section(
             "remove",
-            "Take a body away",
+            "Remove a body",
             "",
             &[
                 AT,
@@ -235,7 +232,7 @@ pub const COMMANDS: &[Section] = &[
                     Allowed::Text,
                     "",
                     Default::Required,
-                    "The name of the body, of the scene or added before.",
+                    "The name of the body, from the scene or added before.",
                 ),
             ],
         ),
@@ -248,13 +245,13 @@ pub const PROBE: Section = Section {
     spec: &section(
         "probe",
         "Columns of diagnostics.csv that follow nodes",
-        "Of positions and velocities the mean over the nodes is written, of reactions the sum: the force that pins give, mass \
-times acceleration less the forces of the models and the weight on what is held. How a pin accelerates is taken from its motion \
-over the frame before and the one after. The impulse with which a pin takes hold of what moves is not in it. `contact` is the sum of the forces of \
-obstacles in the coming step, normal force and friction; what a pin holds has none. `stress` is Cauchy's stress and `volume_ratio` J: a node has of the cells of finite \
-elements around it the mean by their volume at rest, and of the nodes the mean is written, and the von Mises stress of it. Columns are NAME.x, \
-NAME.y (position), NAME.vx … (velocity), NAME.rx … (reaction), NAME.cx … (contact), NAME.sxx, syy, szz, sxy, in 3D syz, szx, and von_mises \
-(stress, szz in 2D across the plane), NAME.volume_ratio; not a number while the body is not there, or has no finite elements any more.",
+        "Positions and velocities are means over the nodes, reactions are sums. A reaction is the force of pins: mass times acceleration minus the \
+forces of the models and the weight on pinned nodes. The acceleration of a pin is computed from its motion over the previous frame and the next one. \
+The impulse with which a pin catches a moving node is not included. `contact` is the sum of the forces of obstacles in the next step, normal force \
+and friction; pinned nodes have none. `stress` is Cauchy's stress and `volume_ratio` is J: the value at a node is the mean over the finite elements \
+around it, weighted by their volume at rest. The mean over the nodes is written, with the von Mises stress of that mean. Columns are NAME.x, NAME.y \
+(position), NAME.vx … (velocity), NAME.rx … (reaction), NAME.cx … (contact), NAME.sxx, syy, szz, sxy, in 3D syz, szx, and von_mises (stress, szz in \
+2D across the plane), NAME.volume_ratio; they are not a number while the body does not exist or has no finite elements.",
         &[Field::new(
             "name",
             Allowed::Text,
@@ -264,13 +261,13 @@ NAME.y (position), NAME.vx … (velocity), NAME.rx … (reaction), NAME.cx … (
         )],
     ),
     children: &[
-        child("body", Holds::BodyReference, true, "The body; of copies one, `NAME[i]`."),
-        child("select", Holds::Selector, false, "Which nodes; all where the scene is silent."),
+        child("body", Holds::BodyReference, true, "The body; for copies, one of them: `NAME[i]`."),
+        child("select", Holds::Selector, false, "Which nodes; the default is all."),
         child(
             "record",
             Holds::Words(&["position", "velocity", "reaction", "contact", "stress", "volume_ratio"]),
             true,
-            "What is written down.",
+            "What is recorded.",
         ),
     ],
 };

@@ -3,35 +3,37 @@
 use super::{Child, Holds, Section, child, section};
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field};
 
-const FRICTION: &str = "Coulomb's coefficient µ, for sticking and sliding alike; of two bodies the mean of theirs.";
+const FRICTION: &str =
+    "Coulomb's coefficient µ, for both sticking and sliding; two bodies use the mean of their values.";
 const RESTITUTION: &str =
-    "Ratio of the normal speeds after and before an impact of two points; of two bodies the mean of theirs.";
-const THICKNESS: &str = "The distance of the surfaces in contact; of two bodies the mean of theirs. Where the scene is silent it is a \
-hundredth of the mean edge of the surface.";
+    "Ratio of the normal speeds after and before an impact of two points; two bodies use the mean of their values.";
+const THICKNESS: &str = "The distance between the surfaces in contact; two bodies use the mean of their values. The default is a hundredth of the \
+mean edge of the surface.";
 
 /// `[contact]`.
 pub const CONTACT: Section = Section {
     spec: &section(
         "contact",
         "How deformable bodies touch one another and themselves",
-        "Without this section bodies pass through one another. Boundaries, open surfaces and wires touch, points where a body has none \
-         of these; a body filled by a lattice touches with the surface that it carries. Edges and facets touch the corners and edges of obstacles too, not nodes alone. A substep moves all bodies freely, and then gives impulses to pairs of a vertex and a facet, and in space of two edges.",
+        "Without this section bodies pass through one another. Boundaries, open surfaces and wires touch, or points if a body has none of these; a \
+body filled by a lattice touches with the surface that it carries. Not only nodes, but also edges and facets touch the corners and edges of \
+obstacles. A substep moves all bodies freely, and then gives impulses to pairs of a vertex and a facet, and in space to pairs of edges.",
         &[
             Field::new(
                 "response",
                 Allowed::Choice(&["constraint", "barrier"]),
                 "",
                 Default::Text("constraint"),
-                "How contact is kept: `constraint` by impulses that let pairs come to touch and no further; `barrier` by forces that grow without \
-                 bound as a gap closes, under implicit integrators.",
+                "How contact is enforced: `constraint` uses impulses that let pairs touch but not pass; `barrier` uses forces that grow without \
+bound as a gap closes, with implicit integrators.",
             ),
             Field::new(
                 "reach",
                 Allowed::POSITIVE,
                 "m",
                 Default::Absent,
-                "The gap, beyond the thickness, at which the barrier begins to push. Where the scene is silent it is a fiftieth of the mean edge of all \
-                 surfaces, and at most half of the shortest.",
+                "The gap, beyond the thickness, at which the barrier begins to push. The default is a fiftieth of the mean edge of all surfaces, and \
+at most half of the shortest edge.",
             )
             .applies(&[Condition::Word("response", &["barrier"])]),
             Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Number(0.0), FRICTION),
@@ -41,7 +43,7 @@ pub const CONTACT: Section = Section {
                 Allowed::NOT_NEGATIVE,
                 "m/s",
                 Default::Number(0.05),
-                "Approach up to which a pair does not bounce.",
+                "Speed of approach up to which a pair does not bounce.",
             ),
             Field::new("thickness", Allowed::POSITIVE, "m", Default::Absent, THICKNESS),
             Field::new(
@@ -49,8 +51,8 @@ pub const CONTACT: Section = Section {
                 Allowed::POSITIVE,
                 "m/s",
                 Default::Number(0.5),
-                "The speed at which bodies that overlap are moved apart. Only positions are moved; what that does against forces is entered as \
-                 `work_correction`.",
+                "The speed at which bodies that overlap are moved apart. Only positions are changed; the work of this against forces is entered as \
+`work_correction`.",
             ),
             Field::new("self", Allowed::Boolean, "", Default::Boolean(true), "Whether bodies touch themselves."),
             Field::new(
@@ -58,20 +60,20 @@ pub const CONTACT: Section = Section {
                 Allowed::Number { least: Bound::Closed(1.0), greatest: Bound::Closed(1e8) },
                 "",
                 Default::Number(4e6),
-                "The most pairs that are looked at in a step; a run that needs more ends with `limit.contacts`.",
+                "The largest number of pairs that are considered in a step; a run that needs more ends with `limit.contacts`.",
             ),
         ],
     ),
-    children: &[child("pair", Holds::List(&CONTACT_PAIR), false, "What two groups of bodies do.")],
+    children: &[child("pair", Holds::List(&CONTACT_PAIR), false, "What happens between two groups of bodies.")],
 };
 
 /// An entry of `pair` in `[contact]`.
 pub const CONTACT_PAIR: Section = Section {
     spec: &section(
         "contact.pair",
-        "What two groups of bodies do where they touch",
-        "A body belongs to the group that its `contact` names, otherwise to that of its own name, which copies share. Of several entries \
-         for two groups the last one counts.",
+        "What happens where two groups of bodies touch",
+        "A body belongs to the group that its `contact` names, or otherwise to the group with its own name, which copies share. If there are several \
+entries for two groups, the last one counts.",
         &[
             Field::new("first", Allowed::Text, "", Default::Required, "A group."),
             Field::new(
@@ -79,7 +81,7 @@ pub const CONTACT_PAIR: Section = Section {
                 Allowed::Text,
                 "",
                 Default::Required,
-                "Another group, or the same: then its bodies among one another.",
+                "Another group, or the same one for contact among its own bodies.",
             ),
             Field::new("touch", Allowed::Boolean, "", Default::Boolean(true), "Whether they touch at all."),
             Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Absent, "Coulomb's coefficient µ of these two."),
@@ -99,15 +101,15 @@ pub const CONTACT_PAIR: Section = Section {
 pub const BODY_CONTACT: Section = Section {
     spec: &section(
         "body.contact",
-        "How a body touches others, where not as `[contact]` says",
-        "It has an effect only where the scene has `[contact]`.",
+        "How a body touches others, if this differs from `[contact]`",
+        "It has an effect only if the scene has `[contact]`.",
         &[
             Field::new(
                 "group",
                 Allowed::Text,
                 "",
                 Default::Absent,
-                "Its group in `[[contact.pair]]`; its own name where the scene is silent.",
+                "Its group in `[[contact.pair]]`; the default is its own name.",
             ),
             Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Absent, FRICTION),
             Field::new("restitution", Allowed::FRACTION, "", Default::Absent, RESTITUTION),
@@ -118,8 +120,8 @@ pub const BODY_CONTACT: Section = Section {
                 Allowed::Choice(&["skin", "cells"]),
                 "",
                 Default::Text("skin"),
-                "With what a body filled by a lattice touches other bodies: `skin`, the surface that it carries and that is drawn; `cells`, the \
-                 boundary of its cells, which reaches beyond that.",
+                "The surface with which a body filled by a lattice touches other bodies: `skin` is the surface that the lattice carries and that is \
+drawn; `cells` is the boundary of its cells, which reaches beyond that.",
             ),
             Field::new("touch", Allowed::Boolean, "", Default::Boolean(true), "Whether it touches anything at all."),
         ],
@@ -128,5 +130,9 @@ pub const BODY_CONTACT: Section = Section {
 };
 
 /// The contact settings of a body, as a child of its section.
-pub(super) const OF_BODY: Child =
-    child("contact", Holds::Table(&BODY_CONTACT), false, "How it touches other bodies, where not as `[contact]` says.");
+pub(super) const OF_BODY: Child = child(
+    "contact",
+    Holds::Table(&BODY_CONTACT),
+    false,
+    "How it touches other bodies, if this differs from `[contact]`.",
+);

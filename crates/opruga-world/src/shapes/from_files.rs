@@ -8,7 +8,10 @@ const SPACING: Field = Field::new(
     Allowed::POSITIVE,
     "m",
     Default::Required,
-    "About the distance from node to node, before `scale`: between its corners, turns by more than 45° within a spacing, an outline is cut into equal pieces, as many as make their length along it come nearest to this, and three at least for a whole outline. Finer detail is left out; how much is told where the area changes by more than 5 %, or where the file has more than four points for a node. With `filling = \"lattice\"` it is the side of the squares, and the outline keeps all of its points.",
+    "The approximate distance between nodes, before `scale`. Corners of an outline are turns by more than 45° within a spacing. Between its corners \
+an outline is divided into equal pieces whose length along it is as close to this as possible; a whole outline has at least three. Finer detail is \
+left out; its amount is reported if the area changes by more than 5 %, or if the file has more than four points per node. With `filling = \
+\"lattice\"` it is the side of the squares, and the outline keeps all of its points.",
 );
 const SIZE: Field =
     Field::new("size", Allowed::POSITIVE, "m", Default::Required, "The longer side of its bounding box.");
@@ -17,21 +20,25 @@ const FILLING: Field = Field::new(
     Allowed::Choice(&["none", "triangles", "lattice"]),
     "",
     Default::Text("none"),
-    "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles, without angles below 25° but where corners of the outline are sharper or it is finer than the spacing, which is told. `lattice`: equal squares that reach a little beyond the outline and carry it for drawing, however fine it is.",
+    "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles; angles below 25° occur only where corners \
+of the outline are sharper or the outline is finer than the spacing, and are reported. `lattice`: equal squares that reach a little beyond the \
+outline and carry it for drawing, however fine it is.",
 );
 pub(super) const FILLING_OF_SURFACES: Field = Field::new(
     "filling",
     Allowed::Choice(&["none", "lattice", "tetrahedra"]),
     "",
     Default::Text("none"),
-    "`none`: a skin of triangles, for bending and gas. `lattice`: equal tetrahedra that reach a little beyond the surface and carry it for drawing. `tetrahedra`: tetrahedra whose boundary follows the surface, with angles from 10.7° to 164.8°, for finite elements; sharp edges are cut off within a spacing, and parts thinner than that may be lost. A volume that changes by more than 5 % is told, by more than 25 % an error.",
+    "`none`: a skin of triangles, for bending and gas. `lattice`: equal tetrahedra that reach a little beyond the surface and carry it for drawing. \
+`tetrahedra`: tetrahedra whose boundary follows the surface, with angles from 10.7° to 164.8°, for finite elements; sharp edges are cut off within a \
+spacing, and parts thinner than that may be lost. A change of volume above 5 % is reported; above 25 % it is an error.",
 );
 pub(super) const SPACING_OF_FILLINGS: Field = Field::new(
     "spacing",
     Allowed::POSITIVE,
     "m",
     Default::Absent,
-    "The side of the cubes of their lattice, before `scale`; nodes lie at corners and middles.",
+    "The side of the cubes of their lattice, before `scale`; nodes lie at their corners and centres.",
 )
 .applies(&[Condition::Word("filling", &["lattice", "tetrahedra"])]);
 const OVERLAP: Field = Field::new(
@@ -39,20 +46,25 @@ const OVERLAP: Field = Field::new(
     Allowed::Choice(&["refuse", "union", "even_odd"]),
     "",
     Default::Text("refuse"),
-    "What holds where outlines cross or touch: an error, what any part covers, or what an odd number of outlines enclose; how many were joined is told. Areas that touch in points alone are apart there. An outline within another is a hole, and one within that an area again, also of another element of a drawing; with \"union\" what any element paints is inside.",
+    "What happens if outlines cross or touch: \"refuse\" is an error, \"union\" keeps what any part covers, \"even_odd\" keeps what an odd number of \
+outlines enclose; the number of joined outlines is reported. Areas that touch only at points stay separate there. An outline inside another one is a \
+hole, and an outline inside a hole is an area again, also if they belong to different elements of a drawing; with \"union\", everything that any \
+element paints is inside.",
 );
 const DROP_BELOW: Field = Field::new(
     "drop_below",
     Allowed::NOT_NEGATIVE,
     "m²",
     Default::Number(0.0),
-    "Outlines of less area are left out, and counted.",
+    "Outlines with a smaller area are left out and counted.",
 );
 
 static SVG: Spec = Spec {
     kind: "svg",
     summary: "the outline of a drawing",
-    documentation: "Paths, rectangles, circles, ellipses and polygons of an SVG file, with their transforms; y points up in the scene. Holes follow the even-odd rule, or the non-zero rule where `fill-rule` says so. Style sheets are followed: rules behind names, classes and ids. A clip path that cuts nothing off changes nothing; one that does is an error.",
+    documentation: "Paths, rectangles, circles, ellipses and polygons of an SVG file, with their transforms; y points up in the scene. Holes follow \
+the even-odd rule, or the non-zero rule if `fill-rule` says so. Style sheets are applied: rules with selectors that are names, classes and ids. A \
+clip path that cuts nothing off has no effect; one that cuts something off is an error.",
     dimensions: &[2],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The SVG file, looked up relative to the scene."),
@@ -61,7 +73,7 @@ static SVG: Spec = Spec {
             Allowed::Text,
             "",
             Default::Absent,
-            "The `id` of one element or group; the whole drawing where the scene is silent.",
+            "The `id` of one element or group; the default is the whole drawing.",
         ),
         SPACING,
         SIZE,
@@ -74,7 +86,8 @@ static SVG: Spec = Spec {
             Allowed::Boolean,
             "",
             Default::Boolean(false),
-            "Whether pictures show the drawing in the fill colours of its parts, one over another, carried by the body; a gradient becomes the mean of its stops.",
+            "Whether pictures show the drawing in the fill colours of its parts, painted one over another and carried by the body; a gradient \
+becomes the mean of its stops.",
         ),
     ],
     roles: &[],
@@ -83,7 +96,9 @@ static SVG: Spec = Spec {
 static MAP: Spec = Spec {
     kind: "map",
     summary: "a country or any other polygons of a map",
-    documentation: "Polygons of GeoJSON or TopoJSON, in degrees, with their holes; islands are parts of one body. Outlines over the antimeridian are in one piece, beyond 180°; those around a pole are cut along the antimeridian and closed along the pole. Neighbours that share a border are joined with `overlap = \"union\"`.",
+    documentation: "Polygons of GeoJSON or TopoJSON, in degrees, with their holes; islands are parts of one body. Outlines that cross the \
+antimeridian stay in one piece, beyond 180°; outlines around a pole are cut along the antimeridian and closed along the pole. Neighbours that share \
+a border are joined with `overlap = \"union\"`.",
     dimensions: &[2],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The map, looked up relative to the scene."),
@@ -92,15 +107,21 @@ static MAP: Spec = Spec {
             Allowed::Text,
             "",
             Default::Absent,
-            "The `id` of a feature, or a text among its properties such as its name; all features where the scene is silent.",
+            "The `id` of a feature, or a text among its properties such as its name; the default is all features.",
         ),
-        Field::new("layer", Allowed::Text, "", Default::Absent, "The object of a topology that has several."),
+        Field::new(
+            "layer",
+            Allowed::Text,
+            "",
+            Default::Absent,
+            "The name of the object, for a topology that has several.",
+        ),
         Field::new(
             "projection",
             Allowed::Choice(&["equirectangular", "mercator", "none"]),
             "",
             Default::Text("equirectangular"),
-            "How degrees become lengths; `equirectangular` is true to proportion at the middle latitude, `none` takes coordinates as they are.",
+            "How degrees are converted to lengths: `equirectangular` keeps proportions at the middle latitude, `none` uses coordinates as they are.",
         ),
         SPACING,
         SIZE,
@@ -133,7 +154,7 @@ static TEXT: Spec = Spec {
 static BITMAP: Spec = Spec {
     kind: "bitmap",
     summary: "the contour of a picture",
-    documentation: "A PNG picture; the contour runs where its pixels cross the threshold, linear between their middles.",
+    documentation: "The contour of a PNG picture runs where its pixels cross the threshold, with linear interpolation between their centres.",
     dimensions: &[2],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The PNG file, looked up relative to the scene."),
@@ -149,7 +170,7 @@ static BITMAP: Spec = Spec {
             Allowed::Number { least: Bound::Open(0.0), greatest: Bound::Open(1.0) },
             "",
             Default::Number(0.5),
-            "How dark, bright or opaque a pixel must be at least.",
+            "The least darkness, brightness or opacity of a pixel inside.",
         ),
         SPACING,
         SIZE,
@@ -164,7 +185,10 @@ static BITMAP: Spec = Spec {
 static SURFACE: Spec = Spec {
     kind: "surface",
     summary: "a surface of triangles",
-    documentation: "OBJ, STL (text or binary), PLY (text or binary), glTF (.gltf, .glb), or the triangles of a mesh file (see `mesh`), by the ending of the file. Polygons, concave ones too, are cut into triangles inside them. Triangles are turned outward, and counted; every closed component is a chamber, one inside another a cavity. The middle of its bounding box lies at `center`. Groups: the named parts of the file.",
+    documentation: "OBJ, STL (text or binary), PLY (text or binary), glTF (.gltf, .glb), or the triangles of a mesh file (see `mesh`), according to \
+the ending of the file. Polygons, also concave ones, are cut into triangles inside them. Triangles that face inward are flipped and counted; every \
+closed component is a chamber, and one inside another is a cavity. The centre of its bounding box lies at `center`. Groups: the named parts of the \
+file.",
     dimensions: &[3],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
@@ -173,7 +197,7 @@ static SURFACE: Spec = Spec {
             Allowed::POSITIVE,
             "m",
             Default::Absent,
-            "The longest side of its bounding box; the units of the file are metres where the scene is silent.",
+            "The longest side of its bounding box. If it is not given, the units of the file are metres.",
         ),
         CENTER,
         Field::new(
@@ -188,28 +212,31 @@ static SURFACE: Spec = Spec {
             Allowed::NOT_NEGATIVE,
             "m",
             Default::Absent,
-            "Vertices at most this far apart in the file are joined, and counted; STL joins those at the same place without being asked.",
+            "Vertices at most this far apart in the file are joined and counted. In STL files, vertices at the same position are always joined.",
         ),
         Field::new(
             "open",
             Allowed::Choice(&["refuse", "cap", "sheet"]),
             "",
             Default::Text("refuse"),
-            "What becomes of a surface with free boundaries: an error, closed by fans of triangles, or cloth.",
+            "What happens to a surface with free boundaries: \"refuse\" is an error, \"cap\" closes it with fans of triangles, \"sheet\" keeps it as \
+cloth.",
         ),
         Field::new(
             "overlap",
             Allowed::Choice(&["refuse", "keep"]),
             "",
             Default::Text("refuse"),
-            "What holds where triangles of a closed surface cross, touch or overlap that share no vertex there: an error that names two of them, or nothing, but they are counted.",
+            "What happens if triangles of a closed surface cross, touch or overlap although they share no vertex there: \"refuse\" is an error that \
+names two of them, \"keep\" accepts and counts them.",
         ),
         Field::new(
             "remesh",
             Allowed::POSITIVE,
             "m",
             Default::Absent,
-            "A closed surface is made anew of nearly equilateral triangles with edges of about this length, before `scale`; edges sharper than 40° stay. Nodes are numbered anew.",
+            "A closed surface is rebuilt from nearly equilateral triangles with edges of about this length, before `scale`; edges sharper than 40° \
+are kept. Nodes are renumbered.",
         ),
         FILLING_OF_SURFACES,
         SPACING_OF_FILLINGS,
@@ -219,8 +246,11 @@ static SURFACE: Spec = Spec {
 
 static MESH: Spec = Spec {
     kind: "mesh",
-    summary: "a filled body of cells, as another program has meshed it",
-    documentation: "Gmsh 2.2 and 4.1 (.msh, text or binary), VTK (.vtk, .vtu), TetGen (.node with .ele), MFEM and Medit (.mesh, .mfem), by the ending of the file. Triangles and quadrilaterals in 2D; tetrahedra and hexahedra in 3D; triangles of 6 and tetrahedra of 10 nodes. Nodes keep the order of the file, and their coordinates in metres. Named parts (physical groups, attributes, references, markers) become groups of nodes and of cells, scalars of elements become values of cells.",
+    summary: "a filled body of cells, meshed by another program",
+    documentation: "Gmsh 2.2 and 4.1 (.msh, text or binary), VTK (.vtk, .vtu), TetGen (.node with .ele), MFEM and Medit (.mesh, .mfem), according to \
+the ending of the file. Triangles and quadrilaterals in 2D; tetrahedra and hexahedra in 3D; triangles of 6 and tetrahedra of 10 nodes. Nodes keep \
+the order of the file, and their coordinates in metres. Named parts (physical groups, attributes, references, markers) become groups of nodes and of \
+cells, scalars of elements become values of cells.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
@@ -229,14 +259,14 @@ static MESH: Spec = Spec {
             Allowed::Choice(&["refuse", "turn"]),
             "",
             Default::Text("refuse"),
-            "What becomes of cells of negative area or volume: an error, or turned round, and counted.",
+            "What happens to cells of negative area or volume: \"refuse\" is an error, \"turn\" flips and counts them.",
         ),
         Field::new(
             "unreferenced",
             Allowed::Choice(&["refuse", "leave_out"]),
             "",
             Default::Text("refuse"),
-            "What becomes of nodes that no cell names: an error, or left out, and counted.",
+            "What happens to nodes that no cell uses: \"refuse\" is an error, \"leave_out\" leaves them out and counts them.",
         ),
     ],
     roles: &[Role::CellsFromFile],

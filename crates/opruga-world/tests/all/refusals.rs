@@ -111,8 +111,7 @@ fn every_part_that_is_refused_is_found_once() {
             "collider 1: half_space: collider.no_direction",
             "collider 2: half_space: collider.no_direction",
             "body `open`: pressure: model.open_surface",
-            "path.unknown: `load.0`: the selected nodes hold no whole facet of the boundary; allowed: all nodes of one \
-             facet at least",
+            "path.unknown: `load.0`: no facet of the boundary has all of its nodes selected; allowed: all nodes of at least one facet",
             "unstable: stiff[0]",
         ]
     );
@@ -176,8 +175,8 @@ fn the_warning_is_counted_by_kinds_and_goes_when_its_cause_goes() {
 fn the_hint_of_inverted_cells_names_no_law_that_the_body_has() {
     for (law, hint) in [
         ("linear", "a material that pushes such cells back (`stable_neo_hookean`, `fixed_corotated`)"),
-        ("stable_neo_hookean", "back from farther (`fixed_corotated`)"),
-        ("fixed_corotated", "smaller cells, or less that crushes them"),
+        ("stable_neo_hookean", "back from a stronger inversion (`fixed_corotated`)"),
+        ("fixed_corotated", "smaller cells, or less compression of them"),
     ] {
         let mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [1; 2]).expect("a square");
         let fields = [("material", text(law)), ("youngs_modulus", Value::Number(1e3))];

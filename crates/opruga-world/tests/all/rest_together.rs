@@ -154,7 +154,7 @@ fn overlap_is_taken_apart_and_what_nothing_holds_is_refused() {
     let kept = falling.state_hash();
     let error = falling.frame().expect_err("no balance");
     let said = error.in_full();
-    assert!(said.contains("`cube`") && said.contains("no common balance") && said.contains("hint"), "{said}");
+    assert!(said.contains("`cube`") && said.contains("no common equilibrium") && said.contains("hint"), "{said}");
     assert_eq!(falling.state_hash(), kept);
 }
 

@@ -20,10 +20,10 @@ terms! {
     /// Errors in the table of a sweep or in a row of it.
     pub enum RowFault = "part.row_fault" {
         NoChecksums = "the rows have no checksums: an earlier version of the program wrote the table",
-        Head = "the head of the table does not belong to this sweep",
-        TwoRows = "the table has two rows of this point",
-        Quote = "the row has a quote without an end",
-        Cells = "the row has another number of cells than the head",
+        Head = "the header of the table does not belong to this sweep",
+        TwoRows = "the table has two rows for this point",
+        Quote = "the row has an unclosed quote",
+        Cells = "the number of cells in the row differs from that of the header",
         PointNumber = "invalid point number",
         NoPoint = "the sweep has no such point",
         Values = "the row has values of another point",
@@ -53,34 +53,34 @@ messages! {
         SampleWithCount { range: String },
         "sweep.range" #[error("the range lacks its number of values")] #[value("{range}")] #[allowed("{range}:COUNT, or --sample COUNT")]
         NoCount { range: String },
-        "sweep.range" #[error("a sample of 0 points visits nothing")] #[value("--sample 0")] #[allowed("1 to {most}")]
+        "sweep.range" #[error("a sample of 0 points is empty")] #[value("--sample 0")] #[allowed("1 to {most}")]
         #[hint("for example --sample 20")]
         EmptySample { most: usize },
         "sweep.too_many" #[error("the sweep has {count} points")] #[value("{count}")] #[allowed("at most {most}")]
         TooManyPoints { count: String, most: usize },
-        "sweep.damaged" #[error("the program cannot read the question of the sweep: {reason}")] #[hint("--force begins the sweep anew")]
+        "sweep.damaged" #[error("the program cannot read the definition of the sweep: {reason}")] #[hint("--force starts the sweep again")]
         Question { reason: String },
-        "sweep.damaged" #[error("the question of the sweep has version {found}; this program reads version {version}")]
-        #[hint("--force begins the sweep anew")]
+        "sweep.damaged" #[error("the definition of the sweep has version {found}; this program reads version {version}")]
+        #[hint("--force starts the sweep again")]
         QuestionVersion { found: u32, version: u32 },
-        "sweep.damaged" #[error("the program cannot read the file `{name}` of the sweep")] #[hint("--force begins the sweep anew")]
+        "sweep.damaged" #[error("the program cannot read the file `{name}` of the sweep")] #[hint("--force starts the sweep again")]
         FileOfSweep { name: String },
-        "sweep.damaged" #[error("{fault}")] #[value("{content}")] #[hint("--force begins the sweep anew, --out takes another folder")]
+        "sweep.damaged" #[error("{fault}")] #[value("{content}")] #[hint("--force starts the sweep again, --out uses another folder")]
         Table { fault: RowFault, content: String },
         "sweep.changed_row" #[error("the row was changed after the sweep wrote it: its checksum differs")] #[value("{content}")]
         #[allowed("the row as it was written")]
-        #[hint("without its line the program computes the point again; --force begins the whole sweep anew, --out takes another folder")]
+        #[hint("delete its line to compute the point again; --force starts the whole sweep again, --out uses another folder")]
         ChangedRow { content: String },
-        "write.exists" #[error("the folder holds a sweep with another question: {difference}")]
-        #[hint("--force begins anew, --out takes another folder")]
+        "write.exists" #[error("the folder contains a different sweep: {difference}")]
+        #[hint("--force starts again, --out uses another folder")]
         OtherQuestion { difference: QuestionDifference },
         "write.failed" #[error("a row of the table cannot be written: {reason}")]
-        #[hint("the rows before it are kept; the same call goes on with the sweep")]
+        #[hint("the rows before it are kept; the same call continues the sweep")]
         RowNotWritten { reason: String },
         "sweep.metric" #[error("the sweep measures nothing")] #[allowed("--metric {words}, and PROBE.COLUMN.min, .max, .mean, .last")]
         #[hint("for example --metric bounce_height --metric settling_time")]
         NothingMeasured { words: String },
-        "sweep.metric" #[error("the metric is there twice")] #[value("{metric}")]
+        "sweep.metric" #[error("the metric is given twice")] #[value("{metric}")]
         MetricTwice { metric: String },
         "sweep.metric" #[error("there is no metric `{metric}`")] #[value("{metric}")]
         #[allowed("{words}, and PROBE.COLUMN.min, .max, .mean, .last")]
@@ -89,7 +89,7 @@ messages! {
         NoBodyToMeasure { body: String, metric: String },
         "sweep.metric" #[error("there is no column `{column}` of a probe")] #[value("{metric}")]
         NoColumn { column: String, metric: String },
-        "sweep.metric" #[error("nothing in the scene says what is up")] #[value("{metric}")] #[allowed("scenes with gravity or a half-space")]
+        "sweep.metric" #[error("nothing in the scene defines which way is up")] #[value("{metric}")] #[allowed("scenes with gravity or a half-space")]
         NoUp { metric: String },
     }
 }
@@ -113,15 +113,15 @@ messages! {
     /// The difference of an earlier question of a sweep.
     #[derive(Clone, Debug, PartialEq)]
     pub enum QuestionDifference {
-        "part.question" #[error("the text of the scene was another")]
+        "part.question" #[error("the text of the scene was different")]
         Scene {},
-        "part.question" #[error("a file that the scene names was another")]
+        "part.question" #[error("a file that the scene names was different")]
         File {},
         "part.question" #[error("--set {before} instead of {now}")]
         Set { before: String, now: String },
         "part.question" #[error("--metric {before} instead of {now}")]
         Metric { before: String, now: String },
-        "part.question" #[error("other points were asked for")]
+        "part.question" #[error("other points were requested")]
         Points {},
     }
 }

@@ -9,13 +9,13 @@ use opruga_world::{AnyScene, AnyWorld};
 
 /// The words for quantities that can be measured, and their meanings.
 pub const WORDS: [(&str, &str); 5] = [
-    ("bounce_height", "the largest rise of the lowest node of a body above the lowest place where it has been"),
+    ("bounce_height", "the largest rise of the lowest node of a body above the lowest position that it has had"),
     ("settling_time", "the time after which the kinetic energy stays below a hundredth of its largest value"),
     (
         "equilibrium_radius",
-        "the mean distance of the nodes of a body from their middle, over the last tenth of the run",
+        "the mean distance of the nodes of a body from their centre, over the last tenth of the run",
     ),
-    ("energy_drift", "what the ledger of energy cannot explain, relative to the largest energy in motion"),
+    ("energy_drift", "the energy that the ledger cannot explain, relative to the largest energy in motion"),
     ("nanoseconds_per_step", "processor time of a substep of the whole world"),
 ];
 

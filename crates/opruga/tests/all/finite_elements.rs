@@ -198,12 +198,12 @@ fn a_linear_body_that_only_its_weight_would_hold_is_refused_with_its_rotation() 
         head + &body(material, "[1.0, 2.0, 3.0]", "[1, 2, 2]", pins)
     };
     let (node, edge) = ("{ select = { nodes = [0] } }", "{ select = { nodes = [0, 1] } }");
-    let told = "since its forces are linear: what turns it turns it without end";
+    let told = "its forces are linear, so a moment rotates it without end";
     for (error, what) in [
-        (refused(&flat("linear", node)), "against rotation: 1 rigid mode, "),
+        (refused(&flat("linear", node)), "prevents rotation: 1 rigid mode; "),
         (
             World::new(space(&solid("linear", edge)), Options::default()).expect_err("it turns about its edge"),
-            "against rotation about an axis along x: 1 rigid mode, ",
+            "prevents rotation about an axis along x: 1 rigid mode; ",
         ),
     ] {
         let message = error.in_full();

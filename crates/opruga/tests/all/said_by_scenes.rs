@@ -184,7 +184,7 @@ fn a_force_per_volume_without_cells_is_refused_with_a_hint() {
     let grid = "[[body]]\nname = \"b\"\nshape = { kind = \"grid\", size = [1, 1], cells = [2, 2] }\nmass = 1\n";
     for (text, path, part) in [
         (ring.to_string() + load, "load.0.kind", "`kind = \"force\"` acts on nodes"),
-        (grid.to_string() + load + "select = { side = \"left\" }\n", "load.0.select", "all nodes of one cell"),
+        (grid.to_string() + load + "select = { side = \"left\" }\n", "load.0.select", "all nodes of at least one cell"),
     ] {
         let errors = refusals(&(head(0.01, 8, 0.0, "verlet") + &text));
         let [error] = &errors[..] else { panic!("{errors:?}") };

@@ -156,18 +156,18 @@ fn what_is_not_there_is_no_error_in_a_scene() {
         (&["run", "presures"], 4, "= hint: did you mean `pressures`?"),
         (&["check", "meine"], 4, "= hint: did you mean `meine.toml`?"),
         (&["check", "miene.toml"], 4, "= hint: did you mean `meine.toml`?"),
-        (&["run", "--resume", "zebra"], 4, "= hint: a run leaves it in the folder of its output"),
-        (&["new", "nowhere/mine"], 4, "= hint: the folder around it is missing"),
+        (&["run", "--resume", "zebra"], 4, "= hint: a run writes it into its output folder"),
+        (&["new", "nowhere/mine"], 4, "= hint: its parent folder is missing"),
         (&["new", ""], 2, "allowed: the name of a file"),
-        (&["bench", "vertices", "--plot", "nowhere/speed.svg"], 4, "= hint: the folder around it is missing"),
+        (&["bench", "vertices", "--plot", "nowhere/speed.svg"], 4, "= hint: its parent folder is missing"),
         (&["bench", "vertices", "--only", "7"], 2, "--only is 7; allowed: 8, 16, 36, "),
         (&["bench", "vertices", "--only", "2x36"], 2, "100x36, 1000x36, 27778x36"),
         (
             &["check", "ball", "--set", "time.substeps=8,16"],
             2,
-            "= hint: `opruga sweep` takes lists (8,16,32) and ranges",
+            "= hint: `opruga sweep` accepts lists (8,16,32) and ranges",
         ),
-        (&["check", "ball", "--set", "body.ball.mass=0.5..4:log:7"], 2, "= hint: `opruga sweep` takes lists"),
+        (&["check", "ball", "--set", "body.ball.mass=0.5..4:log:7"], 2, "= hint: `opruga sweep` accepts lists"),
     ];
     for (arguments, exit, text) in cases {
         let output = opruga(folder.path(), arguments);
@@ -391,7 +391,7 @@ fn a_command_that_makes_the_step_unstable_is_named_with_what_helps() {
     // An override remains in effect until a command sets the same parameter, so it is not offered then.
     let both = format!("{}{hard}", coarse.replace("value = 1", "value = 20"));
     let all = said(&run(&both, &[]));
-    assert!(all.contains("when the command begins, which a command before it sets") && !all.contains("--set"), "{all}");
+    assert!(all.contains("when the command begins, set by an earlier command") && !all.contains("--set"), "{all}");
 }
 
 #[test]

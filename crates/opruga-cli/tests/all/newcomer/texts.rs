@@ -23,7 +23,7 @@ fn one_slip_of_syntax_is_one_error() {
         good.replace("models = [{", "models = \n  {").replace("}]\n", "},\n  { kind = \"pressure\", nRT = 5.0 },\n]\n");
     let cases = [
         (lists, "a value is missing", ""),
-        (good.replace("mass = 1\n", "mass = 1 kg\n"), "must be quoted", "numbers stand without units: write 1;"),
+        (good.replace("mass = 1\n", "mass = 1 kg\n"), "must be quoted", "numbers have no units: write 1;"),
         (good.replace("mass = 1\n", "mass = 2.5e-3kg\n"), "", "write 2.5e-3;"),
     ];
     for (text, message, hint) in cases {
@@ -88,6 +88,6 @@ fn other_words_of_the_field_lead_to_ours() {
     std::fs::write(folder.path().join("i.toml"), implicit).expect("a file");
     let output = opruga(folder.path(), &["check", "i.toml", "--set", "integrator.kind=heun"]);
     assert_eq!(code(&output), 2);
-    assert!(said(&output).contains("--set integrator=heun takes its defaults"), "{}", said(&output));
+    assert!(said(&output).contains("--set integrator=heun uses its defaults"), "{}", said(&output));
     assert_eq!(code(&opruga(folder.path(), &["check", "i.toml", "--set", "integrator=verlet"])), 0);
 }

@@ -33,7 +33,7 @@ fn what_attracts_attention_at_the_end_of_a_scene_is_told_there_once() {
     pass(&mut session, 1);
     let message = session.shown().message.expect("it is told at the end");
     assert_eq!(message.severity, Severity::Done);
-    let told = |said: &str| said.contains("inside out");
+    let told = |said: &str| said.contains("inverted");
     assert!(
         matches!(&message.report, Report::AtTheEnd(time, list) if (time - 1.0).abs() < 1e-9 && told(&list[0].message))
     );

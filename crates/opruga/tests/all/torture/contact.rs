@@ -92,7 +92,7 @@ fn plates_that_meet_are_told_with_time_and_pair() {
     let said = &warning.message;
     let time: f64 = said["at t = ".len()..].split(' ').next().and_then(|t| t.parse().ok()).expect("a time");
     assert!((1.375..1.41).contains(&time), "{said}");
-    assert!(said.contains("obstacles 0 (half_space) and 1 (half_space) left body `b` no room: node "), "{said}");
+    assert!(said.contains("obstacles 0 (half_space) and 1 (half_space) left no room for body `b`: node "), "{said}");
     // Plates that just touch leave no space, either, nor do those that stop slightly before.
     for way in [1.1, 1.0999] {
         let mut world = press(way, "");

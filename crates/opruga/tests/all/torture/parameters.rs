@@ -28,10 +28,13 @@ fn parameters_that_make_no_sense() {
     let springs = "{ kind = \"mass_spring\", stiffness = 10.0 }";
     let cases = [
         // 43: springs of zero length
-        (chain("[[0, 0], [0, 0]]", springs), "error[scene.shape]: points 0 and 1 follow each other at the same place"),
+        (
+            chain("[[0, 0], [0, 0]]", springs),
+            "error[scene.shape]: the consecutive points 0 and 1 are at the same position",
+        ),
         (
             chain("[[0, 0], [1, 0], [1, 0]]", springs),
-            "error[scene.shape]: points 1 and 2 follow each other at the same place",
+            "error[scene.shape]: the consecutive points 1 and 2 are at the same position",
         ),
         // 47: Poisson's ratio of finite elements, 46 and 48: their modulus
         (solid("youngs_modulus = 1e5, poissons_ratio = 0.5"), "error[scene.range]: `poissons_ratio` is 0.5"),
@@ -50,11 +53,11 @@ fn parameters_that_make_no_sense() {
         (ring(16, "{ kind = \"mass_spring\", stiffness = -1 }", ""), "error[scene.range]: `stiffness` is -1"),
         (
             ring(16, "{ kind = \"mass_spring\" }", ""),
-            "error[model.one_of]: exactly one of `stiffness`, `modulus` must be given; here are none of them",
+            "error[model.one_of]: exactly one of `stiffness`, `modulus` must be given; none of them is given",
         ),
         (
             ring(16, "{ kind = \"mass_spring\", stiffness = 1, modulus = 1 }", ""),
-            "exactly one of `stiffness`, `modulus` must be given; here are `stiffness`, `modulus`",
+            "exactly one of `stiffness`, `modulus` must be given; given are `stiffness`, `modulus`",
         ),
         (ring(16, "{ kind = \"bending\", stiffness = -0.1 }", ""), "error[scene.range]: `stiffness` is -0.1"),
         (ring(16, BALL, &FLOOR.replace("friction = 0.5", "friction = -0.5")), "error[scene.range]: `friction` is -0.5"),
@@ -66,9 +69,9 @@ fn parameters_that_make_no_sense() {
         ),
         (
             ring(16, "{ kind = \"mass_spring\", stiffness = 1e300 }", ""),
-            "step.not_finite: body `b`: stability: the forces around the state are not finite, so no stable step can be given; allowed: \
-             forces, stiffnesses and their ratios to the masses of nodes below 1e300; hint: the largest number of its models is \
-             `stiffness` = 1e300 of `mass_spring`, and its lightest node has 0.0416667 kg",
+            "step.not_finite: body `b`: stability: the forces around the state are not finite, so no stable step can be computed; allowed: forces, \
+             stiffnesses and their ratios to the masses of nodes below 1e300; hint: the largest number of its models is `stiffness` = 1e300 of \
+             `mass_spring`, and its lightest node has 0.0416667 kg",
         ),
         // 58: pins that prescribe two positions of a node
         (
@@ -77,7 +80,7 @@ fn parameters_that_make_no_sense() {
                 BALL,
                 "pin = [{ select = { nodes = [0, 1] }, motion = [[0, 0, 0], [1, 1, 0]] }, { select = { nodes = [1, 2] }, motion = [[0, 0, 0], [1, -1, 0]] }]",
             ),
-            "error[scene.conflict]: node 1 of body `b` is held by `body.0.pin.0.select` in line ",
+            "error[scene.conflict]: node 1 of body `b` is also held by `body.0.pin.0.select` in line ",
         ),
         (
             ring(
@@ -85,7 +88,7 @@ fn parameters_that_make_no_sense() {
                 BALL,
                 "fixed = true\npin = [{ select = { node = 3 }, axes = \"y\", motion = [[0, 5, 0], [1, 5, 1]] }]",
             ),
-            "too, which leads it elsewhere along y at t = 1 s",
+            ", which moves it elsewhere along y at t = 1 s",
         ),
         // 63: so far away that an element is a few rounding units wide
         (
@@ -95,16 +98,16 @@ fn parameters_that_make_no_sense() {
         // so fast that it leaves that region within a step
         (
             ring(64, BALL, "velocity = [1e300, 0]"),
-            "scene.range: body `b`: velocity: `velocity` and `angular_velocity` let it begin with 1e300 m/s along an axis, ",
+            "scene.range: body `b`: velocity: `velocity` and `angular_velocity` give it 1e300 m/s along an axis at the start, ",
         ),
         (ring(64, BALL, "angular_velocity = 1e200"), "hint: are its units mixed (metres, seconds, radians)?"),
         (
             ring(64, BALL, "rotation = 1e200"),
-            "error[scene.range]: `rotation` is 1e200: rounding loses where so large an angle",
+            "error[scene.range]: `rotation` is 1e200: rounding loses the direction of so large an angle",
         ),
         (
             ring(64, BALL, "scale = 1e-320"),
-            "error[scene.range]: `scale` is 1e-320: products of lengths so small are zero",
+            "error[scene.range]: `scale` is 1e-320: products of such small lengths are zero",
         ),
         // 72: a drag that would end at its beginning
         (
