@@ -60,7 +60,7 @@ fn what_no_scene_could_say_is_refused_with_the_code_of_the_reader() {
         ("substeps", "scene.range", "from 1 to", |b| b.time.substeps = 0),
         ("frame", "scene.range", "frame", |b| b.time.frame = -0.1),
         ("seconds", "scene.range", "seconds", |b| b.time.seconds = f64::NAN),
-        ("frames", "scene.range", "stand still", |b| (b.time.seconds, b.time.frame) = (1e30, 1e-3)),
+        ("frames", "scene.range", "would not advance", |b| (b.time.seconds, b.time.frame) = (1e30, 1e-3)),
         ("gravity", "scene.range", "gravity", |b| b.surroundings.gravity[1] = f64::NAN),
         ("drag", "scene.range", "drag", |b| b.surroundings.drag = -1.0),
         ("limit", "scene.range", "largest_force", |b| b.surroundings.largest_force = Some(0.0)),

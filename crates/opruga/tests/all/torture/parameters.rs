@@ -277,7 +277,7 @@ fn a_chamber_turned_inside_out_is_counted_and_makes_no_energy() {
     }
     let warnings = world.warnings();
     let warning = warnings.iter().find(|w| w.code == "pressure.inverted").expect("a warning");
-    assert!(warning.count > 0 && warning.message.contains("inside out"), "{warning:?}");
+    assert!(warning.count > 0 && warning.message.contains("was inverted"), "{warning:?}");
 }
 
 /// Rows 54 and 72: a ball of gas that is flattened, by a wall or by a shaking pointer, keeps within the energy that it was given. The gas once pushed
