@@ -32,7 +32,7 @@ fn a_field_that_another_switches_off_is_told_of_with_what_it_needs() {
     let cases = [
         (
             explicit.clone() + &body(square, "", &format!("{fem}, mooney_share = 0.3")),
-            Some("where `material` is \"mooney_rivlin\""),
+            Some("if `material` is \"mooney_rivlin\""),
         ),
         (
             explicit.clone() + &body(square, "", &format!("{fem}, material = \"mooney_rivlin\", mooney_share = 0.3")),
@@ -41,7 +41,7 @@ fn a_field_that_another_switches_off_is_told_of_with_what_it_needs() {
         (explicit.clone() + &body(square, "tetrahedra_per_hexahedron = 5", fem), Some("in 3D")),
         (
             explicit.clone() + &body(ring, "thickness = 1.0", "kind = \"pressure\", nRT = 1.0, gamma = 1.2"),
-            Some("where `process` is \"adiabatic\""),
+            Some("if `process` is \"adiabatic\""),
         ),
         (
             explicit.clone()
@@ -60,7 +60,7 @@ fn a_field_that_another_switches_off_is_told_of_with_what_it_needs() {
         (statics.replace("\"equilibrium\"", "\"equilibrium\"\nload_steps = 3") + &body(square, "", fem), None),
         (obstacle("pivot = [0, 0]") + &body(square, "", fem), Some("with `spin`")),
         (obstacle("pivot = [0, 0]\nspin = 1.0") + &body(square, "", fem), None),
-        (obstacle("rest_speed = 0.1") + &body(square, "", fem), Some("where `restitution` is not 0")),
+        (obstacle("rest_speed = 0.1") + &body(square, "", fem), Some("if `restitution` is not 0")),
         (obstacle("rest_speed = 0.1\nrestitution = 0.5") + &body(square, "", fem), None),
     ];
     for (text, expected) in cases {
