@@ -42,10 +42,10 @@ messages! {
         #[allowed("\"exact\"")] #[hint("`backward_euler` and `bdf2` have a real-time setting")]
         DampsNothing { integrator: &'static str },
         /// Real time without a matrix to keep.
-        /// `arc_length` without a matrix to factor.
         "integrator.no_matrix" #[error("`linear_solver` is \"matrix_free\", but `accuracy` is \"real_time\", which keeps a matrix")] #[value("\"matrix_free\"")] #[parameters("linear_solver", "accuracy")]
         #[allowed("\"auto\", \"conjugate_gradients\", \"cholesky\"")]
         MatrixFreeInRealTime {},
+        /// `arc_length` without a matrix to factor.
         "integrator.no_matrix" #[error("`linear_solver` is \"matrix_free\", but `arc_length` factors a matrix")] #[value("\"matrix_free\"")] #[parameters("linear_solver", "arc_length")]
         #[allowed("\"auto\", \"conjugate_gradients\", \"cholesky\"")]
         MatrixFreeByArc {},

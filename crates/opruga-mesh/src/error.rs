@@ -118,12 +118,12 @@ messages! {
         "part.mesh" #[error("`{name}` has {values} values for {cells} cells")]
         CellValues { name: String, values: usize, cells: usize },
         /// The number of values of nodes differs from the number of nodes.
-        /// An operation that supports only triangles and tetrahedra was applied to another cell.
-        /// Hexahedra that cannot be cut into five tetrahedra each such that common faces are cut in the same way.
         "part.mesh" #[error("`{name}` has {values} numbers, {components} per node, for {nodes} nodes")]
         NodeValues { name: String, values: usize, components: usize, nodes: usize },
+        /// An operation that supports only triangles and tetrahedra was applied to another cell.
         "part.mesh" #[error("a {element} is not a triangle or tetrahedron; cut it into these first")]
         NotSimplices { element: Element },
+        /// Hexahedra that cannot be cut into five tetrahedra each such that common faces are cut in the same way.
         "part.mesh" #[error("the hexahedra around the edge from node {} to node {} cannot alternate: a loop of an odd number of edges passes through it",
             edge[0], edge[1])]
         OddLoop { edge: [u32; 2] },

@@ -7,21 +7,21 @@ opruga::math::messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum ViewError {
         /// A program controlled the run, and its actions are not part of the scene.
-        /// The scene is not text.
-        /// An override of the run has an invalid value.
-        /// An override of the run names nothing in the scene.
-        /// It contains no state.
-        /// The scene inside and the states are inconsistent.
         "recording.led" #[error("a program controlled this run, and a scene file cannot express that")] #[hint("`opruga replay` shows it")]
         Led {},
+        /// The scene is not text.
         "recording.scene" #[error("the scene inside is not UTF-8 text")]
         SceneNotUtf8 {},
+        /// An override of the run has an invalid value.
         "recording.override" #[error("`{path}` is set to `{value}`, which is not a value")]
         NoValue { path: String, value: String },
+        /// An override of the run names nothing in the scene.
         "recording.override" #[error("`{path}` names nothing in the scene")]
         NoPath { path: String },
+        /// It contains no state.
         "recording.no_frame" #[error("the recording contains no frame")]
         Empty {},
+        /// The scene inside and the states are inconsistent.
         "recording.other_program" #[error("its scene does not produce its first state: another program recorded it")]
         OtherProgram {},
         /// Its end is damaged.

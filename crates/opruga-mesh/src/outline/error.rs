@@ -30,9 +30,9 @@ messages! {
         "shape.crossing" #[error("{what} near {}", at(position))] #[value("{}", position.map(number).join(", "))]
         Meeting { what: MeetingOf, parts: [u32; 2], position: [f64; 2] },
         /// With the given spacing of nodes \[m\] edges of these parts cross, because the outline has finer features.
-        /// A filling with this spacing of nodes \[m\] would have, or had, too many nodes.
         "shape.spacing" #[error("with nodes {} m apart, edges cross near {}", number(*spacing), at(position))] #[value("{spacing}")]
         TooCoarse { spacing: f64, parts: [u32; 2], position: [f64; 2] },
+        /// A filling with this spacing of nodes \[m\] would have, or had, too many nodes.
         "limit.nodes" #[error("filled with nodes {} m apart, the outline would have about {nodes} nodes", number(*spacing))] #[value("{spacing}")]
         TooFine { spacing: f64, nodes: u64 },
         /// The boxes of edges overlap too often.

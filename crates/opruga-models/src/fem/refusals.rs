@@ -47,14 +47,14 @@ messages! {
         #[allowed("\"refuse\" or \"accept\"")] #[hint("leave `locking` out")]
         NodalVolumeInPlaneStress {},
         /// Nodal volumes for cells that do not lock.
-        /// Values of cells that the mesh does not have.
-        /// A mesh without values of cells.
         "model.locking" #[error("`locking` is \"nodal_volume\", but the cells are not linear triangles or tetrahedra and do not lock")] #[value("\"nodal_volume\"")] #[parameters("locking")]
         #[allowed("\"refuse\" or \"accept\"")] #[hint("leave `locking` out")]
         NodalVolumeOfOthers {},
+        /// Values of cells that the mesh does not have.
         "model.no_values" #[error("`{field}` is \"{name}\", but the cells of the mesh have no such numbers")] #[value("\"{name}\"")] #[parameters(field)] #[allowed("{known}")]
         #[hint("`{instead}` gives one number for all cells")]
         NoValues { field: &'static str, name: String, known: String, instead: &'static str },
+        /// A mesh without values of cells.
         "model.no_values" #[error("`{field}` is \"{name}\", but the cells of the mesh have no such numbers")] #[value("\"{name}\"")] #[parameters(field)]
         #[allowed("none: the mesh has no numbers for its cells")] #[hint("`{instead}` gives one number for all cells")]
         NoValuesAtAll { field: &'static str, name: String, instead: &'static str },

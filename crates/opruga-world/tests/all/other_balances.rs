@@ -217,8 +217,8 @@ fn boxes_inside_out_at_a_point_are_odd() {
     assert!((cell.smallest_volume_ratio - (1.0 - 1.4 * corner)).abs() < 1e-12, "{cell:?}");
     let told = world.inverted_cells().expect("a cell inside out").message;
     // The warning contains the minimum over the whole cell, at the corner.
-    // Skewed boxes are undeformed at rest.
     assert!(told.contains("1 cell is inverted; the first is cell 0 of body `body`, with J = -0.4"), "{told}");
+    // Skewed boxes are undeformed at rest.
     let mut mesh = Mesh::<3>::grid([0.0; 3], [1.0; 3], [2; 3]).expect("a grid");
     mesh.positions
         .iter_mut()
