@@ -223,16 +223,6 @@ impl<const D: usize> Clearance<D> {
         known.until = of_both(&self.paths, &known.bodies) + (1.0 - ROUNDING) * distance;
     }
 
-    /// Raises what is known of a pair, unless it has to come out of another body: it is so far apart at the start of the step [m].
-    #[inline]
-    pub(crate) fn raise(&mut self, list: usize, pair: usize, distance: f64) {
-        let known = &mut self.pairs[list][pair];
-        if known.until > f64::NEG_INFINITY {
-            let until = of_both(&self.paths, &known.bodies) + (1.0 - ROUNDING) * distance;
-            known.until = until.larger(known.until);
-        }
-    }
-
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         let pairs = self.pairs.iter().map(Vec::capacity).sum::<usize>() + self.merged.capacity();

@@ -5,13 +5,23 @@ use crate::surface::Surface;
 use crate::vector::{dot, scaled, subtract};
 use opruga_math::{Lane, Pack, WIDTH, Work, lanes};
 
+/// A candidate that may touch in a step, by the bound of its distance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unclear {
+    /// Its index among the candidates.
+    pub(crate) candidate: usize,
+    pub(crate) features: [u32; 2],
+    /// The distance at the start of the step [m].
+    pub(crate) distance: f64,
+}
+
 /// The distances of pairs of a vertex and a facet, or of two edges, with the points at `x` [m].
 ///
 /// The distance of a vertex and a facet is negative if the vertex lies behind the plane of the facet.
 pub(crate) struct Distances<'a, const D: usize> {
     pub(crate) surface: &'a Surface<D>,
     pub(crate) x: &'a [[f64; D]],
-    pub(crate) pairs: &'a [[u32; 2]],
+    pub(crate) pairs: &'a [Unclear],
     /// Whether the pairs are those of a vertex and a facet.
     pub(crate) with_facet: bool,
     /// The distance of every pair [m].
@@ -26,8 +36,8 @@ impl<const D: usize> Work for Distances<'_, D> {
         distances.clear();
         for eight in pairs.chunks(WIDTH) {
             // The last pair fills the places that are left over.
-            let mut own = [eight[eight.len() - 1]; WIDTH];
-            own[..eight.len()].copy_from_slice(eight);
+            let mut own = [eight[eight.len() - 1].features; WIDTH];
+            own.iter_mut().zip(eight).for_each(|(own, pair)| *own = pair.features);
             let found = if with_facet {
                 let mut facet = [[P::zero(); D]; D];
                 for (k, corner) in facet.iter_mut().enumerate() {
@@ -111,7 +121,8 @@ fn of_edges<S: Lane, const D: usize>(a: &[[S; D]; 2], b: &[[S; D]; 2]) -> S {
     let denominator = aa * ee - ab * ab;
     let crossing = (S::splat(PARALLEL) * aa * ee).less(denominator);
     let mut s = S::select(crossing, unit((ab * f - c * ee) / denominator), S::zero());
-    let t = (ab * s + f) / ee;
+    // The closest point of a second segment without length is its start.
+    let t = S::select(S::zero().less(ee), (ab * s + f) / ee, -S::one());
     let (before, behind) = (t.less(S::zero()), S::one().less(t));
     s = S::select(before, unit(-c / aa), S::select(behind, unit((ab - c) / aa), s));
     let t = unit(t);

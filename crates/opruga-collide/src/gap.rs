@@ -76,6 +76,16 @@ impl<const D: usize> Gap<D> {
         let between = subtract(&mean(&[1.0 - s, s], &xa), &mean(&[1.0 - t, t], &xb));
         let sides = |edge: u32| surface.sides[edge as usize];
         let closed = [a, b].iter().all(|e| sides(*e) != [u32::MAX; 2]);
+        // Usually the vector points out of all facets beside the second edge and into those beside the first: then their angles do not matter.
+        let points_out = || {
+            [(a, -1.0), (b, 1.0)].into_iter().all(|(edge, sign)| {
+                let mut beside = sides(edge).into_iter().filter(|side| *side != u32::MAX);
+                beside.all(|side| {
+                    let normal = facet_normal(&surface.facets[side as usize].map(|p| x[p as usize]));
+                    sign * dot(&normal, &between) > 0.0
+                })
+            })
+        };
         // Out of the second body, and into the first.
         let outward = || {
             let mut sum = [0.0; D];
@@ -96,15 +106,9 @@ impl<const D: usize> Gap<D> {
             let sign = if dot(&cross, &sum) < 0.0 { -1.0 } else { 1.0 };
             scaled(&unit(&cross), sign)
         };
-        out.point_along(&between, closed, &xa[0], outward);
+        let may_be_inside = closed && !points_out();
+        out.point_along(&between, may_be_inside, &xa[0], outward);
         Some(out)
-    }
-
-    /// The distance of two edges [m].
-    pub(crate) fn distance_of_edges(surface: &Surface<D>, x: &[[f64; D]], a: u32, b: u32) -> f64 {
-        let [a, b] = [a, b].map(|edge| surface.edges[edge as usize].map(|p| x[p as usize]));
-        let [s, t] = closest_of_segments(&a, &b);
-        length(&subtract(&mean(&[1.0 - s, s], &a), &mean(&[1.0 - t, t], &b)))
     }
 
     /// Sets gap and normal from the vector between the closest points.

@@ -1,7 +1,7 @@
 //! From candidates to contacts: the relevant gaps.
 
 use crate::ccd::{edge_meets_edge, vertex_meets_facet};
-use crate::distances::Distances;
+use crate::distances::{Distances, Unclear};
 use crate::gap::Gap;
 use crate::law::PairLaw;
 use crate::row::Row;
@@ -21,51 +21,55 @@ impl<const D: usize> Touching<D> {
         self.heads.clear();
         self.spread.clear();
         self.close.iter_mut().for_each(Vec::clear);
-        self.apart.iter_mut().for_each(Vec::clear);
-        let pairs = self.candidates.vertex_facet.len();
-        let mut k = 0;
-        while k < pairs {
-            let [vertex, _] = self.candidates.vertex_facet[k];
-            let first = k;
-            while self.candidates.vertex_facet.get(k).is_some_and(|pair| pair[0] == vertex) {
-                k += 1;
-            }
-            self.take_gaps_of_vertex(vertex, first..k, h);
+        self.find_unclear();
+        let unclear = std::mem::take(&mut self.unclear);
+        for own in unclear[0].chunk_by(|a, b| a.features[0] == b.features[0]) {
+            self.take_gaps_of_vertex(own, h);
         }
-        let farthest = self.thickest[0].larger(self.thickest[1]);
-        for k in 0..self.candidates.edge_edge.len() {
-            if !self.clearance.is_clear(1, k, farthest) {
-                self.take_gap_of_edges(k, h);
-            }
-        }
-        self.measure_apart();
+        unclear[1].iter().for_each(|unclear| self.take_gap_of_edges(unclear, h));
+        self.unclear = unclear;
         self.put_passing(h);
     }
 
-    /// Computes the distances of candidates whose boxes do not meet. The distance of the boxes is a weak bound for features that lie across the
-    /// axes; such pairs would be checked again in every step.
-    fn measure_apart(&mut self) {
-        let Touching {
-            surface, before: [x, _], candidates, clearance, apart, apart_features: pairs, distances, ..
-        } = self;
-        for (list, apart) in apart.iter().enumerate() {
-            let all = [&candidates.vertex_facet, &candidates.edge_edge][list];
-            pairs.clear();
-            pairs.extend(apart.iter().map(|k| all[*k as usize]));
+    /// Lists the candidates that may touch by the bounds of their distances, and computes these distances. All candidates of points that began
+    /// inside other bodies are among them, and all of bodies at rest.
+    fn find_unclear(&mut self) {
+        let Touching { surface, before: [x, _], candidates, clearance, unclear, distances, thickest, .. } = self;
+        let of_obstacle = |point: u32| usize::from(surface.is_of_obstacle(point));
+        let mut inside = self.began_inside.iter().peekable();
+        unclear.iter_mut().for_each(Vec::clear);
+        for (k, features @ [vertex, facet]) in candidates.vertex_facet.iter().enumerate() {
+            while inside.next_if(|other| *other < vertex).is_some() {}
+            let all = self.at_once || inside.peek() == Some(&vertex);
+            let farthest = thickest[of_obstacle(*vertex) | of_obstacle(surface.facets[*facet as usize][0])];
+            if all || !clearance.is_clear(0, k, farthest) {
+                unclear[0].push(Unclear { candidate: k, features: *features, distance: 0.0 });
+            }
+        }
+        let farthest = thickest[0].larger(thickest[1]);
+        for (k, features) in candidates.edge_edge.iter().enumerate() {
+            if !clearance.is_clear(1, k, farthest) {
+                unclear[1].push(Unclear { candidate: k, features: *features, distance: 0.0 });
+            }
+        }
+        for (list, pairs) in unclear.iter_mut().enumerate() {
             candidates.simd.run(Distances { surface, x, pairs, with_facet: list == 0, distances });
-            for (k, distance) in apart.iter().zip(distances.iter()) {
-                let [own, other] = clearance.bodies(list, *k as usize);
-                let holds_on_both_sides = own == other || list == 0 && !surface.closed[all[*k as usize][1] as usize];
-                clearance.raise(list, *k as usize, if holds_on_both_sides { distance.abs() } else { *distance });
+            for (pair, distance) in pairs.iter_mut().zip(distances.iter()) {
+                pair.distance = *distance;
             }
         }
     }
 
-    /// Computes the gaps of all candidates of one vertex.
-    fn take_gaps_of_vertex(&mut self, vertex: u32, candidates: Range<usize>, h: f64) {
+    /// Computes the gaps of the candidates of one vertex that may touch.
+    fn take_gaps_of_vertex(&mut self, unclear: &[Unclear], h: f64) {
+        let vertex = unclear[0].features[0];
         self.around.clear();
         let close = self.close[0].len();
-        let mut inside = self.take_gaps_of(candidates.clone(), h, 0.0, false);
+        let mut inside = false;
+        for Unclear { candidate, distance, .. } in unclear {
+            inside |= self.take_gap_of_vertex(*candidate, h, 0.0, *distance);
+        }
+        let candidates = self.candidates_of(unclear);
         if inside {
             // The nearest facet is needed there, whatever was known before.
             self.around.clear();
@@ -87,26 +91,42 @@ impl<const D: usize> Touching<D> {
         self.take_around(false);
     }
 
+    /// All candidates of the vertex of some of them.
+    fn candidates_of(&self, some: &[Unclear]) -> Range<usize> {
+        let (all, vertex) = (&self.candidates.vertex_facet, some[0].features[0]);
+        let (mut first, mut end) = (some[0].candidate, some[some.len() - 1].candidate + 1);
+        while first > 0 && all[first - 1][0] == vertex {
+            first -= 1;
+        }
+        while all.get(end).is_some_and(|pair| pair[0] == vertex) {
+            end += 1;
+        }
+        first..end
+    }
+
+    /// Whether features at a distance stay farther apart than another one [m]. The displacement of a point is at most what contact may push it.
+    fn stay_apart(&self, distance: f64, other: f64, first: &[u32], second: &[u32]) -> bool {
+        let reach = |points: &[u32]| points.iter().fold(0.0, |most: f64, p| self.reach.push_of(*p).larger(most));
+        distance > other + 2.0 * (reach(first) + reach(second))
+    }
+
     /// Computes the gap of a candidate of two edges.
-    fn take_gap_of_edges(&mut self, candidate: usize, h: f64) {
-        let pair @ [a, b] = self.candidates.edge_edge[candidate];
+    fn take_gap_of_edges(&mut self, unclear: &Unclear, h: f64) {
+        let Unclear { candidate, features: pair @ [a, b], distance } = *unclear;
         let edges = pair.map(|e| self.surface.edges[e as usize]);
         let bodies = self.clearance.bodies(1, candidate);
         let law = *self.laws.of(bodies[0], bodies[1]);
-        let apart = self.reach.apart(&edges[0], &edges[1]);
-        if apart > law.thickness {
-            self.apart[1].push(candidate as u32);
-            return self.clearance.note(1, candidate, apart);
+        self.clearance.note(1, candidate, distance);
+        if self.stay_apart(distance, law.thickness, &edges[0], &edges[1])
+            || self.reach.apart(&edges[0], &edges[1]) > law.thickness
+        {
+            return;
         }
         if self.are_entangled(bodies) {
             return;
         }
-        let gap = Gap::of_edges(&self.surface, &self.before[0], a, b);
-        let between = || Gap::distance_of_edges(&self.surface, &self.before[0], a, b);
-        let separation = gap.map_or_else(between, |gap| gap.gap.abs());
-        self.close[1].push((pair, separation));
-        self.clearance.note(1, candidate, separation);
-        let Some(mut gap) = gap else { return };
+        self.close[1].push((pair, distance));
+        let Some(mut gap) = Gap::of_edges(&self.surface, &self.before[0], a, b) else { return };
         if bodies[0] == bodies[1] && gap.gap < 0.0 {
             (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
         }
@@ -151,34 +171,49 @@ impl<const D: usize> Touching<D> {
     fn take_gaps_of(&mut self, candidates: Range<usize>, h: f64, distance: f64, all: bool) -> bool {
         let mut inside = false;
         for k in candidates {
-            let pair @ [vertex, facet] = self.candidates.vertex_facet[k];
+            let [vertex, facet] = self.candidates.vertex_facet[k];
             let farthest =
                 self.thickest_at(vertex).larger(self.thickest_at(self.surface.facets[facet as usize][0])) + distance;
             if !all && self.clearance.is_clear(0, k, farthest) {
                 continue;
             }
-            let corners = &self.surface.facets[facet as usize];
-            let [own, other] = self.clearance.bodies(0, k);
-            let law = *self.laws.of(own, other);
-            let apart = self.reach.apart(&[vertex], corners);
-            if apart > law.thickness + distance {
-                self.apart[0].push(k as u32);
-                self.clearance.note(0, k, apart);
-                continue;
-            }
-            let mut gap = Gap::of_vertex_and_facet(&self.surface, &self.before[0], vertex, facet);
-            if distance == 0.0 {
-                self.close[0].push((pair, gap.gap.abs()));
-            }
-            if own == other && gap.gap < 0.0 {
-                // Contact of a body with itself acts on both sides.
-                (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
-            }
-            // A vertex inside has to come out, however deep it is.
-            self.clearance.note(0, k, if gap.gap < 0.0 { f64::NEG_INFINITY } else { gap.gap });
-            inside |= gap.gap < 0.0;
-            self.push(gap, &law, h, pair, true, distance);
+            inside |= self.take_gap_of_vertex(k, h, distance, f64::NEG_INFINITY);
         }
+        inside
+    }
+
+    /// Computes the gap of a candidate of a vertex if it may come closer than a distance [m], given its present one (negative behind the plane of the
+    /// facet). Returns whether the vertex seems to be inside another body.
+    fn take_gap_of_vertex(&mut self, candidate: usize, h: f64, distance: f64, mut separation: f64) -> bool {
+        let pair @ [vertex, facet] = self.candidates.vertex_facet[candidate];
+        let corners = &self.surface.facets[facet as usize];
+        let [own, other] = self.clearance.bodies(0, candidate);
+        let law = *self.laws.of(own, other);
+        if separation.is_finite() && (own == other || !self.surface.closed[facet as usize]) {
+            // There is no inside.
+            separation = separation.abs();
+        }
+        if self.stay_apart(separation, law.thickness + distance, &[vertex], corners) {
+            self.clearance.note(0, candidate, separation);
+            return false;
+        }
+        let apart = self.reach.apart(&[vertex], corners);
+        if apart > law.thickness + distance {
+            self.clearance.note(0, candidate, apart.larger(separation));
+            return false;
+        }
+        let mut gap = Gap::of_vertex_and_facet(&self.surface, &self.before[0], vertex, facet);
+        if distance == 0.0 {
+            self.close[0].push((pair, gap.gap.abs()));
+        }
+        if own == other && gap.gap < 0.0 {
+            // Contact of a body with itself acts on both sides.
+            (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
+        }
+        // A vertex inside has to come out, however deep it is.
+        let inside = gap.gap < 0.0;
+        self.clearance.note(0, candidate, if inside { f64::NEG_INFINITY } else { gap.gap });
+        self.push(gap, &law, h, pair, true, distance);
         inside
     }
 
@@ -192,10 +227,8 @@ impl<const D: usize> Touching<D> {
         with_facet: bool,
         distance: f64,
     ) {
-        // The displacement of a point is at most what contact may push it.
-        let first = if with_facet { 1 } else { 2 };
-        let reach = |points: &[u32]| points.iter().fold(0.0, |most: f64, p| self.reach.push_of(*p).larger(most));
-        if gap.gap > law.thickness + distance + 2.0 * (reach(&gap.points[..first]) + reach(&gap.points[first..])) {
+        let (first, second) = gap.points.split_at(if with_facet { 1 } else { 2 });
+        if self.stay_apart(gap.gap, law.thickness + distance, first, second) {
             return;
         }
         let mut meets = true;

@@ -3,6 +3,7 @@
 use crate::candidates::Candidates;
 use crate::clearance::Clearance;
 use crate::coupled::{Coupled, Respond};
+use crate::distances::Unclear;
 use crate::gap::Gap;
 use crate::impulses::{Problem, Turns};
 use crate::law::Laws;
@@ -67,10 +68,8 @@ pub struct Touching<const D: usize> {
     pub(crate) candidates: Candidates<D>,
     pub(crate) reach: Reach<D>,
     pub(crate) clearance: Clearance<D>,
-    /// The candidates of a vertex and a facet, and of two edges, whose boxes do not meet in the step although their bounds allow contact; their
-    /// features and their distances [m].
-    pub(crate) apart: [Vec<u32>; 2],
-    pub(crate) apart_features: Vec<[u32; 2]>,
+    /// The candidates of a vertex and a facet, and of two edges, that may touch in the step by the bounds of their distances.
+    pub(crate) unclear: [Vec<Unclear>; 2],
     pub(crate) distances: Vec<f64>,
     /// The laws for which candidates were searched.
     found_for: Laws,

@@ -89,7 +89,7 @@ fn tower(rule: &str, accuracy: &str, response: &str) -> (World<2>, [f64; 2]) {
     (world, top)
 }
 
-/// Responses to impulses use the matrix that is kept from step to step, and steps and contact agree only to a tenth of the thickness.
+/// Responses to impulses use the matrix that is kept from step to step, and steps and contact agree only to half the thickness.
 #[test]
 fn bodies_of_a_budget_lie_where_exact_steps_leave_them() {
     for rule in ["backward_euler", "bdf2"] {
