@@ -373,7 +373,8 @@ impl<const D: usize> Touching<D> {
         self.rows.clear();
         self.spread.clear();
         let mut take = |id, gap: Gap<D>, coefficient, force: f64, friction: [f64; D]| {
-            let mut row = Row::new(id, &gap, 0.0, coefficient);
+            let mut row = Row::new(id, (gap.points, gap.weights), gap.normal, coefficient);
+            row.gap = gap.gap;
             row.put_into(&mut self.spread, &self.surface);
             (row.normal_impulse, row.friction_impulse) = (force * h, scaled(&friction, h));
             self.rows.push(row);

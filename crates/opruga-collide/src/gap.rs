@@ -45,9 +45,7 @@ impl<const D: usize> Gap<D> {
             (out.points[k + 1], out.weights[k + 1]) = (corners[k], -weights[k]);
         }
         let within = weights.iter().all(|w| *w > 0.0);
-        let outward = || {
-            if within { unit(&facet_normal(&at)) } else { normal_around(surface, x, &corners, &weights) }
-        };
+        let outward = || if within { facet_normal(&at) } else { normal_around(surface, x, &corners, &weights) };
         // Usually the point is outside of all facets around; then their angles do not matter.
         let may_be_inside = surface.closed[facet as usize]
             && (within || !lies_outside_of_all(surface, x, (&corners, &weights), &between));
@@ -104,7 +102,7 @@ impl<const D: usize> Gap<D> {
                 cross[d] = da[i] * db[j] - da[j] * db[i];
             }
             let sign = if dot(&cross, &sum) < 0.0 { -1.0 } else { 1.0 };
-            scaled(&unit(&cross), sign)
+            scaled(&cross, sign)
         };
         let may_be_inside = closed && !points_out();
         out.point_along(&between, may_be_inside, &xa[0], outward);
@@ -129,7 +127,7 @@ impl<const D: usize> Gap<D> {
             let sign = if inside { -1.0 } else { 1.0 };
             (self.gap, self.normal) = (sign * distance, scaled(between, sign / distance));
         } else {
-            (self.gap, self.normal) = (0.0, outward());
+            (self.gap, self.normal) = (0.0, unit(&outward()));
         }
     }
 
@@ -203,5 +201,5 @@ fn normal_around<const D: usize>(
             sum[d] += angle * n[d];
         }
     }
-    unit(&sum)
+    sum
 }

@@ -84,6 +84,7 @@ mod inside;
 mod kept;
 mod law;
 mod motion;
+mod near;
 mod newton;
 mod outline;
 mod overlaps;

@@ -138,8 +138,9 @@ impl<const D: usize> Touching<D> {
             let (pair, with_facet) = pair_of(id);
             let bodies = self.bodies_of(pair, with_facet);
             let law = *self.laws.of(bodies[0], bodies[1]);
-            let row = self.row(&gap, &law, h, pair, with_facet);
-            if row.mass[0] > 0.0 {
+            let near = self.near(&gap, &law, h, pair, with_facet);
+            let mut row = near.into_row(&mut self.spread, &self.surface);
+            if row.can_move(&self.spread, &self.inverse_mass) {
                 self.rows.push(row);
             }
         }

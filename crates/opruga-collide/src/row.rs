@@ -1,7 +1,6 @@
 //! One contact, and its turn in a sweep.
 
 use crate::coupled::Coupled;
-use crate::gap::Gap;
 use crate::spread::{Spread, Weighted};
 use crate::surface::Surface;
 use crate::vector::{dot, length, scaled, subtract};
@@ -45,14 +44,14 @@ pub(crate) struct Row<const D: usize> {
 const IMMOBILE: f64 = 1e-12;
 
 impl<const D: usize> Row<D> {
-    pub(crate) fn new(id: u64, gap: &Gap<D>, thickness: f64, friction: f64) -> Row<D> {
+    pub(crate) fn new(id: u64, (points, weights): ([u32; 4], [f64; 4]), normal: [f64; D], friction: f64) -> Row<D> {
         Row {
             id,
-            points: gap.points,
-            weights: gap.weights,
+            points,
+            weights,
             spread: [0; 2],
-            normal: gap.normal,
-            gap: gap.gap - thickness,
+            normal,
+            gap: 0.0,
             target: 0.0,
             carry: [0.0; D],
             friction,
@@ -72,6 +71,12 @@ impl<const D: usize> Row<D> {
         let mut apart = *self;
         apart.weigh(spread, inverse_mass);
         apart.mass[0]
+    }
+
+    /// Computes its masses; returns whether any of its points can move.
+    pub(crate) fn can_move(&mut self, spread: &Spread, inverse_mass: &[[f64; D]]) -> bool {
+        self.weigh(spread, inverse_mass);
+        self.mass[0] > 0.0
     }
 
     /// Computes its masses.

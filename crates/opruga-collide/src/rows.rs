@@ -4,7 +4,7 @@ use crate::ccd::{edge_meets_edge, vertex_meets_facet};
 use crate::distances::{Distances, Unclear};
 use crate::gap::Gap;
 use crate::law::PairLaw;
-use crate::row::Row;
+use crate::near::Near;
 use crate::settle::OVERLAP;
 use crate::surface::Surface;
 use crate::touching::Touching;
@@ -138,7 +138,7 @@ impl<const D: usize> Touching<D> {
         self.take_around(true);
     }
 
-    /// Activates rows, or puts them under watch if they do not meet by themselves; rows that cannot move are dropped.
+    /// Activates pairs, or puts them under watch if they do not meet by themselves. Pairs that cannot move are dropped when they are activated.
     ///
     /// Pairs of edges are inactive at first unless they pressed in the previous step, and so are all pairs of coupled bodies: if
     /// vertices and facets hold surfaces, few edges press, and only a quarter of the pairs near coupled bodies do. Overlapping
@@ -146,17 +146,19 @@ impl<const D: usize> Touching<D> {
     fn take_around(&mut self, of_edges: bool) {
         let starts_inactive = !self.at_once && (of_edges || self.coupled.count() > 0 && !self.coupled.apart);
         let overlap = -OVERLAP * self.thickest[0];
-        for (row, meets) in self.around.drain(..).filter(|(row, _)| row.mass[0] > 0.0) {
+        let Touching { around, rows, heads, watched, inactive, last, spread, surface, inverse_mass, .. } = self;
+        for (near, meets) in around.drain(..) {
+            let mut row = near.into_row(spread, surface);
             if !meets {
-                self.heads.push(row.head());
-                self.watched.push(row);
+                heads.push(row.head());
+                watched.push(row);
             } else if starts_inactive
                 && row.gap >= overlap
-                && self.last.binary_search_by_key(&row.id, |(id, ..)| *id).is_err()
+                && last.binary_search_by_key(&row.id, |(id, ..)| *id).is_err()
             {
-                self.inactive.push(row);
-            } else {
-                self.rows.push(row);
+                inactive.push(row);
+            } else if row.can_move(spread, inverse_mass) {
+                rows.push(row);
             }
         }
     }
@@ -241,31 +243,31 @@ impl<const D: usize> Touching<D> {
                 None => meets = false,
             }
         }
-        let mut row = self.row(&gap, law, h, pair, with_facet);
+        let mut near = self.near(&gap, law, h, pair, with_facet);
         let ([x0, v0], [x1, v1]) = (&self.before, &self.after);
         let (came, comes) = (-gap.along(v0), -gap.along(v1));
-        let end = row.gap + gap.along(x1) - gap.along(x0);
+        let end = near.gap + gap.along(x1) - gap.along(x0);
         // A pair that pressed bodies at rest in their last correction does so again, unless it turns out that it need not.
-        let presses = self.at_once && self.last.binary_search_by_key(&row.id, |(id, ..)| *id).is_ok();
-        let meets = meets && (end < 0.0 || row.gap < 0.0 || h * comes > row.gap || presses);
-        if law.restitution > 0.0 && meets && row.gap > 0.0 {
+        let presses = self.at_once && self.last.binary_search_by_key(&near.id, |(id, ..)| *id).is_ok();
+        let meets = meets && (end < 0.0 || near.gap < 0.0 || h * comes > near.gap || presses);
+        if law.restitution > 0.0 && meets && near.gap > 0.0 {
             // The pair meets within the step, while the force acts to its end: s² = u² + 2 a g, between the speeds at both ends.
-            let square = came * came + 2.0 * (comes - came) / h * row.gap;
+            let square = came * came + 2.0 * (comes - came) / h * near.gap;
             let speed = square.larger(0.0).sqrt().smaller(came.larger(comes)).larger(came.smaller(comes));
             if speed > self.laws.rest_speed {
-                row.target = law.restitution * speed;
+                near.target = law.restitution * speed;
             }
         }
-        self.around.push((row, meets));
+        self.around.push((near, meets));
     }
 
-    /// The row of a gap, which must not become negative within the step.
-    pub(crate) fn row(&mut self, gap: &Gap<D>, law: &PairLaw, h: f64, pair: [u32; 2], with_facet: bool) -> Row<D> {
-        let mut row = Row::new(key(pair, with_facet), gap, law.thickness, law.friction);
-        row.put_into(&mut self.spread, &self.surface);
-        row.weigh(&self.spread, &self.inverse_mass);
-        row.target = if row.gap > 0.0 || self.at_once { -row.gap / h } else { 0.0 };
-        row
+    /// A pair whose gap must not become negative within the step.
+    pub(crate) fn near(&self, gap: &Gap<D>, law: &PairLaw, h: f64, pair: [u32; 2], with_facet: bool) -> Near<D> {
+        let own = gap.gap - law.thickness;
+        let target = if own > 0.0 || self.at_once { -own / h } else { 0.0 };
+        let Gap { points, weights, normal, .. } = *gap;
+        let (thickness, friction) = (law.thickness, law.friction);
+        Near { id: key(pair, with_facet), points, weights, normal, gap: own, thickness, friction, target }
     }
 
     /// Whether the relative motion of a pair within the step exceeds a quarter of a feature.
@@ -288,12 +290,9 @@ impl<const D: usize> Touching<D> {
         if self.around.len() < 2 {
             return;
         }
-        let body = |row: &Row<D>| self.surface.body[row.points[1] as usize];
-        let is_closed = |row: &Row<D>| row.points[1..=D].iter().all(|p| self.surface.is_closed(*p));
-        let depth = |row: &Row<D>| {
-            let own = self.surface.body[row.points[0] as usize];
-            row.gap + self.laws.of(own, body(row)).thickness
-        };
+        let body = |row: &Near<D>| self.surface.body[row.points[1] as usize];
+        let is_closed = |row: &Near<D>| row.points[1..=D].iter().all(|p| self.surface.is_closed(*p));
+        let depth = |row: &Near<D>| row.gap + row.thickness;
         let rows = &self.around;
         self.keep.clear();
         self.keep.resize(rows.len(), true);
@@ -387,7 +386,7 @@ pub(crate) fn impact<const D: usize>(
 }
 
 /// The corners of a facet with nonzero weights at the closest point; the others are `u32::MAX`.
-fn features<const D: usize>(row: &Row<D>) -> [u32; 3] {
+fn features<const D: usize>(row: &Near<D>) -> [u32; 3] {
     let mut out = [u32::MAX; 3];
     for k in (1..=D).filter(|k| row.weights[*k] != 0.0) {
         out[k - 1] = row.points[k];

@@ -7,6 +7,7 @@ use crate::distances::Unclear;
 use crate::gap::Gap;
 use crate::impulses::{Problem, Turns};
 use crate::law::Laws;
+use crate::near::Near;
 use crate::reach::Reach;
 use crate::reports::{self, Report};
 use crate::row::{OBSTACLE_BIT, Row};
@@ -83,7 +84,7 @@ pub struct Touching<const D: usize> {
     /// Pairs that meet by themselves, but are solved for only if the solution of the others leaves them too fast.
     pub(crate) inactive: Vec<Row<D>>,
     /// The pairs of one vertex, or of two edges, and whether they meet by themselves.
-    pub(crate) around: Vec<(Row<D>, bool)>,
+    pub(crate) around: Vec<(Near<D>, bool)>,
     /// Features and impulses of the last substep, ascending.
     pub(crate) last: Vec<(u64, f64, [f64; D])>,
     pub(crate) keep: Vec<bool>,
@@ -465,7 +466,10 @@ impl<const D: usize> Touching<D> {
             let points = self.spread.points_of::<D>(head);
             let pushed = points.iter().any(|p| v[*p as usize] != free[*p as usize]);
             if pushed && dot(&subtract(&row.mean(&self.spread, v), &row.carry), &row.normal) < row.target {
-                self.rows.push(*row);
+                let mut row = *row;
+                if row.can_move(&self.spread, &self.inverse_mass) {
+                    self.rows.push(row);
+                }
                 *head = Spread::NOBODY;
             }
         }
@@ -474,8 +478,9 @@ impl<const D: usize> Touching<D> {
         inactive.retain(|row| {
             let enough = turns.enough(row, spread, inverse_mass, &surface.body, exact);
             let holds = dot(&subtract(&row.mean(spread, v), &row.carry), &row.normal) >= row.target - enough;
-            if !holds {
-                rows.push(*row);
+            let mut row = *row;
+            if !holds && row.can_move(spread, inverse_mass) {
+                rows.push(row);
             }
             holds
         });
@@ -517,15 +522,13 @@ impl<const D: usize> Touching<D> {
             let reach = travel + h * length(&self.v[p as usize]) + self.margin;
             let (rows, spread, inverse_mass) = (&mut self.rows, &self.spread, &self.inverse_mass);
             obstacles(p, &x0, &x1, reach, &mut |touch: Touch<D>| {
-                let mut gap = Gap { points: [p; 4], weights: [0.0; 4], gap: touch.gap_before, normal: touch.normal };
-                gap.weights[0] = 1.0;
                 let id = OBSTACLE_BIT | u64::from(p) << 31 | touch.surface as u64;
-                let mut row = Row::new(id, &gap, 0.0, touch.friction);
-                row.weigh(spread, inverse_mass);
+                let mut row = Row::new(id, ([p; 4], [1.0, 0.0, 0.0, 0.0]), touch.normal, touch.friction);
+                row.gap = touch.gap_before;
                 row.carry = touch.velocity;
                 row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
                 row.of_obstacle = true;
-                if row.mass[0] > 0.0 {
+                if row.can_move(spread, inverse_mass) {
                     rows.push(row);
                 }
             });

@@ -1,0 +1,30 @@
+//! A pair that comes close, before it is known whether it is solved for.
+
+use crate::row::Row;
+use crate::spread::Spread;
+use crate::surface::Surface;
+
+/// Two features that come close in the step: what a [`Row`] needs, without masses and impulses.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near<const D: usize> {
+    pub(crate) id: u64,
+    pub(crate) points: [u32; 4],
+    pub(crate) weights: [f64; 4],
+    pub(crate) normal: [f64; D],
+    /// The gap at the start of the step, less the thickness; and the thickness [m].
+    pub(crate) gap: f64,
+    pub(crate) thickness: f64,
+    pub(crate) friction: f64,
+    /// The least normal velocity at the end of the step [m/s].
+    pub(crate) target: f64,
+}
+
+impl<const D: usize> Near<D> {
+    /// Its row, without masses.
+    pub(crate) fn into_row(self, spread: &mut Spread, surface: &Surface<D>) -> Row<D> {
+        let mut row = Row::new(self.id, (self.points, self.weights), self.normal, self.friction);
+        (row.gap, row.target) = (self.gap, self.target);
+        row.put_into(spread, surface);
+        row
+    }
+}
