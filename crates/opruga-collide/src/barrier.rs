@@ -27,11 +27,11 @@
 use crate::candidates::Candidates;
 use crate::closest::{closest_of_segments, closest_on_facet};
 use crate::gap::Gap;
+use crate::impact::{key, meeting_time};
 use crate::law::Laws;
 use crate::reach::around;
 use crate::reports;
 use crate::row::Row;
-use crate::rows::{key, meeting_time};
 use crate::surface::Surface;
 use crate::touching::{Touching, Trouble};
 use crate::vector::{add, dot, length, scaled, subtract};

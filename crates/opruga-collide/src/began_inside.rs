@@ -1,19 +1,10 @@
 //! Points that are inside another body at the start of a frame: those of bodies that began inside one another and have not come
 //! out yet.
 
-use crate::closest::facet_normal;
 use crate::gap::Gap;
 use crate::touching::Touching;
-use crate::vector::{add, dot, scaled};
-use core::ops::Range;
 use opruga_math::Lane;
 use opruga_mesh::winding_number;
-
-/// The cosine of the angle between the normals of a surface and of a facet below which they face each other. The corner of a cube
-/// and a facet that it meets have −0.58, a side that begins next to a flat face has 0, and deformation changes both. Without this
-/// limit, points near an edge of the other body leave sideways while others do not: `cubes_that_begin_inside_one_another_part`
-/// ends with interlocked cubes.
-const FACING: f64 = -0.3;
 
 impl<const D: usize> Touching<D> {
     /// Finds the points inside the closed boundary of another body. The pairs of a step are those that may touch in it, and a
@@ -83,41 +74,5 @@ impl<const D: usize> Touching<D> {
     pub(crate) fn are_entangled(&self, [a, b]: [u32; 2]) -> bool {
         let pair = if a < b { [a, b] } else { [b, a] };
         self.entangled.binary_search(&pair).is_ok()
-    }
-
-    /// Takes the gap through which a vertex leaves each body in which it began: that of the nearest facet, among some candidates
-    /// of the vertex, that faces the surface at the vertex. If none does, the nearest facet counts.
-    pub(crate) fn take_exit(&mut self, candidates: Range<usize>, h: f64) {
-        let x = &self.before[0];
-        let normal = |facet: u32| {
-            let normal = facet_normal(&self.surface.facets[facet as usize].map(|p| x[p as usize]));
-            scaled(&normal, 1.0 / dot(&normal, &normal).sqrt())
-        };
-        let vertex = self.candidates.vertex_facet[candidates.start][0];
-        let around = self.surface.facets_around(vertex).iter();
-        let outward = around.fold([0.0; D], |sum, facet| add(&sum, &normal(*facet)));
-        let size = dot(&outward, &outward).sqrt();
-        let mut nearest: Vec<(u32, bool, [u32; 2], Gap<D>)> = Vec::new();
-        for k in candidates {
-            let pair @ [_, facet] = self.candidates.vertex_facet[k];
-            let [own, other] = self.clearance.bodies(0, k);
-            if own == other || !self.surface.closed[facet as usize] {
-                continue;
-            }
-            let faces = size > 0.0 && dot(&outward, &normal(facet)) < FACING * size;
-            let gap = Gap::of_vertex_and_facet(&self.surface, x, vertex, facet);
-            let is_better = |known: bool, least: f64| (faces, -gap.gap.abs()) > (known, -least.abs());
-            match nearest.iter_mut().find(|(body, ..)| *body == other) {
-                Some(best) if is_better(best.1, best.3.gap) => *best = (other, faces, pair, gap),
-                Some(_) => {}
-                None => nearest.push((other, faces, pair, gap)),
-            }
-        }
-        for (other, _, pair, gap) in nearest.into_iter().filter(|(.., gap)| gap.gap < 0.0) {
-            let law = *self.laws.of(self.surface.body[pair[0] as usize], other);
-            let surface = &self.surface;
-            self.around.retain(|(row, _)| surface.body[row.points[1] as usize] != other);
-            self.push(gap, &law, h, pair, true, f64::INFINITY);
-        }
     }
 }

@@ -4,9 +4,8 @@ use crate::grid::Grid;
 use crate::overlaps::{Columns, Overlaps};
 use crate::reach::around;
 use crate::surface::Surface;
+use crate::vector::Bounds;
 use opruga_math::{Lane, Simd};
-
-pub(crate) type Bounds<const D: usize> = [[f64; D]; 2];
 
 /// Pairs of a vertex and a facet, and in 3D of two edges, whose boxes are closer than a distance; ascending, each once.
 ///

@@ -1,7 +1,7 @@
 //! Impulses of pairs by the numbers of features within their bodies, for callers that keep them while clusters change.
 
+use crate::impact::key;
 use crate::row::OBSTACLE_BIT;
-use crate::rows::key;
 use crate::touching::Touching;
 
 /// The kinds of pairs: a vertex and a facet, two edges, a point and a surface of an obstacle that holds nodes.

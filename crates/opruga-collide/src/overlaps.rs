@@ -1,6 +1,6 @@
 //! Boxes of two lists that overlap, compared eight at a time in vector instructions.
 
-use crate::candidates::Bounds;
+use crate::vector::Bounds;
 use opruga_math::{Pack, WIDTH, Work, lanes};
 
 /// Boxes by coordinates: the lowest ones along every axis, then the highest ones, padded to whole packs.

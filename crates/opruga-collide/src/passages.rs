@@ -1,8 +1,8 @@
 //! Pairs that would pass through one another within a step whatever was solved for, found on the final motion.
 
 use crate::gap::Gap;
+use crate::impact::{impact, key, meeting_time};
 use crate::row::Row;
-use crate::rows::{impact, key, meeting_time};
 use crate::touching::{Touching, Trouble};
 use crate::vector::{dot, subtract};
 use crate::zones::{Led, PointsOfPair, ROUNDING, Zone};
@@ -138,8 +138,8 @@ impl<const D: usize> Touching<D> {
             let (pair, with_facet) = pair_of(id);
             let bodies = self.bodies_of(pair, with_facet);
             let law = *self.laws.of(bodies[0], bodies[1]);
-            let near = self.near(&gap, &law, h, pair, with_facet);
-            let mut row = near.into_row(&mut self.spread, &self.surface);
+            let close_pair = self.close_pair(&gap, &law, h, pair, with_facet);
+            let mut row = close_pair.into_row(&mut self.spread, &self.surface);
             if row.can_move(&self.spread, &self.inverse_mass) {
                 self.rows.push(row);
             }

@@ -1,9 +1,7 @@
 //! How far points may move within a step, and whether the present candidates include all pairs that meet there.
 
-use crate::vector::{dot, subtract};
+use crate::vector::{Bounds, dot, subtract};
 use opruga_math::Lane;
-
-type Bounds<const D: usize> = [[f64; D]; 2];
 
 /// For every point, the box that it does not leave within the step, whatever contact does; and the box for which candidates were
 /// searched.

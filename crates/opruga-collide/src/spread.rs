@@ -24,6 +24,21 @@ impl Spread {
         self.weights.clear();
     }
 
+    /// Moves all entries of another one behind the present ones; returns the index of the first of them.
+    pub(crate) fn append(&mut self, other: &mut Spread) -> u32 {
+        let first = self.points.len() as u32;
+        self.points.append(&mut other.points);
+        self.weights.append(&mut other.weights);
+        first
+    }
+
+    /// Lets a head refer to entries that were moved by this number.
+    pub(crate) fn shift(head: &mut [u32; 4], by: u32) {
+        if head[3] == ELSEWHERE {
+            head[0] += by;
+        }
+    }
+
     /// Distributes points and their weights over the nodes that carry them, if any is carried; returns their position and number.
     pub(crate) fn put<const D: usize>(&mut self, surface: &Surface<D>, (points, weights): Weighted<'_>) -> [u32; 2] {
         if !surface.carries_any(points) {

@@ -3,11 +3,10 @@
 use crate::candidates::Candidates;
 use crate::clearance::Clearance;
 use crate::coupled::{Coupled, Respond};
-use crate::distances::Unclear;
+use crate::found::Found;
 use crate::gap::Gap;
 use crate::impulses::{Problem, Turns};
 use crate::law::Laws;
-use crate::near::Near;
 use crate::reach::Reach;
 use crate::reports::{self, Report};
 use crate::row::{OBSTACLE_BIT, Row};
@@ -69,9 +68,9 @@ pub struct Touching<const D: usize> {
     pub(crate) candidates: Candidates<D>,
     pub(crate) reach: Reach<D>,
     pub(crate) clearance: Clearance<D>,
-    /// The candidates of a vertex and a facet, and of two edges, that may touch in the step by the bounds of their distances.
-    pub(crate) unclear: [Vec<Unclear>; 2],
-    pub(crate) distances: Vec<f64>,
+    /// The threads that may look for pairs; the bits of the results do not depend on them.
+    pub threads: usize,
+    pub(crate) found: Vec<Found<D>>,
     /// The laws for which candidates were searched.
     found_for: Laws,
     /// The contacts that are solved for; after the solution, in the order of the solution.
@@ -83,11 +82,8 @@ pub struct Touching<const D: usize> {
     pub(crate) heads: Vec<[u32; 4]>,
     /// Pairs that meet by themselves, but are solved for only if the solution of the others leaves them too fast.
     pub(crate) inactive: Vec<Row<D>>,
-    /// The pairs of one vertex, or of two edges, and whether they meet by themselves.
-    pub(crate) around: Vec<(Near<D>, bool)>,
     /// Features and impulses of the last substep, ascending.
     pub(crate) last: Vec<(u64, f64, [f64; D])>,
-    pub(crate) keep: Vec<bool>,
     /// Whether the obstacles of a point are among the rows; and the points whose obstacles are requested.
     known: Vec<bool>,
     asked: Vec<u32>,

@@ -2,6 +2,9 @@
 
 use opruga_math::{Lane, lanes};
 
+/// The lowest and the highest corner of a box.
+pub(crate) type Bounds<const D: usize> = [[f64; D]; 2];
+
 /// The scalar product.
 #[inline(always)]
 pub(crate) fn dot<S: Lane, const D: usize>(a: &[S; D], b: &[S; D]) -> S {

@@ -88,11 +88,19 @@ fn go_through<const D: usize>(
         jobs.iter_mut().for_each(|job| job.run(plan, hands));
         return;
     }
-    // Groups with large bodies one after another, each large body on all threads; then the others in parallel. A body that waits for its threads must
-    // not be given another body that uses the same workspace.
+    // Groups with large bodies, and those with more than their share of all nodes, one after another on all threads; then the others in parallel. A
+    // body that waits for its threads must not be given another body that uses the same workspace.
     let number = rayon::current_num_threads();
-    let is_shared = |job: &Job<'_, D>| job.islands.iter().any(|island| island.is_shared_by(number, hands.islands));
-    jobs.iter_mut().filter(|job| is_shared(job)).for_each(|job| job.run(plan, hands));
+    let all: usize = jobs.iter().map(Job::nodes).sum();
+    let is_shared = |job: &Job<'_, D>| {
+        let nodes = job.nodes();
+        nodes >= SHARED_FROM && number * nodes > all
+            || job.islands.iter().any(|island| island.is_shared_by(number, hands.islands))
+    };
+    for job in jobs.iter_mut().filter(|job| is_shared(job)) {
+        threads::together(number, || job.run(plan, hands));
+    }
+    let hands = Hands { threaded: false, ..hands };
     jobs.par_iter_mut().filter(|job| !is_shared(job)).for_each(|job| job.run(plan, hands));
 }
 
@@ -110,9 +118,13 @@ impl<const D: usize> Job<'_, D> {
         self.group.progress = outcome.err().map_or(Progress::Done, |(trouble, time)| Progress::Stuck(trouble, time));
     }
 
+    /// The number of nodes of all bodies.
+    fn nodes(&self) -> usize {
+        self.islands.iter().map(|island| island.system.nodes * island.system.bodies).sum()
+    }
+
     fn step_through(&mut self, plan: &FramePlan<'_, D>, hands: Hands<'_, D>) -> Result<(), (Trouble, f64)> {
-        let nodes: usize = self.islands.iter().map(|island| island.system.nodes * island.system.bodies).sum();
-        let hands = Hands { threaded: hands.threaded && nodes >= SHARED_FROM, ..hands };
+        let hands = Hands { threaded: hands.threaded && self.nodes() >= SHARED_FROM, ..hands };
         let Job { islands, group: Group { meetings, .. } } = self;
         let failed = |islands: &[&mut Island<D>]| islands.iter().any(|island| island.outcome.is_err());
         islands.iter_mut().for_each(|island| island.begin_together(plan));
@@ -154,7 +166,7 @@ impl<const D: usize> Job<'_, D> {
             if !islands.iter().all(|island| island.is_in_range()) {
                 break;
             }
-            touch(islands, meetings, &step, hands.threaded)?;
+            touch(islands, meetings, &step, hands.threads())?;
             if failed(islands) {
                 return Ok(());
             }
@@ -170,19 +182,18 @@ fn touch<const D: usize>(
     islands: &mut [&mut Island<D>],
     meetings: &mut [Meeting<D>],
     step: &Substep<'_, D>,
-    threaded: bool,
+    threads: usize,
 ) -> Result<(), (Trouble, f64)> {
     let solve = |meeting: &mut Meeting<D>| {
         let alone = !meeting.is_one() && !meeting.is_pushed();
         let outcome = if alone { meeting.solve(step) } else { Ok(()) };
         outcome.map_err(|trouble| (meeting.in_scene(trouble), step.time))
     };
-    if threaded && meetings.len() > 1 {
-        let outcomes: Vec<_> = meetings.par_iter_mut().map(solve).collect();
-        outcomes.into_iter().collect::<Result<(), _>>()?;
-    } else {
-        meetings.iter_mut().try_for_each(solve)?;
-    }
+    let several = meetings.len() > 1;
+    meetings.iter_mut().for_each(|meeting| meeting.touching.threads = if several { 1 } else { threads });
+    let mut outcomes: Vec<_> = meetings.iter_mut().map(|meeting| (meeting, Ok(()))).collect();
+    threads::each(threads, &mut outcomes, |(meeting, outcome)| *outcome = solve(meeting));
+    outcomes.into_iter().try_for_each(|(_, outcome)| outcome)?;
     for meeting in meetings.iter_mut().filter(|meeting| !meeting.is_one()) {
         if meeting.is_pushed() {
             let outcome = meeting.solve_in_turn(islands, step);
@@ -234,8 +245,9 @@ impl<const D: usize> Hands<'_, D> {
             }
         }
         if self.threaded {
-            let own = islands.par_iter_mut().enumerate().filter(|(number, island)| !shared(island) && alone(*number));
-            own.for_each(|(_, island)| step(island));
+            let own = islands.iter_mut().enumerate().filter(|(number, island)| !shared(island) && alone(*number));
+            let mut own: Vec<_> = own.map(|(_, island)| island).collect();
+            threads::each(number, &mut own, |island| step(island));
         }
     }
 }

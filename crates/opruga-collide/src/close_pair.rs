@@ -6,7 +6,7 @@ use crate::surface::Surface;
 
 /// Two features that come close in the step: what a [`Row`] needs, without masses and impulses.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Near<const D: usize> {
+pub(crate) struct ClosePair<const D: usize> {
     pub(crate) id: u64,
     pub(crate) points: [u32; 4],
     pub(crate) weights: [f64; 4],
@@ -19,7 +19,7 @@ pub(crate) struct Near<const D: usize> {
     pub(crate) target: f64,
 }
 
-impl<const D: usize> Near<D> {
+impl<const D: usize> ClosePair<D> {
     /// Its row, without masses.
     pub(crate) fn into_row(self, spread: &mut Spread, surface: &Surface<D>) -> Row<D> {
         let mut row = Row::new(self.id, (self.points, self.weights), self.normal, self.friction);

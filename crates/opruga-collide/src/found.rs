@@ -1,0 +1,30 @@
+//! The pairs that come close in a step.
+
+use crate::close_pair::ClosePair;
+use crate::distances::Unclear;
+use crate::row::Row;
+use crate::spread::Spread;
+use core::ops::Range;
+
+/// The pairs that come close in a step, of a part of the candidates.
+#[derive(Debug, Default)]
+pub(crate) struct Found<const D: usize> {
+    /// The candidates of a vertex and a facet, and of two edges. All of one vertex are in the same part.
+    pub(crate) part: [Range<usize>; 2],
+    pub(crate) rows: Vec<Row<D>>,
+    pub(crate) watched: Vec<Row<D>>,
+    pub(crate) heads: Vec<[u32; 4]>,
+    pub(crate) inactive: Vec<Row<D>>,
+    pub(crate) spread: Spread,
+    pub(crate) close: [Vec<([u32; 2], f64)>; 2],
+    /// Candidates and their distances at the start of the step, or a bound of them [m].
+    pub(crate) notes: [Vec<(usize, f64)>; 2],
+    /// The candidates that may touch in the step by the bounds of their distances, and their distances [m].
+    pub(crate) unclear: [Vec<Unclear>; 2],
+    pub(crate) distances: Vec<f64>,
+    /// The pairs of one vertex, or of two edges, and whether they meet by themselves; and which of them are kept.
+    pub(crate) around: Vec<(ClosePair<D>, bool)>,
+    pub(crate) keep: Vec<bool>,
+    /// Positions at an impact within a step.
+    pub(crate) impact: Vec<[f64; D]>,
+}

@@ -1,0 +1,69 @@
+//! When two features meet within a step, and their gap at that time.
+
+use crate::ccd::{edge_meets_edge, vertex_meets_facet};
+use crate::gap::Gap;
+use crate::surface::Surface;
+
+/// The key of a pair of a vertex and a facet, or of two edges.
+pub(crate) fn key([a, b]: [u32; 2], with_facet: bool) -> u64 {
+    u64::from(!with_facet) << 62 | u64::from(a) << 31 | u64::from(b)
+}
+
+/// The fraction of the step at which a vertex comes closer to a facet than a distance [m], or an edge to another one; none if
+/// they stay apart.
+#[inline]
+pub(crate) fn meeting_time<const D: usize>(
+    surface: &Surface<D>,
+    [x0, x1]: [&[[f64; D]]; 2],
+    distance: f64,
+    [a, b]: [u32; 2],
+    with_facet: bool,
+) -> Option<f64> {
+    let ends = |p: u32| [x0[p as usize], x1[p as usize]];
+    if with_facet {
+        let corners = surface.facets[b as usize].map(ends);
+        let facet = core::array::from_fn(|end| corners.map(|corner| corner[end]));
+        vertex_meets_facet(&ends(a), &facet, distance)
+    } else {
+        let [a, b] = [a, b].map(|e| surface.edges[e as usize].map(ends));
+        let swept = |e: [[[f64; D]; 2]; 2]| [[e[0][0], e[1][0]], [e[0][1], e[1][1]]];
+        edge_meets_edge(&swept(a), &swept(b), distance)
+    }
+}
+
+/// The gap of a pair at the start of the step, with the normal and the weights at a time within it; none for edges that then meet
+/// at an end.
+pub(crate) fn impact<const D: usize>(
+    surface: &Surface<D>,
+    [x0, x1]: [&[[f64; D]]; 2],
+    moved: &mut [[f64; D]],
+    time: f64,
+    [a, b]: [u32; 2],
+    with_facet: bool,
+) -> Option<Gap<D>> {
+    // Normals of corners and edges need the facets around.
+    let mut go = |p: u32| {
+        let (from, to) = (&x0[p as usize], &x1[p as usize]);
+        moved[p as usize] = core::array::from_fn(|d| from[d] + time * (to[d] - from[d]));
+    };
+    let mut go_around = |p: u32| {
+        go(p);
+        let around = surface.facets_around(p).iter();
+        around.flat_map(|facet| surface.facets[*facet as usize]).for_each(&mut go);
+    };
+    let mut then = if with_facet {
+        go_around(a);
+        surface.facets[b as usize].into_iter().for_each(go_around);
+        Gap::of_vertex_and_facet(surface, moved, a, b)
+    } else {
+        [a, b].into_iter().flat_map(|edge| surface.edges[edge as usize]).for_each(go_around);
+        // For edges that meet at an end, a vertex meets a facet too.
+        Gap::of_edges(surface, moved, a, b)?
+    };
+    // They are apart at the start, so what is in front now stays in front.
+    then.gap = then.along(x0);
+    if then.gap < 0.0 {
+        (then.gap, then.normal) = (-then.gap, then.normal.map(|n| -n));
+    }
+    Some(then)
+}
