@@ -26,7 +26,7 @@ pub struct Accumulator {
     dropped: i128,
 }
 
-/// What is due after some real time.
+/// The frames that are due after some real time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Due {
     /// The number of frames to simulate now.

@@ -12,8 +12,8 @@ use opruga_math::{Pack, Strip, StripMut, WIDTH, Work};
 impl<const D: usize> System<D> {
     /// Evaluates forces in one stage and moves every node by an update: gradient → update → collide, tile by tile.
     ///
-    /// `weight` [s] is the share of this evaluation in the step's work integrals. `step` is the substep if the update
-    /// ends it: then obstacles act.
+    /// `weight` [s] is the share of this evaluation in the step's work integrals. `step` is the substep if the update ends it,
+    /// in which case obstacles act.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the state.
@@ -65,7 +65,7 @@ impl<const D: usize> System<D> {
             && contact_lanes != 0
             && several
         {
-            // Side by side, every lane is a body.
+            // If bodies are side by side, every lane is a body.
             let lanes = if self.layout == Layout::Batch { contact_lanes } else { u8::MAX };
             let [damping, user] = self.step_work;
             damping.count_by_start(h, lanes, &mut self.work.damping);

@@ -21,7 +21,7 @@ impl Default for BreakOff {
 }
 
 impl BreakOff {
-    /// Makes one with a time limit too: `clock` returns the time [s].
+    /// Makes one that can also have a time limit; `clock` returns the time [s].
     pub fn with_clock(clock: fn() -> f64) -> BreakOff {
         let (latest, prepared) = (f64::INFINITY.to_bits(), f64::NAN.to_bits());
         BreakOff {

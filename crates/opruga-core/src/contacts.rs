@@ -34,8 +34,8 @@ pub struct Moved<'a, const D: usize> {
     pub loss_friction: &'a mut [f64; WIDTH],
     /// Work done on the body by obstacles that move [J], eight partial sums.
     pub work_colliders: &'a mut [f64; WIDTH],
-    /// Energy from moving nodes back to the surface, the difference between the work of their displacement and that of their mean
-    /// velocity, Σ F·(h v̄ − Δx) [J], eight partial sums.
+    /// Energy that appears because nodes are moved back to the surface [J], eight partial sums: Σ F·(h v̄ − Δx), the difference
+    /// between the work along the mean velocity and along the displacement.
     pub work_correction: &'a mut [f64; WIDTH],
 }
 

@@ -104,7 +104,7 @@ impl<const D: usize> DensePart<'_, D> {
     fn turned_back(&self, g: &[f64]) -> [f64; D] {
         core::array::from_fn(|i| self.factor * (0..D).map(|j| self.frame[i][j] * g[j]).sum::<f64>())
     }
-    /// The block of two of its nodes, by their numbers in the list, without the terms of a frame that follows.
+    /// The block of two of its nodes, by their numbers in the list, without the terms that a following frame adds.
     pub fn block(&self, a: usize, b: usize) -> [[f64; D]; D] {
         let mut half = [[0.0; D]; D];
         let mut out = [[0.0; D]; D];
@@ -120,7 +120,7 @@ impl<const D: usize> DensePart<'_, D> {
         }
         out
     }
-    /// The terms that a frame that follows adds to the blocks, as rank-one terms c u uᵀ, two for each axis. Each costs a product
+    /// The terms that a following frame adds to the blocks, as rank-one terms c u uᵀ, two for each axis. Each costs a product
     /// with K.
     ///
     /// Tᵀ K T + J Qᵀ + Q Jᵀ = K + J Zᵀ + Z Jᵀ with Z = Q − K V + ½ J VᵀK V, and j zᵀ + z jᵀ is ½ (a j + z/a)(…)ᵀ − ½ (a j −

@@ -55,7 +55,7 @@ pub fn what_was_left(range: Option<f64>) -> String {
     }
 }
 
-/// Up to which load a step was found, and from how many degenerate cells.
+/// Says up to which load an equilibrium was found, and how many cells were degenerate at the start of the step.
 fn circumstances(beyond: Option<f64>, inverted: u32, cells: u32) -> String {
     match (beyond, inverted) {
         (Some(load), _) => format!(", beyond {} of the load", number(load)),

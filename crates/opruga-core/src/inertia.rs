@@ -1,7 +1,7 @@
 //! The difference between a consistent mass matrix and lumped masses.
 //!
-//! M = diag(m) + D, with the same number for all axes of a pair of nodes. All numbers of D sum to zero, so the mass of a body is
-//! that of its nodes; the weight of a node comes from the sum of its row.
+//! M = diag(m) + D. A pair of nodes has the same entry for all axes. All entries of D sum to zero, so the mass of a body is the
+//! sum of the masses of its nodes; the weight of a node is that of the sum of its row.
 
 use opruga_math::{WIDTH, sum_in_fixed_order};
 
@@ -74,7 +74,7 @@ impl Inertia {
         sum_in_fixed_order(&parts)
     }
 
-    /// All entries, followed by those of others.
+    /// The matrix with the entries of this one, followed by others.
     pub(crate) fn with(&self, others: Vec<(u32, u32, f64)>) -> Inertia {
         let own = (0..self.nodes()).flat_map(|a| self.row(a).map(move |(b, mass)| (a as u32, b as u32, mass)));
         Inertia::new(self.nodes(), own.chain(others).collect())

@@ -32,8 +32,8 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     ///
     /// Its spectral radius is at most 1 if the step h is stable. The state is scaled as (x, v), not (ωx, v).
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification;
-    /// Refuses a system that it cannot step, such as a free body in statics; `obstacles` tells whether there are any that may
-    /// hold it.
+    /// Refuses a system that it cannot step, such as a free body in statics; `obstacles` says whether there are obstacles that
+    /// may hold the body.
     ///
     /// # Errors
     /// [`BuildError`] with the reason.
@@ -61,7 +61,7 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn measures_its_damping(&self) -> bool {
         false
     }
-    /// Whether no other integrator leaves less energy unexplained when bodies meet obstacles.
+    /// Whether it is one of the integrators that leave the least energy unexplained when bodies meet obstacles.
     fn makes_least_of_contact(&self) -> bool {
         false
     }
@@ -99,9 +99,9 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn prepare_answer(&self, _system: &mut System<D>) -> Result<Option<u64>, StepError> {
         Ok(None)
     }
-    /// Replaces forces on the nodes that act throughout the step [N] by the displacements that they add to its end, to first
-    /// order [m]. The given number of vectors are consecutive, each with the coordinates of one node after the other. Returns
-    /// whether it could.
+    /// Replaces forces on the nodes, which act throughout the step [N], by the displacements that they cause at its end, to
+    /// first order [m]. `_vectors` holds `_count` consecutive vectors, each with the coordinates of one node after the other.
+    /// Returns whether it could.
     fn answer(&self, _system: &mut System<D>, _vectors: &mut [f64], _count: usize) -> bool {
         false
     }
@@ -186,9 +186,9 @@ impl Amplification {
         };
         if radius.is_finite() { radius.larger(apart) } else { radius }
     }
-    /// The same eigenvalues, in units in which rows are as large as columns. Positions, velocities and accelerations differ by
-    /// powers of the step, so rounding would otherwise exceed the distance of an eigenvalue from 1. Powers of two cause no
-    /// rounding.
+    /// A matrix with the same eigenvalues, in units in which rows are as large as columns. Positions, velocities and
+    /// accelerations differ by powers of the step, so rounding would otherwise exceed the distance of an eigenvalue from 1.
+    /// Powers of two cause no rounding.
     fn balanced(&self) -> [[f64; MOST_CARRIED]; MOST_CARRIED] {
         const SWEEPS: usize = 40;
         let (n, mut a) = (self.size, self.rows);
@@ -218,7 +218,7 @@ impl Amplification {
         }
         a
     }
-    /// lim |Aⁿ|^(1/n) (Gelfand), n = 2⁶⁰: the rounding of the k-th square counts only 2⁻ᵏ.
+    /// lim |Aⁿ|^(1/n) (Gelfand), n = 2⁶⁰. The rounding error of the k-th square has only the weight 2⁻ᵏ.
     fn radius_by_squaring(&self) -> f64 {
         const SQUARES: usize = 60;
         let n = self.size;
@@ -285,7 +285,7 @@ mod tests {
         assert!((four.spectral_radius() - 1.0).abs() < 1e-14, "{}", four.spectral_radius());
         let free = Amplification::new([[1.0, 7.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.3]]);
         assert!((free.spectral_radius() - 1.0).abs() < 1e-14, "{}", free.spectral_radius());
-        // Three eigenvalues of −1 except for rounding: the value on which nothing depends is separate from the others.
+        // Three eigenvalues that are −1 up to rounding. The value on which nothing depends is treated separately.
         let apart = Amplification::new([[-1.0, 4e-4, 0.0], [-4e-4, -1.0, 0.0], [7.0, 5.0, -1.0]]);
         assert!((apart.spectral_radius() - 1.0).abs() < 1e-7, "{}", apart.spectral_radius());
         let lonely = Amplification::new([[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [1.0, 1.0, -3.0]]);

@@ -17,9 +17,9 @@ pub struct Work8 {
     pub contact: [f64; WIDTH],
     /// Energy from obstacles that move nodes back to their surface.
     pub correction: [f64; WIDTH],
-    /// The own dissipation of an integrator, without the change of the potential energy U: loads minus damping as entered, minus
-    /// the work of the impulses of the integrator. Together with U₀ − U₁ over the same steps, the energy given to the gas and the
-    /// corrections of obstacles, it is the energy that the integrator dissipates
+    /// The dissipation by the integrator itself, without the change of the potential energy U: the entered work of loads, minus
+    /// the entered damping, minus the work of the impulses of the integrator. Together with U₀ − U₁ over the same steps, the
+    /// energy given to the gas and the corrections of obstacles, it is the energy that the integrator dissipates
     /// ([`crate::integrator::Integrator::measures_its_damping`]). U cancels in the sum over steps, so it is not needed between
     /// them.
     pub numerical: [f64; WIDTH],
@@ -33,13 +33,13 @@ pub struct Work8 {
 
 /// The work of one account within a step of several stages [J], eight partial sums.
 ///
-/// The work of damping and loads depends on velocities, which an integrator evaluates at its stages. These do not include the
-/// effect of obstacles: a node that lies on a floor falls within every stage and is at rest at the end of every step. A step that
-/// ends in contact therefore uses its initial velocities, which contact has already changed. Over many steps this is the
-/// trapezoidal rule except for its two ends.
+/// The work of damping and loads depends on velocities, which an integrator evaluates at its stages. These velocities do not
+/// include the effect of obstacles: a node that lies on a floor falls within every stage and is at rest at the end of every
+/// step. A step that ends in contact therefore uses its initial velocities, which contact has already changed. Over many steps
+/// this is the trapezoidal rule except for its two ends.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StepWork {
-    /// With the velocities of all stages, as counted [J].
+    /// The work with the velocities of all stages [J].
     counted: [f64; WIDTH],
     /// The power at the start of the step [W].
     at_start: [f64; WIDTH],
@@ -56,7 +56,7 @@ impl StepWork {
             }
         }
     }
-    /// Makes the step of `h` [s] count by its start in some lanes, one bit each.
+    /// Counts the step of `h` [s] with the power at its start in some lanes, one bit each.
     pub(crate) fn count_by_start(&self, h: f64, lanes: u8, account: &mut [f64; WIDTH]) {
         for l in (0..WIDTH).filter(|l| lanes >> l & 1 == 1) {
             account[l] += h * self.at_start[l] - self.counted[l];
@@ -81,13 +81,14 @@ pub struct SolverWork {
     pub halved: u64,
     /// The largest number of halvings of one step: its shortest part is 2⁻ⁿ of it.
     pub deepest: u64,
-    /// The number of steps of the real-time setting that may be worse than promised: the budget was spent, or the equations were
-    /// so slow to solve that the residual says little.
+    /// The number of steps of the real-time setting whose error may be larger than promised, because the budget was spent, or
+    /// because the solver converged so slowly that the residual says little.
     pub cut_off: u64,
-    /// The largest residual at the end of such a step, as the distance that it would move nodes if each were alone [m].
+    /// The largest residual at the end of such a step, as the distance by which it would move a node if only that node could
+    /// move [m].
     pub left: f64,
-    /// The number of steps that ended where forces balance to their rounding, although the residual would still move nodes
-    /// visibly.
+    /// The number of steps that ended because forces balance within their rounding errors, although the residual would still
+    /// move nodes visibly.
     pub estimated: u64,
     /// The largest such displacement [m].
     pub error_estimate: f64,

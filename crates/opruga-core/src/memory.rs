@@ -25,7 +25,7 @@ pub struct Counts {
     pub hinges: f64,
     /// Sides of the boundary.
     pub facets: f64,
-    /// Cells, as the bytes that finite elements store for them.
+    /// The bytes that finite elements store for the cells.
     pub cell_bytes: f64,
     /// Pairs of nodes that have a cell in common.
     pub cell_pairs: f64,

@@ -11,7 +11,7 @@ use crate::system::System;
 /// Φ = σ/2 |u − y|²_M + U(x₀ + u),   r = ∂Φ/∂u,   A ≈ ∂²Φ/∂u² without negative eigenvalues
 /// ```
 ///
-/// Obstacles hold nodes, and pins move them: `prescribed` is how far these still have to move, and A is solved in the free
+/// Obstacles hold nodes, and pins move nodes. `prescribed` is how far nodes still have to move; A is solved in the free
 /// directions.
 pub trait OpenStep<const D: usize>: Send {
     /// Ties a body of statics to its present position by a part of its mass, y = u and σ [1/s²], from the next evaluation on.
@@ -46,8 +46,8 @@ pub trait OpenStep<const D: usize>: Send {
     fn stiffness(&self, system: &System<D>, node: usize) -> f64;
     /// How far prescribed nodes still have to move [m].
     fn prescribed(&self) -> &[f64];
-    /// −(r + forces − friction) − A `prescribed`, in the free directions: what the correction has to balance, besides the
-    /// prescribed displacements [N]. `forces` are forces that other bodies will not take.
+    /// Writes the right-hand side for the correction without the prescribed displacements, −(r + forces − friction) − A
+    /// `prescribed`, in the free directions [N].
     fn right_side(&mut self, system: &System<D>, forces: &[f64], out: &mut [f64]);
     /// y = A x.
     fn multiply(&self, system: &System<D>, x: &[f64], y: &mut [f64]);
@@ -58,7 +58,7 @@ pub trait OpenStep<const D: usize>: Send {
     /// Adapts the friction of obstacles to the forces that hold nodes, A correction + r + forces. Writes the change of the force
     /// on the nodes [N], or nothing if it has settled to the fraction `tolerance`.
     fn follow(&mut self, system: &System<D>, forces: &[f64], tolerance: f64, out: &mut [f64]) -> bool;
-    /// The work along the correction of friction on obstacles and of the forces that hold nodes [J].
+    /// The work that friction on obstacles and the forces that hold nodes do along the correction [J].
     fn given(&mut self) -> f64;
     /// Decides which nodes obstacles hold, and how; returns whether that has changed.
     fn judge(&mut self, system: &System<D>) -> bool;

@@ -1,4 +1,4 @@
-//! The effect of pins on a system: they move nodes to prescribed positions, and their work is entered.
+//! The effect of pins on a system: they move nodes to prescribed positions, and their work is entered in the ledger.
 
 use crate::system::{Stage, System};
 use core::ops::Range;

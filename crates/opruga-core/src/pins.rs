@@ -22,8 +22,8 @@ impl<const D: usize> Pin<D> {
         let (offset, rate) = along_path::<D>(&self.motion, time);
         (core::array::from_fn(|d| self.anchor[d] + offset[d]), rate)
     }
-    /// The acceleration of the path about a time [m/s²]: from the velocities over `span` after and before it, so that corners of
-    /// the path count by the change of velocity.
+    /// The acceleration of the path around a time [m/s²], from the mean velocities over the `span` before and the `span` after
+    /// it. At a corner of the path, this is the change of velocity divided by `span`.
     pub fn acceleration(&self, time: f64, span: f64) -> [f64; D] {
         if self.motion.is_empty() {
             return [0.0; D];

@@ -158,7 +158,7 @@ pub struct Properties {
     pub views: Views,
     /// The account in which energy and power are entered.
     pub account: Account,
-    /// The rate λ [1/s] at which it brakes every node at least, f = −λ m v, whatever the motion; the smallest of its bodies.
+    /// The smallest rate λ [1/s] at which it damps every node of its bodies in every motion, f = −λ m v.
     pub uniform_damping: f64,
     /// The length of the scratch that `prepare` fills.
     pub scratch_len: usize,
@@ -171,7 +171,7 @@ pub struct Properties {
     /// Whether forces act only between nodes: they have no sum and no moment about any point, and rotate with the body. The
     /// conformance suite checks the sums. `None` if a model does not declare it; integrators then measure it in every step.
     pub acts_between_nodes: Option<bool>,
-    /// Whether the world checks, from the energy of this model, if a body rests in another equilibrium than its own shape.
+    /// Whether the world uses the energy of this model to check if a body rests in an equilibrium other than its own shape.
     pub judges_balance: bool,
 }
 
@@ -240,8 +240,8 @@ pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
     fn energy(&self, _simd: Simd, _view: &View<D>, _scratch: &[f64]) -> [f64; WIDTH] {
         [0.0; WIDTH]
     }
-    /// The size of the terms whose difference U is at rest, for all bodies together [J]: rounding of these is not energy. Zero if
-    /// U is a sum of squares.
+    /// The size of the terms whose difference U is at rest, for all bodies together [J]: their rounding errors are not energy.
+    /// Zero if U is a sum of squares.
     fn energy_parts(&self) -> f64 {
         0.0
     }
@@ -291,7 +291,7 @@ pub trait Observe<const D: usize> {
     fn shape_counts(&self, _view: &View<D>) -> Vec<Count> {
         Vec::new()
     }
-    /// Whether its data have the same bits on every processor: not if a library factored a matrix.
+    /// Whether its data have the same bits on every processor; they do not if a library factored a matrix.
     fn same_bits_everywhere(&self) -> bool {
         true
     }
@@ -310,8 +310,8 @@ pub struct CellState {
     pub stress: [[f64; 3]; 3],
     /// Its volume over that at rest, J.
     pub volume_ratio: f64,
-    /// The smallest J at its integration points, both of its shape and of the gradient with which its law is evaluated: a cell
-    /// with a volume may be flat or inverted at some of them.
+    /// The smallest J at its integration points, both of its shape and of the gradient with which its law is evaluated. A cell
+    /// of positive volume may be degenerate or inverted at some of them.
     pub smallest_volume_ratio: f64,
     /// Its volume at rest [m³], in the plane its area times the thickness.
     pub measure: f64,

@@ -154,7 +154,7 @@ pub enum Allowed {
     Numbers,
     /// A curve over time: `[[t, value], …]`, with increasing t.
     Curve,
-    /// The same with values that are not negative.
+    /// A curve over time whose values are not negative.
     CurveNotNegative,
     /// A path over time: `[[t, x, y(, z)], …]`, with increasing t.
     Path,
@@ -359,7 +359,7 @@ impl Values {
     /// Checks the sets of fields of which exactly one must be given.
     ///
     /// # Errors
-    /// `model.one_of` for the first set of which none or several are given.
+    /// `model.one_of` for the first set in which no field, or more than one, is given.
     pub fn check_choices(&self, spec: &Spec) -> Result<(), BuildError> {
         match spec.choices().find(|set| set.iter().filter(|name| self.get(name).is_some()).count() != 1) {
             Some(set) => Err(BuildError::of(spec.kind, ChoiceError::OneOf { fields: quoted(set) })),

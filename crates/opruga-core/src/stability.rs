@@ -8,10 +8,11 @@
 //! so every model takes part, including the gas as a whole and models without a Hessian, with the fast code that the step uses.
 //! Obstacles contribute nothing: explicit integrators treat them by impulses, which have no stiffness.
 //!
-//! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It uses the same products as a
-//! power iteration from the same start vector, but the best combination of all of them; a power iteration still misses 2 % after
-//! 30 products on a long chain of springs, whose spectrum is dense at its upper end. The largest Ritz value plus its residual is
-//! taken; the resulting step is reduced by 2 %. Negative eigenvalues (a body about to buckle) do not affect the step.
+//! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It computes the same products as
+//! a power iteration from the same start vector, but uses the best combination of them. A power iteration is still 2 % off
+//! after 30 products on a long chain of springs, whose spectrum is dense at its upper end. The estimate is the largest Ritz
+//! value plus its residual; the resulting step is reduced by 2 %. Negative eigenvalues (a body about to buckle) do not affect
+//! the step.
 //!
 //! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 satisfies μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. So the
 //! pairs (ω², c) of all modes are in the joint numerical range of K and C, whatever their eigenvectors. A polygon encloses it,
@@ -26,8 +27,8 @@
 //!       └────────────────── ω²        damping of every node alike: a line at one height)
 //! ```
 //!
-//! A step that is stable for all of it is stable for every mode. The price: an integrator that is unstable without
-//! damping has a stable step only if *all* motions are damped (`least_damping > 0`).
+//! A step that is stable in the whole polygon is stable for every mode. The price is that an integrator that is unstable
+//! without damping has a stable step only if *all* motions are damped (`least_damping > 0`).
 
 mod lanczos;
 
@@ -51,14 +52,14 @@ messages! {
 /// Limits are reduced by this factor, to allow for small changes of the state.
 const SAFETY: f64 = 0.98;
 
-/// Displacements for the differences of forces, in extents of the system.
+/// Displacements for the differences of forces, as a fraction of the extent of the system.
 const DISPLACEMENT: f64 = 1e-7;
 
 /// If damping differs from stiffness-proportional damping by less than this fraction of the strongest damping, it counts as
 /// proportional.
 const PROPORTIONAL: f64 = 1e-7;
 
-/// An integrator that is stable up to this angle ωh per step has no limit: the implicit ones.
+/// An integrator that is stable up to this angle ωh per step has no limit, as implicit ones.
 const LARGEST_PHASE: f64 = 1e6;
 
 /// The ranges of the frequencies and damping of all modes of a system.
@@ -176,7 +177,7 @@ impl Spectrum {
                 high = middle;
             }
         }
-        // Growth that is too slow for the tolerance at the limit is still growth: half the step must show none.
+        // Growth below the tolerance at the limit is still growth, so there must be none at half the step.
         (worst(integrator, &modes, 0.5 * low) <= 1.0 + SLOWEST).then_some(low)
     }
 
@@ -215,9 +216,9 @@ impl Spectrum {
     }
 }
 
-/// The growth that remains at half a step if it is within the tolerance of 1e-9 at the full step: it exceeds this even if it
-/// falls with the sixth power of the step, and rounding of the amplification matrices of integrators with a large memory is
-/// smaller.
+/// The growth per step above which half a step counts as unstable. Growth of 1e-9, the tolerance at the full step, still
+/// exceeds this at half the step if it falls with the sixth power of the step. Rounding in the amplification matrices of
+/// integrators with a large memory is smaller than this.
 const SLOWEST: f64 = 1e-12;
 
 /// How far rounding may raise the spectral radius of a stable step above 1.
@@ -292,7 +293,7 @@ impl<'a, const D: usize> Probe<'a, D> {
         }
     }
 
-    /// The forces of all models, or of the damped ones, in the state to evaluate.
+    /// Computes the forces of all models, or of the damped ones, in the state to evaluate.
     fn evaluate(&mut self, damped_only: bool) -> Result<(), StepError> {
         let system = self.system;
         let index_count = system.index_count();

@@ -174,7 +174,7 @@ impl Parameter {
             },
         }
     }
-    /// The numbers of those of eight items from `offset` on that are computed at once.
+    /// The numbers of a register of items, which begins at `offset` among eight items.
     #[inline(always)]
     pub fn load_part<R: Register>(&self, items: At, offset: usize) -> R {
         match (&self.0, items) {

@@ -42,7 +42,7 @@ pub struct Stencils<L, const N: usize, const K: usize> {
     blocks: Vec<u32>,
     /// The elements that touch a block, ascending; for one body, filled up to whole packs with the last element.
     list: Vec<u32>,
-    /// For each pack of `list`: whether elements and all of their nodes are eight consecutive ones.
+    /// For each pack of `list`: whether its eight elements and all of their nodes are consecutive.
     straight: Vec<bool>,
     /// The start of the slots of each node in `share`, and the end of the last.
     share_start: Vec<u32>,
@@ -56,7 +56,7 @@ const SHARE_BITS: u32 = 28;
 impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
     /// Lays out stencils; `parameters` gives those of an element (by its number in `elements`) of a body.
     ///
-    /// `damped` tells whether [`Kernel::damping`] is evaluated.
+    /// `damped` says whether [`Kernel::damping`] is evaluated.
     pub fn new(
         layout: Layout,
         nodes: usize,
@@ -293,7 +293,7 @@ enum Nodes<const N: usize> {
 }
 
 impl<const N: usize> Eight<'_, N> {
-    /// The parameters of those from `offset` on.
+    /// The parameters of the elements from `offset` on.
     #[inline(always)]
     fn parameters<R: Register, const K: usize>(&self, parameters: &[Parameter; K], offset: usize) -> [R; K] {
         let mut out = [R::zero(); K];
@@ -302,7 +302,7 @@ impl<const N: usize> Eight<'_, N> {
         }
         out
     }
-    /// A vector at every node of those from `offset` on.
+    /// A vector at every node of the elements from `offset` on.
     #[inline(always)]
     fn read<R: Register, const D: usize>(&self, columns: &[&[f64]; D], offset: usize) -> [[R; D]; N] {
         let mut out = [[R::zero(); D]; N];

@@ -36,7 +36,7 @@ pub struct State<const D: usize> {
     pub work: Vec<[Columns<D>; 2]>,
 }
 
-/// The limits of the thesis against instability, off by default; every use is counted.
+/// The limits that the thesis uses against instability. They are off by default, and each use is counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stabilisers {
     /// The largest force on a node [N].
@@ -45,7 +45,7 @@ pub struct Stabilisers {
     pub largest_velocity: Option<f64>,
 }
 
-/// The use of the forces of a tile by an integrator: it reads the state, and writes positions and velocities.
+/// How an integrator uses the forces of a tile: it reads the state, and writes positions and velocities.
 pub trait Update<const D: usize> {
     /// The columns that are written.
     fn writes(&self) -> Stage;

@@ -1,9 +1,9 @@
 //! Pieces of work on several threads. The assignment of pieces to threads does not change the bits, because every piece has its
 //! own memory.
 //!
-//! This module is the only entry point. [`together`] calls the threads of the pool in which the caller runs (that of the world),
-//! and they stay awake until it returns; work that is submitted here meanwhile is distributed to them. `threads` tells whether
-//! work may be distributed.
+//! This module is the only entry point. [`together`] calls the threads of the pool in which the caller runs (that of the
+//! world), and they stay awake until it returns. Work that is submitted to this module in the meantime is distributed to them.
+//! `threads` says whether work may be distributed.
 
 use opruga_math::Team;
 use std::cell::RefCell;
@@ -64,7 +64,7 @@ pub fn each<T: Send>(threads: usize, pieces: &mut [T], work: impl Fn(&mut T) + S
     }
 }
 
-/// The same with the part of a slice that belongs to a piece: `length` entries each.
+/// Does the same with parts of a slice: each piece of work receives its own `length` entries.
 pub fn each_with<T: Send, U: Send>(
     threads: usize,
     pieces: &mut [T],

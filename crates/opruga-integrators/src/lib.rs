@@ -33,7 +33,8 @@ pub fn all<const D: usize>() -> Vec<Box<dyn IntegratorKind<D>>> {
     every.downcast().map_or_else(|_| Vec::new(), |integrators| *integrators)
 }
 
-// Not generic, so that the integrators are compiled once, with this crate, and not again with every crate that uses them.
+// This is not generic, so that the integrators are compiled once, with this crate, and not again with every crate that uses
+// them.
 fn of_the_plane() -> Vec<Box<dyn IntegratorKind<2>>> {
     list()
 }

@@ -58,7 +58,7 @@ messages! {
         "static.rigid_modes" #[error("nothing prevents {motions}: {}; an equilibrium exists only for a body that cannot move freely", modes(*count))]
         #[hint("pin as many axes of nodes as there are rigid modes, or give it something to rest on")]
         Free { motions: AnyMessage, count: usize },
-        /// A body whose linear forces let it rotate without end.
+        /// A body that its linear forces let rotate for ever.
         "static.rigid_modes"
         #[error("nothing prevents {motions}: {}; its forces are linear, so a moment rotates it without end, and its weight does not bring it back like a pendulum; an equilibrium exists only for a body that cannot move freely", modes(*count))]
         #[hint("pin as many axes of nodes as there are rigid modes, or use a material for large rotations, such as `neo_hookean`")]

@@ -1,12 +1,12 @@
-//! Loops that measure the speed of the machine, for comparison with other loops. They are compiled here, like kernels, whatever
-//! program calls them.
+//! Loops that measure the speed of the machine, for comparison with other loops. They are compiled with this crate, like
+//! kernels, whatever program calls them.
 
 use crate::{Pack, Simd, WIDTH, Work};
 
 const ROUNDS: usize = 4096;
 const CHAINS: usize = 12;
 
-/// Products and sums in registers, not fused, in twelve independent chains; returns their number.
+/// Computes products and sums in registers, not fused, in twelve independent chains; returns the number of operations.
 #[inline(never)]
 pub fn products_and_sums(simd: Simd, out: &mut [f64; WIDTH]) -> usize {
     struct Chains<'a>(&'a mut [f64]);
@@ -54,7 +54,8 @@ pub fn triad(simd: Simd, a: &mut [f64], b: &[f64], c: &[f64]) -> usize {
     bytes
 }
 
-/// Replaces every number by the inverse of its root; their number is a multiple of the width. Returns the number of packs.
+/// Replaces every number by the inverse of its square root, and returns the number of packs. The count of numbers is a multiple
+/// of the width.
 #[inline(never)]
 pub fn inverse_roots(simd: Simd, numbers: &mut [f64]) -> usize {
     struct Roots<'a>(&'a mut [f64]);

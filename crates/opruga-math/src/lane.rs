@@ -49,12 +49,12 @@ pub trait Lane:
     /// Exponential function (own series, the same bits everywhere).
     fn exp(self) -> Self;
 
-    /// The smaller of the two; `other` where `self` is NaN.
+    /// The smaller of the two; `other` if `self` is NaN.
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
         Self::select(self.less(other), self, other)
     }
-    /// The larger of the two; `other` where `self` is NaN.
+    /// The larger of the two; `other` if `self` is NaN.
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
         Self::select(other.less(self), self, other)
@@ -118,9 +118,10 @@ impl Lane for f64 {
 /// The number of values in a row, which [`Register::gather_rows`] reads for each lane.
 pub const ROW: usize = 4;
 
-/// As many numbers as the processor computes at once: a part of a [`Pack`].
+/// The numbers that the processor computes at once: a part of a [`Pack`].
 ///
-/// A formula that needs more values at a time than there are registers is faster register by register than pack by pack.
+/// If a formula needs more values at a time than there are registers, it is faster to compute register by register than pack by
+/// pack.
 pub trait Register: Lane {
     /// How many numbers it holds.
     const NUMBERS: usize;
@@ -174,9 +175,9 @@ pub trait Register: Lane {
 ///
 /// Each type that implements it belongs to one set of vector instructions, and only [`crate::Simd::run`] creates its values.
 pub trait Pack: Lane {
-    /// The part that the processor computes at once.
+    /// The part of a pack that the processor computes at once.
     type Part: Register;
-    /// How many parts make eight numbers.
+    /// The number of parts in eight numbers.
     const PARTS: usize;
     /// One of the parts.
     fn part(self, number: usize) -> Self::Part;

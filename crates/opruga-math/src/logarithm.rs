@@ -2,7 +2,7 @@
 
 use crate::lane::Lane;
 
-/// ln 2 in two parts: the product of the first part and any exponent is exact.
+/// ln 2 in two parts, such that the product of the first part and any exponent is exact.
 const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
 
 /// Coefficients of (ln(1 + f) − f + f²/2 − …) in s = f/(2 + f) (fdlibm, `e_log.c`).

@@ -20,7 +20,7 @@ pub enum Field {
     Message(AnyMessage),
 }
 
-/// A parameter of a shape that a text names, as it is written in a scene, or its replacement if there is no scene.
+/// A parameter of a shape that a text names: as it is written in a scene, or its replacement if there is no scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Setting {
     /// In a scene: `` `size` ``, or with a value `` `open = "cap"` ``.
@@ -70,7 +70,7 @@ pub trait Message: std::error::Error + Send + Sync + 'static {
     fn value(&self) -> Option<String> {
         None
     }
-    /// The parameters of a scene to which the message refers, by their names there, the most important one first.
+    /// The parameters of a scene to which the message refers, by their names in the scene file, the most important one first.
     fn parameters(&self) -> Vec<String> {
         parameters_of_parts(self.fields())
     }
@@ -179,7 +179,8 @@ impl AnyMessage {
         AnyMessage::from(Restated { code, variant: "Plain", fields, english, beside, parameters })
     }
 
-    /// The same with other names: `name` changes fields that are names, `text` changes names within an English text.
+    /// The same message with other names: `name` changes fields that are names, and `text` changes names within an English
+    /// text.
     #[must_use]
     pub fn renamed(&self, name: &dyn Fn(&str) -> String, text: &dyn Fn(&str) -> String) -> AnyMessage {
         let field = |field: Field| match field {

@@ -1,7 +1,7 @@
 //! The rotation nearest to a matrix.
 //!
-//! In space it needs no singular values. With the sum f = σ₁ + σ₂ + σ₃ (the last with the sign of det F) and the
-//! invariants I = tr C, J = det F of F, C = FᵀF, f is the largest root of
+//! The nearest rotation of a matrix. In space it needs no singular values. With the sum f = σ₁ + σ₂ + σ₃ (the last with the
+//! sign of det F) and the invariants I = tr C, J = det F of F, C = FᵀF, f is the largest root of
 //!
 //! f⁴ − 2 I f² − 8 J f + 2 tr C² − I² = 0,
 //!
@@ -15,11 +15,11 @@ use crate::lane::Lane;
 use crate::matrix::{self, Matrix};
 use crate::singular::{direction, singular};
 
-/// The smallest denominator, in units of f³, for which the formula is used: at rest it is 16/27, for a flattened matrix with
-/// equal stretches ½. Rounding errors grow as its inverse.
+/// The smallest denominator, in units of f³, for which the formula is used. At rest the denominator is 16/27, and for a
+/// degenerate matrix with two equal stretches it is ½. Rounding errors grow as its inverse.
 const WELL_DETERMINED: f64 = 0.02;
 
-/// The relative change of f below which it has converged: the next change would be its square.
+/// The relative change of f below which it has converged, because the next change would be the square of this one.
 const FOUND: f64 = 1e-9;
 
 /// The largest number of iterations. If the rotation is well determined, ten are enough, and three for strains of some per cent.
@@ -135,7 +135,8 @@ mod tests {
         [orthogonal, (matrix::determinant(r) - 1.0).abs(), symmetric]
     }
 
-    /// The formula, the singular vectors where it is not accurate, and the transition between them, for stretches of every kind.
+    /// Tests the formula, the singular vectors that replace it if it is not accurate, and the transition between them, for
+    /// stretches of every kind.
     #[test]
     fn rotations_of_any_matrix_are_proper_and_leave_a_symmetric_stretch() {
         let mut random = Random(3);
@@ -145,7 +146,7 @@ mod tests {
             let f: Matrix<f64, 3> = match k % 3 {
                 0 => random.matrix(),
                 _ => {
-                    // A stretch between two rotations: flat, long, inverted.
+                    // A stretch between two rotations: degenerate, long, or inverted.
                     let (u, v) = (nearest_rotation(&random.matrix::<3>()), nearest_rotation(&random.matrix::<3>()));
                     let strain = [1e-12, 1e-6, 1e-2, 0.3, 0.9, 1.0][k % 6];
                     let mut us = u;
@@ -173,7 +174,7 @@ mod tests {
         assert!(worst[0] < 8e-15 && worst[1] < 8e-15 && worst[2] < 8e-15, "{worst:?}");
     }
 
-    /// The rotation is the derivative of the sum of the stretches: no other gives a larger tr RᵀF.
+    /// The rotation is the derivative of the sum of the stretches, and no other rotation gives a larger tr RᵀF.
     #[test]
     fn it_is_the_nearest_rotation_of_matrices_turned_inside_out_too() {
         let mut random = Random(11);

@@ -7,7 +7,7 @@ use crate::lane::Pack;
 use crate::registers::Registers;
 use core::sync::atomic::{AtomicU8, Ordering};
 
-/// The result of [`Simd::best`]: 1 plus its number, or 0 if it has not been called yet.
+/// The result of [`Simd::best`]: 1 plus the number of the set, or 0 if the function has not been called yet.
 static BEST: AtomicU8 = AtomicU8::new(0);
 
 /// A set of vector instructions.
@@ -41,7 +41,7 @@ impl Simd {
     /// The best set that this processor has.
     #[inline]
     pub fn best() -> Simd {
-        // Called for every piece of work: reading one number is faster than reading the answers for all features.
+        // This is called for every piece of work, and reading one number is faster than testing all features.
         match BEST.load(Ordering::Relaxed) {
             1 => Simd::Baseline,
             2 => Simd::Avx2,
@@ -87,7 +87,7 @@ impl Simd {
     }
     /// Runs a piece of work compiled for this set of instructions.
     ///
-    /// A set that the processor lacks is replaced by that which every machine has.
+    /// A set that the processor does not have is replaced by the set that every machine has.
     #[inline(always)]
     pub fn run<W: Work>(self, work: W) -> W::Output {
         #[cfg(target_arch = "x86_64")]
@@ -115,7 +115,8 @@ pub trait Work {
     fn run<P: Pack>(self) -> Self::Output;
 }
 
-// Separate functions: callers stay small, and crates that need the same work use the version that one of them has compiled.
+// These are separate functions, so that callers stay small, and crates that need the same work use the version that one of them
+// has compiled.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
 #[inline(never)]
@@ -175,7 +176,7 @@ mod tests {
             for value in most {
                 out.extend(value.to_array().map(f64::to_bits));
             }
-            // Rows of four of 0 … 39, in random order.
+            // Rows of four of the numbers 0 … 39, in random order.
             let rows: Vec<f64> = (0..40).map(f64::from).collect();
             let order = [7, 0, 9, 1, 5, 2, 4, 3];
             let mut columns = [P::zero(); ROW];

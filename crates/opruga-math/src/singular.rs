@@ -98,7 +98,7 @@ pub fn singular<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Singular<S, D> {
             sigma[1] += second[i] * b[i][1];
         }
     } else {
-        // The second: made exactly orthogonal to the first; any orthogonal one if the column has no length.
+        // The second axis, made exactly orthogonal to the first; any orthogonal axis if the column has no length.
         let mut second = column(&b, 1);
         let mut along = S::zero();
         for i in 0..D {
@@ -132,7 +132,7 @@ pub fn singular<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Singular<S, D> {
     Singular { u, sigma, v }
 }
 
-/// A vector divided by its length, and its length; the substitute and zero if it has none.
+/// A vector divided by its length, and its length; if it has no length, the substitute and zero.
 #[inline(always)]
 pub(crate) fn direction<S: Lane, const D: usize>(a: &[S; D], substitute: &[S; D]) -> ([S; D], S) {
     let mut square = S::zero();

@@ -1,6 +1,6 @@
 //! Pieces of columns that a loop processes eight numbers at a time.
 //!
-//! A strip checks once that all of its columns are long enough; after that a single comparison guards each step of the loop,
+//! A strip checks once that all of its columns are long enough. After that, each step of the loop needs only one comparison,
 //! however many columns it reads or writes.
 //!
 //! # Safety

@@ -2,7 +2,7 @@
 //! microsecond; waking a sleeping thread takes fifty.
 //!
 //! The thread that distributes pieces, the *leader*, works too. It waits for pieces that a member has taken, but never for
-//! members to arrive: members that are late, or never arrive, only leave more work to the others.
+//! members to arrive. If a member is late or never arrives, the others do more of the work.
 //!
 //! Each piece is assigned to a member, and others take it only if that member is late, so the same memory is used by the same
 //! processor again.
@@ -10,7 +10,7 @@
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
-/// How often a waiting thread checks before it yields: some twenty microseconds.
+/// How often a waiting thread checks before it yields. This takes about twenty microseconds.
 const LOOKS: u32 = 2_000;
 
 /// The largest number of pieces that are distributed one by one; if there are more, several are distributed at a time.
@@ -26,7 +26,7 @@ pub struct Team {
     /// The work; valid while a piece is taken and not done.
     work: Task,
     done: Apart<AtomicUsize>,
-    /// Whether the leader is already distributing pieces. A piece that distributes work itself does all of it alone.
+    /// Whether the leader is already distributing pieces. If a piece itself distributes work, it does all of that work alone.
     busy: AtomicBool,
     failed: AtomicBool,
     closed: AtomicBool,
@@ -67,7 +67,7 @@ impl<T> Start<T> {
     /// A part of the slice.
     ///
     /// # Safety
-    /// The part must be within the slice, and nobody else may have any of it.
+    /// The part must be within the slice, and no one else may have any of it.
     #[allow(unsafe_code, clippy::mut_from_ref)]
     unsafe fn part(&self, first: usize, length: usize) -> &mut [T] {
         // SAFETY: guaranteed by the caller.
@@ -186,8 +186,8 @@ impl Team {
         let some: &Work<'_> = if together == 1 { work } else { &some };
         let pieces = count.div_ceil(together);
         self.done.0.store(0, Ordering::Relaxed);
-        // SAFETY: nobody has a piece, so nobody reads it. It is not called after this function has returned, because every piece
-        // is done then.
+        // SAFETY: no thread has a piece, so none reads it. It is not called after this function has returned, because every
+        // piece is done by then.
         #[allow(unsafe_code)]
         unsafe {
             *self.work.0.get() = Some(core::mem::transmute::<*const Work<'_>, *const Work<'static>>(some));
@@ -206,7 +206,7 @@ impl Team {
         assert!(!self.failed.swap(false, Ordering::Relaxed), "a thread of the team has panicked");
     }
 
-    /// Does the remaining pieces of this member, then those of the others; returns how many.
+    /// Does the remaining pieces of this member, then those of the others; returns how many pieces it did.
     fn help(&self, own: usize) -> usize {
         let mut did = 0;
         for k in 0..self.members() {

@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn each_of_the_two_has_the_bits_that_it_has_alone() {
         let one = [[1.0, 0.2, -0.3], [0.1, 0.9, 0.4], [-0.2, 0.3, 1.1]];
-        // Already orthogonal, so it is done before the other.
+        // This matrix is already orthogonal, so it is finished before the other one.
         let other = [[0.0, -2.0, 0.0], [3.0, 0.0, 0.0], [0.0, 0.0, 0.5]];
         let mut both = [[Twin::<f64>::zero(); 3]; 3];
         for i in 0..3 {

@@ -8,7 +8,7 @@ pub fn number(x: f64) -> String {
     rounded(x, 6)
 }
 
-/// The same with this many significant digits.
+/// Writes a number with this many significant digits.
 #[must_use]
 pub fn rounded(x: f64, digits: usize) -> String {
     if !x.is_finite() {
@@ -17,7 +17,7 @@ pub fn rounded(x: f64, digits: usize) -> String {
     if x == 0.0 {
         return "0".into();
     }
-    // Rounded once; the second formatting does not round again.
+    // The number is rounded here; the second formatting does not round again.
     let rounded = format!("{x:.*e}", digits.clamp(1, 15) - 1);
     let x: f64 = rounded.parse().unwrap_or(x);
     let (mantissa, exponent) = rounded.split_once('e').unwrap_or((&rounded, "0"));

@@ -38,7 +38,7 @@ impl Adjacency {
     }
 }
 
-/// For each of `nodes` nodes, the nodes that share an edge with it, ascending and without repetition.
+/// For each of `nodes` nodes, lists the nodes that share an edge with it, ascending and without repetition.
 ///
 /// # Errors
 /// [`MeshError::IndexOutOfRange`] if an edge names a node that does not exist.
@@ -95,7 +95,7 @@ impl Mesh<3> {
         steps.iter().for_each(|step| counts[step[0] as usize] += 1);
         let mut rings = Adjacency::with_counts(counts.into_iter());
 
-        // Follow the steps once around; a ring that closes early leaves a second fan.
+        // Follow the steps around the node once. If the ring closes early, there is a second fan.
         let mut pinched = Vec::new();
         for node in 0..self.nodes() {
             let (start, end) = (rings.starts[node] as usize, rings.starts[node + 1] as usize);
@@ -110,7 +110,7 @@ impl Mesh<3> {
                     break;
                 }
                 *slot = current;
-                // On a closed, consistent surface every neighbour is stepped from exactly once.
+                // On a closed, consistently oriented surface, exactly one step starts from every neighbour.
                 let Ok(found) = own.binary_search_by_key(&current, |step| step[1]) else {
                     break;
                 };

@@ -51,7 +51,8 @@ pub fn hinges(triangles: &[[u32; 3]]) -> Result<Vec<[u32; 4]>, MeshError> {
 /// The direction of the edges determines the previous node. If both edges start or both end at the middle node, the lower node is the previous one.
 /// Free ends and branching nodes have no triple.
 pub fn bends(edges: &[[u32; 2]]) -> Vec<[u32; 3]> {
-    // Each end of each edge: node, whether the edge leaves it, the node at the other end. Arriving edges sort first.
+    // Each end of each edge: its node, whether the edge starts there, and the node at the other end. Edges that end at the node
+    // come first.
     let mut ends = Vec::with_capacity(2 * edges.len());
     for &[a, b] in edges {
         ends.push((a, true, b));

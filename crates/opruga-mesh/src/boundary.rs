@@ -20,8 +20,8 @@ const INSCRIBED: [[[usize; 4]; 5]; 2] = [
 /// The number of tetrahedra into which a hexahedron is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cut {
-    /// Six around its diagonal 0–6, in the same way in every hexahedron. If neighbours would cut a common face along different diagonals, six from
-    /// the node with the lowest number.
+    /// Six around its diagonal 0–6, in the same way in every hexahedron. If neighbours would then cut a common face along different diagonals, six
+    /// from the node with the lowest number.
     Six,
     /// Five: one inscribed and four at corners, mirrored from hexahedron to hexahedron so that common faces are cut in the same way.
     Five,
@@ -102,8 +102,8 @@ impl<const D: usize> Mesh<D> {
         Ok(facets)
     }
 
-    /// The same body made of simplices: quadrilaterals cut into two triangles with diagonals that alternate on grids, hexahedra cut into six
-    /// tetrahedra.
+    /// The same body made of simplices: each quadrilateral is cut into two triangles, with diagonals that alternate on grids, and each hexahedron
+    /// into six tetrahedra.
     ///
     /// # Errors
     /// Those of [`Mesh::facets_from_cells`].
@@ -160,8 +160,8 @@ impl<const D: usize> Mesh<D> {
         Ok(self)
     }
 
-    /// Whether neighbours that are cut around their diagonals 0–6 cut their common faces along the same diagonal. This is so on grids, and if a file
-    /// numbers the corners of all hexahedra in the same way.
+    /// Whether neighbours that are cut around their diagonals 0–6 cut their common faces along the same diagonal. This is the case on grids, and if a
+    /// file numbers the corners of all hexahedra in the same way.
     fn are_cut_alike(&self) -> bool {
         let mut faces: Vec<([u32; 4], [u32; 2])> = Vec::with_capacity(6 * self.cells.hexahedra.len());
         for cell in &self.cells.hexahedra {

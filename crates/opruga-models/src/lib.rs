@@ -47,7 +47,7 @@ pub fn all<const D: usize>() -> Vec<Box<dyn Model<D>>> {
     every.downcast().map_or_else(|_| Vec::new(), |models| *models)
 }
 
-// Not generic, so that the models are compiled once, with this crate, and not again with every crate that uses them.
+// This is not generic, so that the models are compiled once, with this crate, and not again with every crate that uses them.
 fn of_the_plane() -> Vec<Box<dyn Model<2>>> {
     let mut models = list();
     models.push(Box::new(fem::FemModel));

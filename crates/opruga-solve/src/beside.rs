@@ -62,7 +62,7 @@ impl<const D: usize> Beside<D> {
             (0..D).for_each(|d| y[*index as usize][d] += value[d]);
         }
     }
-    /// The terms of a frame that follows, as rank-one terms.
+    /// The terms that a following frame adds, as rank-one terms.
     pub(crate) fn parts_of_rank_one(&self) -> Vec<RankOne<D>> {
         let part = |(factor, entries): RankOnePart<D>| {
             let entries = entries.into_iter().map(|(index, entry)| (index as u32, entry)).collect();
@@ -86,7 +86,7 @@ impl<const D: usize> Beside<D> {
     }
     /// The number of a node in its list.
     pub(crate) fn number_of(&self, node: usize) -> Option<usize> {
-        // A body by itself lists its nodes in order.
+        // A body that is stepped alone lists its nodes in order.
         if self.indices.get(node) == Some(&(node as u32)) {
             return Some(node);
         }

@@ -45,7 +45,7 @@ impl Cholesky {
         self.take(matrix, None)
     }
 
-    /// Factors a matrix and solves A x = b in place: one pass through a large factor serves b and the rank-one terms.
+    /// Factors a matrix and solves A x = b in place. One pass through a large factor serves both b and the rank-one terms.
     ///
     /// # Errors
     /// As [`Cholesky::update`].
@@ -86,7 +86,7 @@ impl Cholesky {
         Ok(())
     }
 
-    /// Computes the factor of the scalars, which does not depend on the dimension, so that it is compiled once, here.
+    /// Computes the factor of the scalars. This does not depend on the dimension, so it is compiled only once, with this crate.
     fn factor(&mut self, anew: bool) -> Result<(), Indefinite> {
         let size = self.scalars.size();
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &self.scalars.start, None, &self.scalars.row);

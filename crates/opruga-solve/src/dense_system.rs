@@ -40,7 +40,7 @@ impl DenseFactors {
     pub fn solve(&self, sides: &mut [f64]) {
         self.solve_any(sides, false);
     }
-    /// The same with the transposed matrix.
+    /// Does the same with the transposed matrix.
     pub fn solve_transposed(&self, sides: &mut [f64]) {
         self.solve_any(sides, true);
     }
@@ -115,7 +115,7 @@ impl DenseCholesky {
 }
 
 /// Removes the negative eigenvalues from a symmetric matrix of `size` rows, given column by column; returns the norm of the
-/// removed part relative to that of the matrix. Eigenvalues that are rounding, below 1e-12 of the largest, stay.
+/// removed part relative to that of the matrix. Eigenvalues below 1e-12 of the largest count as rounding errors and are kept.
 ///
 /// # Errors
 /// [`Indefinite`] if an entry is not finite.

@@ -1,7 +1,7 @@
 //! The lowest natural frequencies: K φ = ω² M φ.
 //!
-//! Both methods find the largest eigenvalues θ = 1/(ω² + s) of A = (K + s M)⁻¹ M, which belong to the lowest frequencies. With
-//! the shift s > 0, K may be singular, as for a free body.
+//! Both methods find the largest eigenvalues θ = 1/(ω² + s) of A = (K + s M)⁻¹ M, which belong to the lowest frequencies. The
+//! shift s > 0 allows K to be singular, as for a free body.
 //!
 //! * *Few modes*: a block Lanczos recurrence. A block of several vectors finds multiple frequencies, such as those of round
 //!   bodies. Every block is orthogonalised against all previous ones (twice), so no frequency is found again. The projection T =
@@ -52,10 +52,10 @@ const BLOCK: usize = 6;
 const CONVERGED: f64 = 1e-12;
 
 /// The basis is first decomposed when it has twice as many vectors as the requested modes (fewer have never been enough), and
-/// again when it has grown by this fraction of its size: each time costs the cube of the size.
+/// again each time it has grown by this fraction of its size. Each decomposition costs the cube of the size.
 const GROWTH: f64 = 0.1;
 
-/// Bodies with up to this many free coordinates are decomposed as a whole: the dense matrix takes milliseconds.
+/// Bodies with up to this many free coordinates are decomposed as a whole, because the dense matrix takes only milliseconds.
 const SMALL: f64 = 240.0;
 
 /// If more than this fraction of all modes is requested, the dense matrix costs less than a basis of twice as many vectors.
@@ -73,7 +73,8 @@ const ATTEMPTS: usize = 4;
 /// The largest memory of the search for `count` modes of a body with `free` free coordinates [bytes].
 pub fn memory(count: usize, free: usize) -> f64 {
     let (count, free) = (count.min(free) as f64, free as f64);
-    // The dense matrix, its eigenvectors and their computation; or a basis that grows by reallocation, and its projection.
+    // The dense matrix, its eigenvectors and the memory to compute them; or a basis that grows by reallocation, and its
+    // projection.
     let vectors = if is_dense(count, free) { 5.0 * free * free } else { 3.0 * count * (2.0 * free + 12.0 * count) };
     8.0 * (vectors + 3.0 * count * free)
 }
@@ -206,7 +207,7 @@ fn lanczos(count: usize, freedom: usize, pencil: &Pencil) -> Result<Vec<Vec<f64>
     orthogonalise(&mut block, &known, &basis, pencil);
     let mut lengths = vec![0.0; BLOCK];
     loop {
-        // A block that is orthonormal within itself; spent vectors are replaced.
+        // Makes the vectors of the block orthonormal to one another; spent vectors are replaced.
         let fresh = basis.len();
         for k in 0..block.len().min(freedom - fresh) {
             let mut vector = block.at(k).to_vec();

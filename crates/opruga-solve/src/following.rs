@@ -1,4 +1,4 @@
-//! Solutions for a matrix whose frame follows its nodes, from those for the matrix in a fixed frame.
+//! Computes solutions for a matrix whose frame follows its nodes, from solutions for the matrix in a fixed frame.
 //!
 //! A = Tᵀ K T + M + J Qᵀ + Q Jᵀ with T = 1 − V Jᵀ ([`Following`]) and S = K + M, whose inverse is known. With the spin θ = Jᵀ d, the strain
 //! e = d − V θ and P = M V + Q, A d = r is
@@ -28,7 +28,7 @@ impl SolvedBase {
     }
 }
 
-/// The data that lead from S⁻¹ r to A⁻¹ r. Vectors are consecutive, one for each axis.
+/// The data with which A⁻¹ r is computed from S⁻¹ r. Vectors are consecutive, one for each axis.
 pub(crate) struct FollowingFrame {
     length: usize,
     /// J and P, and the products of S⁻¹ with them.
@@ -43,8 +43,8 @@ pub(crate) struct FollowingFrame {
 }
 
 impl FollowingFrame {
-    /// From a factor of Q and the masses M, one for each row. S has to be positive definite; `right` is an additional right-hand
-    /// side, which is replaced by its solution with A⁻¹.
+    /// Makes the frame from a factor of Q and the masses M, one for each row. S has to be positive definite. `right` is an
+    /// additional right-hand side, which is replaced by the solution A⁻¹ `right`.
     ///
     /// # Errors
     /// [`Indefinite`] if A is not positive definite.
@@ -99,7 +99,7 @@ impl FollowingFrame {
                 core[(axes + k) * n + axes + l] = own[at] - inner[at] - loads[at];
             }
         }
-        // S is positive. A is too if this matrix has as many positive eigenvalues as negative ones.
+        // S is positive definite. So is A, if this matrix has as many positive eigenvalues as negative ones.
         if !dense::has_positive(&core, n, axes) {
             return Err(Indefinite);
         }

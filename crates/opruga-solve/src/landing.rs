@@ -1,7 +1,7 @@
 //! Adds matrices of stencils to a matrix.
 //!
 //! Stencils are side by side in the lanes, while a block of the matrix is D² consecutive numbers. Transposing eight blocks at a
-//! time in registers takes a quarter longer than reading them number by number.
+//! time in registers would take a quarter longer than reading them number by number.
 
 use crate::blocks::Block;
 use opruga_core::potential::StencilPack;
@@ -12,7 +12,7 @@ pub(crate) fn is_known(nodes: usize) -> bool {
     matches!(nodes, 3 | 4 | 6 | 8 | 10)
 }
 
-/// The blocks of some rows; blocks of other rows are left to others.
+/// The blocks of some rows. Blocks of other rows are skipped.
 pub(crate) struct Landing<'a, const D: usize> {
     pub(crate) values: &'a mut [Block<D>],
     /// The index of the first block in the matrix.
@@ -48,7 +48,7 @@ impl<const D: usize, const N: usize> Work for Add<'_, '_, D, N> {
     fn run<P: Pack>(self) {
         let Add { landing: Landing { values, first, factor }, pack, slots } = self;
         let blocks = &pack.blocks[..N * N * D * D * WIDTH];
-        // Stencil by stencil, in the same way as separate blocks.
+        // Adds one stencil after the other, in the same way as separate blocks.
         for (lane, slots) in slots.as_chunks::<N>().0.chunks_exact(N).enumerate() {
             for a in 0..N {
                 for b in a..N {

@@ -73,7 +73,8 @@ impl Factors {
         Ok(())
     }
 
-    /// Computes the factors of the scalars, which do not depend on the dimension, so that this is compiled once, here.
+    /// Computes the factors of the scalars. This does not depend on the dimension, so it is compiled only once, with this
+    /// crate.
     fn factored(&mut self, anew: bool) -> Result<Lu<usize, f64>, Indefinite> {
         let size = self.scalars.size();
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &self.scalars.start, None, &self.scalars.row);

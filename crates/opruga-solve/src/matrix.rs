@@ -11,8 +11,8 @@ use opruga_math::{Simd, WIDTH};
 
 /// Compressed rows of blocks, filled by models through [`Sink`].
 ///
-/// The pattern is determined once. From then on the k-th call of a model goes to the same block as before, without a search; a
-/// call for another block is looked up, and a missing block extends the pattern.
+/// The pattern is determined once. From then on, the k-th call of a model adds to the same block as before, without a search.
+/// If a call is for another block, that block is searched for; a missing block extends the pattern.
 #[derive(Clone, Debug, Default)]
 pub struct BlockMatrix<const D: usize> {
     /// The start of the blocks of each row, and the end of the last.
@@ -44,7 +44,7 @@ const SCRIPTS: usize = 2;
 struct Script {
     calls: Vec<(u32, u32)>,
     slots: Vec<u32>,
-    /// The nodes of packs of stencils as they were delivered, and the indices of their blocks.
+    /// The nodes of packs of stencils, in the order of delivery, and the indices of their blocks.
     pack_indices: Vec<u32>,
     pack_slots: Vec<u32>,
 }
@@ -72,7 +72,7 @@ impl Script {
     }
 }
 
-/// How far ahead a call that is out of order is searched for.
+/// How far ahead the script is searched for a call that is out of order.
 const LOOK_AHEAD: usize = 64;
 
 impl<const D: usize> BlockMatrix<D> {

@@ -66,7 +66,7 @@ fn assembly_is_the_same_first_replayed_reversed_and_out_of_turn() {
     assert_eq!(dense(&again), expected);
     again.assemble(9, 1, |sink| deliver(9, true, sink));
     again.assemble(9, 1, |sink| deliver(9, true, sink));
-    // The order of additions is different: rounding.
+    // The order of additions is different, so results differ by rounding.
     let close =
         |a: &[Vec<f64>], b: &[Vec<f64>]| a.iter().flatten().zip(b.iter().flatten()).all(|(a, b)| (a - b).abs() < 1e-13);
     assert!(close(&dense(&again), &expected));
@@ -123,7 +123,7 @@ fn every_solver_finds_the_same_solution() {
             *entry = f64::from(*entry as f32);
         }
         matrix.multiply(&wanted, &mut b);
-        // In packs: the same bits with every set of instructions and number of threads, and the solution.
+        // In packs, the bits are the same with every set of instructions and number of threads, and the solution is correct.
         let mut bits = Vec::new();
         for simd in Simd::available() {
             for threads in [1, 2, 3] {
@@ -135,7 +135,8 @@ fn every_solver_finds_the_same_solution() {
                     let size = packed.begin(simd, threads, &b);
                     let reached = packed.solve(simd, threads, 1e-13 * size, 1000, &mut x).unwrap();
                     check(&x, "packed");
-                    // The same method with sums in another order, which shows as soon as vectors are no longer conjugate.
+                    // The method is the same, but its sums have another order, which makes a difference as soon as vectors are
+                    // no longer conjugate.
                     assert!(reached.iterations.abs_diff(counts[0]) <= counts[0] / 10, "{reached:?}");
                     bits.push(x.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
                     let (mut whole, mut product) = (vec![0.0; 2 * nodes], vec![0.0; 2 * nodes]);
@@ -146,7 +147,7 @@ fn every_solver_finds_the_same_solution() {
             }
         }
         assert!(bits.iter().all(|x| *x == bits[0]));
-        // A chain is factored exactly: only the two rank-one terms remain.
+        // A chain is factored exactly, so only the two rank-one terms remain.
         assert!(counts[1] <= 4, "{counts:?}");
     }
 }
@@ -162,7 +163,7 @@ fn an_indefinite_matrix_is_reported() {
     assert!(BlockJacobi::default().update((0..2).map(|node| matrix.diagonal_block(node))).is_err());
     assert!(IncompleteCholesky::default().update(&matrix).is_err());
     assert!(Factors::default().update(&matrix).is_ok());
-    // Positive except for a negative rank-one term: 1 − 2.
+    // The matrix is positive except for a negative rank-one term: 1 − 2.
     matrix.assemble(2, 0, |sink| {
         sink.block(0, 0, [[1.0, 0.0], [0.0, 1.0]]);
         sink.block(1, 1, [[1.0, 0.0], [0.0, 1.0]]);

@@ -44,7 +44,7 @@ impl<const D: usize> Preconditioner for BlockJacobi<D> {
 /// The incomplete Cholesky factor: L Lᵀ ≈ A, with blocks of L only where A has some.
 ///
 /// Chains are factored exactly. If the factorisation breaks down, the diagonal is raised by a thousandth, and then by ten times
-/// as much until it succeeds (Manteuffel 1980).
+/// as much each time, until it succeeds (Manteuffel 1980).
 ///
 /// # Source
 /// Meijerink and van der Vorst 1977.

@@ -32,7 +32,7 @@ pub(crate) struct TurnedFactor {
 }
 
 enum Solver {
-    /// The inverse of a matrix that does not change: a product with it reads half as much as a solution with the factor.
+    /// The inverse of a matrix that does not change. A product with it reads half as much memory as a solution with the factor.
     Inverse(Dense),
     Positive(DenseCholesky),
     Any(DenseFactors),
@@ -110,7 +110,7 @@ impl TurnedFactor {
         (self.following, self.solved_base) = (Some(frame), Some(base));
         Ok(true)
     }
-    /// Takes all rank-one terms: those of a frame that follows, and others.
+    /// Takes all rank-one terms: those of a following frame, and others.
     pub(crate) fn update_parts<const D: usize>(
         &self,
         parts: &mut Woodbury,
@@ -122,7 +122,7 @@ impl TurnedFactor {
         let all = matrix.rank_one().iter().chain(&of_frames);
         parts.update(matrix.rows() * D, all, positive, right, |sides| self.solve_all(&mut sides.collect::<Vec<_>>()))
     }
-    /// Replaces a right-hand side by the solution, with a frame that follows but without rank-one terms.
+    /// Replaces a right-hand side by the solution, including a following frame but without rank-one terms.
     pub(crate) fn solve(&self, side: &mut [f64]) {
         let (Some(following), Some(Solver::Inverse(inverse))) = (&self.following, &self.solver) else {
             return self.solve_all(&mut [side]);

@@ -53,11 +53,12 @@ const FRAME: f64 = 4_000.0;
 const WORK: [f64; 3] = [1.0, 3.0, 4.0];
 /// A lower bound of the factor by which a step of an implicit integrator takes longer.
 const IMPLICIT: f64 = 500.0;
-/// The fraction of a run that keeping its states may take; the hashes of all frames take the same again.
+/// The fraction of the time of a run that keeping states may take; the hashes of all frames take as much again.
 const SHARE: f64 = 0.05;
-/// The work that a kill may cost [ns]: giving each of many small frames to the system separately would take as long as computing it.
+/// The work that may be lost if the process is killed [ns]. Small frames are written in groups, because writing each of them separately would take as
+/// long as computing it.
 const TOGETHER: f64 = 100_000.0;
-/// The largest number of frames from one state to the next: the limit of the header of a recording.
+/// The largest number of frames from one kept state to the next that the header of a recording can store.
 const FARTHEST: f64 = u32::MAX as f64;
 
 /// A lower bound of the time of a frame of a world on a common machine [ns]. It depends only on the scene, so that the same run gives the same
@@ -76,8 +77,8 @@ fn work(world: &dyn AnyWorld) -> f64 {
 }
 
 /// The default number of frames from one kept state to the next, chosen so that keeping states and the hashes of all frames slow the run down by less
-/// than a tenth. To show a frame that is not kept, at most this number of frames must be computed, which takes about twenty times as long as keeping
-/// a state, whatever the scene: a twentieth of a second for a hundred thousand numbers.
+/// than a tenth. To show a frame that is not kept, at most this number of frames must be computed. In every scene, this takes about twenty times as
+/// long as keeping a state: 0.05 s for a state of 100,000 numbers.
 pub fn states_apart(world: &dyn AnyWorld) -> u64 {
     let scene = world.scene();
     let nodes: usize = scene.bodies().map(|body| body.nodes()).sum();
@@ -87,8 +88,8 @@ pub fn states_apart(world: &dyn AnyWorld) -> u64 {
     if apart < FARTHEST { apart as u64 } else { FARTHEST as u64 }
 }
 
-/// The largest number of frames that go to the system together, and that a kill may cost: one, but for small scenes a tenth of a millisecond of
-/// frames.
+/// The number of frames that are written together, and that may be lost if the process is killed: one, or in small scenes as many as are computed in
+/// a tenth of a millisecond.
 pub fn frames_together(world: &dyn AnyWorld) -> u64 {
     let together = TOGETHER / work(world);
     if together > 1.0 { together as u64 } else { 1 }
@@ -101,7 +102,7 @@ pub struct Tape {
     path: PathBuf,
     /// The number of frames from one kept state to the next.
     every: u64,
-    /// The number of frames that go to the system together.
+    /// The number of frames that are written together.
     together: u64,
     /// The first frame.
     first: u64,
@@ -168,12 +169,12 @@ impl Tape {
         Ok(self.push(world)?)
     }
 
-    /// Adds the present frame of the world, which follows the last one, and before it the actions of the program since then. Its hash is always kept,
-    /// its state only if it is due.
+    /// Adds the actions of the program since the last frame, and then the present frame of the world, which must follow the last one. Its hash is
+    /// always kept, its state only if it is due.
     ///
     /// # Errors
-    /// [`WriteError`] if the file cannot be written, or for actions that cannot be recorded: bodies and forces that the program has made itself
-    /// (`recording.input`); also for a frame that is not the next one. The earlier frames are intact.
+    /// [`WriteError`] if the file cannot be written, if the frame is not the next one, or if an action cannot be recorded (`recording.input`), as for
+    /// bodies and forces that the program has made itself. The earlier frames are intact.
     pub fn push(&mut self, world: &mut dyn AnyWorld) -> Result<(), WriteError> {
         let frame = world.frames();
         self.inputs(world, frame)?;
@@ -261,7 +262,7 @@ impl<R: Read + Seek> Playback<R> {
     /// Brings a world to a frame: without a step if its state is kept, otherwise by steps from the last kept state.
     ///
     /// # Errors
-    /// [`TapeError`]; unless a step was refused, the world stays as it was.
+    /// [`TapeError`] if the frame cannot be read or computed. The world does not change, unless a step was refused.
     pub fn show(&mut self, world: &mut dyn AnyWorld, frame: u64) -> Result<(), TapeError> {
         let kept = self.recording.kept(frame)?;
         let here = self.shown.filter(|(at, hash)| {

@@ -1,4 +1,4 @@
-//! Tiles, vector instructions, layouts: the same numbers to the bit.
+//! Results are the same to the bit for all tiles, vector instructions and layouts.
 
 use super::Suite;
 use super::case::{Answer, Body, Case, by_node, difference, irregular, regular, unequal_bits};
@@ -9,7 +9,7 @@ use crate::tile::TILE;
 use opruga_math::{Lane, Simd, WIDTH, sum_in_fixed_order};
 
 impl<const D: usize> Suite<'_, D> {
-    /// Checks tiles, vector instructions and layouts, to the bit.
+    /// Checks that results do not depend on tiles, vector instructions and layouts, to the bit.
     pub(super) fn same_bits(
         &self,
         random: &mut Random,

@@ -41,7 +41,7 @@ impl<const D: usize> Suite<'_, D> {
         add("power", difference(&[power], &[work], Lane::larger(power.abs(), rounding * speeds)), 1e-9);
         add("power", if power >= 0.0 { 0.0 } else { 1.0 }, 0.0);
         if self.options.rigid {
-            // As fast as the random motion: v₀ + ω × (x − x₀).
+            // A rigid motion as fast as the random one: v₀ + ω × (x − x₀).
             let (omega, speed) = (skew::<D>(random), largest(body.v.iter().flatten()));
             let start: [f64; D] = random.vector();
             let arms = |node: usize| -> [f64; D] { core::array::from_fn(|d| body.x[node][d] - body.x[0][d]) };

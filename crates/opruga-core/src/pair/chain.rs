@@ -25,7 +25,8 @@ pub(super) struct Chain<'a, 'v, L, const D: usize> {
 /// One case of the loop.
 struct Walk<'a, 'c, 'v, 't, L, const D: usize, const BATCH: bool, const FRESH: bool, const SAME: bool> {
     chain: &'a Chain<'c, 'v, L, D>,
-    // By reference: numbers next to pointers would be read together with them, which has to wait until each has been written.
+    // By reference: numbers next to pointers would be read together with them, and that read would wait until each has been
+    // written.
     weight: &'a Weight<'a, D>,
     tile: &'a mut Tile<'t, D>,
     power: &'a mut [f64; WIDTH],
@@ -167,11 +168,11 @@ struct Walker<'a, P, L, const D: usize> {
     ahead: [P; MOST_LAG],
 }
 
-/// The largest number of packs between [`PairLaw::ahead`] and the force. A processor looks ahead by itself, but not as far as a
-/// root and a division take; operations that wait for them fill its queues.
+/// The largest number of packs between [`PairLaw::ahead`] and the force. A processor looks ahead by itself, but not for as long
+/// as a root and a division take: operations that wait for them fill its queues.
 const MOST_LAG: usize = 2;
 
-/// The number of packs between [`PairLaw::ahead`] and the force: a pack of many registers is far enough by itself.
+/// The number of packs between [`PairLaw::ahead`] and the force: one is enough if a pack takes many registers.
 const fn lag<P: Pack>() -> usize {
     if P::PARTS > 2 { 1 } else { MOST_LAG }
 }

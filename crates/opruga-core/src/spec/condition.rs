@@ -5,7 +5,7 @@ use opruga_math::message::AnyMessage;
 use opruga_math::messages;
 
 messages! {
-    /// Words of which one must hold.
+    /// Conditions, one of which must hold.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Alternatives {
         "part.alternatives" #[error("{word}")]

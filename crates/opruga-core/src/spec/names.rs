@@ -1,6 +1,6 @@
 //! Names that are close to a given word.
 
-/// Other names of the same things in the field, as letters and digits only, and their names here.
+/// Names that are common in the field, as letters and digits only, and the names that Opruga uses instead.
 const OTHER_NAMES: [(&str, &str); 23] = [
     ("rk4", "runge_kutta"),
     ("rungekutta4", "runge_kutta"),
@@ -27,8 +27,8 @@ const OTHER_NAMES: [(&str, &str); 23] = [
     ("name", "title"),
 ];
 
-/// The candidate that another name in the field stands for, or that differs from a word in the fewest letters, if it is close
-/// enough to be meant.
+/// The candidate that a word means: the one for which it is a common name, or the one that differs from it in the fewest
+/// letters, if it is close enough.
 pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.collect();
     let spelt: String = word.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
@@ -45,7 +45,7 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
         .map(|(_, c)| c.to_string())
 }
 
-/// The largest number of words that are offered for another one.
+/// The largest number of candidates that are offered for a word.
 const MOST_OFFERED: usize = 4;
 
 /// All candidates that may be meant by a word, the closest first. They differ from it by a few letters, either as a whole or up

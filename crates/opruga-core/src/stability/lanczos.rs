@@ -39,8 +39,8 @@ fn dot<const D: usize>(a: &Columns<D>, b: &Columns<D>) -> f64 {
 
 /// Bounds on the smallest and the largest eigenvalue of W A W, where W is diagonal and `product` adds A d to zeros.
 ///
-/// The Lanczos recurrence q ← (W A W − α) q − β q′ from a fixed start. Both ends, or only the upper one, are followed until their
-/// residuals are small compared with the larger of them and `reference`.
+/// The Lanczos recurrence q ← (W A W − α) q − β q′ from a fixed start. It continues until the residuals of both ends, or only
+/// of the upper one, are small compared with the larger of these values and `reference`.
 pub(super) fn extremes<const D: usize>(
     weights: &Columns<D>,
     both: bool,

@@ -152,7 +152,7 @@ fn limits_of_symplectic_euler() {
 fn limits_of_explicit_euler() {
     let limit = |omega, least, most| rectangle(omega, [least, most]).largest_stable_step(&EXPLICIT);
     assert_eq!(limit(80.0, 0.0, 0.0), None);
-    // If one mode may be undamped there is no stable step, however strong the damping of others.
+    // If one mode may be undamped, there is no stable step, however strongly others are damped.
     assert_eq!(limit(80.0, 0.0, 160.0), None);
     // Equal damping of all modes: h = c/ω².
     let h = limit(80.0, 1.0, 1.0).unwrap();

@@ -12,7 +12,7 @@ pub fn clamp<const D: usize, const N: usize>(matrices: &mut [Blocks<D, N>]) {
     if N * D <= ROWS[0] { clamp_in::<D, N, { ROWS[0] }>(matrices) } else { clamp_in::<D, N, { ROWS[1] }>(matrices) }
 }
 
-/// The same in squares with M rows; unused rows are zero and stay so.
+/// Does the same with square matrices of M rows; unused rows are zero and remain zero.
 fn clamp_in<const D: usize, const N: usize, const M: usize>(matrices: &mut [Blocks<D, N>]) {
     let mut square = [[[0.0; WIDTH]; M]; M];
     for some in matrices.chunks_mut(WIDTH) {

@@ -1,4 +1,4 @@
-//! Order 1, no limit, the amplitude of an oscillation, free fall.
+//! Tests the order, which is 1, stability without a limit, the amplitude of an oscillation, and free fall.
 
 use super::{BackwardEuler, SPEC};
 use crate::implicit::step::Implicit;
@@ -42,8 +42,8 @@ fn the_amplitude_falls_as_in_its_closed_form() {
     }
 }
 
-/// Springs pull along their axis at the end of the step: linear momentum is conserved; angular momentum falls as for the
-/// oscillation, by O(h).
+/// Springs pull along their axis at the end of the step: linear momentum is conserved, and angular momentum falls by O(h), as
+/// in the oscillation.
 #[test]
 fn linear_momentum_is_kept() {
     let [linear, coarse] = testing::drift_of_momentum(&rule(), 0.02, 200);

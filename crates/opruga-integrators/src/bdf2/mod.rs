@@ -4,14 +4,14 @@
 //!
 //! x₁ = (4 x₀ − x₋₁)/3 + ⅔ h v₁,  M v₁ = M (4 v₀ − v₋₁)/3 + ⅔ h F(x₁, v₁, t₁);
 //!
-//! If the step changes, the coefficients change with it. Second order, stable for every step. Motion much faster than the step is
-//! damped within a few steps (L-stable), slow motion hardly at all: the amplitude falls by (hω)⁴/4 per step, compared with
-//! (hω)²/2 for backward Euler.
+//! If the step size changes, the coefficients change with it. Second order, stable for every step size. Motion that is much
+//! faster than the step is damped within a few steps (L-stable). Slow motion is hardly damped: the amplitude loses the fraction
+//! (hω)⁴/4 per step, compared with (hω)²/2 for backward Euler.
 //!
-//! **Memory.** The integrator remembers the displacement of the last step and the velocity before it. They are part of the state,
-//! and so of checkpoints, hashes and replays. The first step, and the first one after a program has placed a node, is one of
-//! backward Euler. After an impact, the memory of a node is reset as if it had always moved with its velocity after the impact,
-//! because a difference across an impact does not describe the motion after it.
+//! **Memory.** The integrator remembers the displacement of the last step and the velocity before it. They are part of the
+//! state, and so of checkpoints, hashes and replays. The first step, and the first one after a program has moved a node, is a
+//! step of backward Euler. After an impact, the memory of a node is reset as if it had always moved with its velocity after the
+//! impact, because a difference across an impact does not describe the motion after it.
 //!
 //! Source: Curtiss and Hirschfelder 1952; Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, III.5 (5.9).
 
@@ -111,7 +111,8 @@ impl<const D: usize> Rule<D> for Bdf2 {
                 }
             }
             if system.inertia.is_some() {
-                // Pinned nodes continue as if they had always moved as in this step; otherwise it would affect their neighbours.
+                // Pinned nodes continue as if they had always moved as in this step; otherwise the difference would affect
+                // their neighbours.
                 system.pinned_axes(&mut |node, d| {
                     let k = node * D + d;
                     workspace.z[k] = share * last * workspace.v0[k];

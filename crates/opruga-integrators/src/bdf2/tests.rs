@@ -1,4 +1,4 @@
-//! Order 2, no limit, a step of varying length, free fall.
+//! Tests the order, which is 2, stability without a limit, steps of varying length, and free fall.
 
 use super::{Bdf2, SPEC};
 use crate::implicit::step::Implicit;
@@ -25,7 +25,7 @@ fn there_is_no_limit() {
 }
 
 /// The first step is one of backward Euler, −g h²; the velocity is exact from the first step on. The error of the first step
-/// decays as (1/3)ⁿ, so −½ g t² is missed by a constant: −g h² (n²/2 + 3/4 (1 − 3⁻ⁿ)).
+/// decays as (1/3)ⁿ, so the position differs from −½ g t² by a constant in the end: it is −g h² (n²/2 + 3/4 (1 − 3⁻ⁿ)).
 #[test]
 fn free_fall_is_that_of_its_recurrence() {
     testing::check_free_fall(&rule(), |n| {
@@ -56,7 +56,7 @@ fn the_order_stays_where_steps_change() {
     assert!((order - 2.0).abs() < 0.25, "{order}");
 }
 
-/// The amplitude falls by (hω)⁴/4 in a step, compared with (hω)²/2 for backward Euler.
+/// The amplitude loses the fraction (hω)⁴/4 in a step, compared with (hω)²/2 for backward Euler.
 #[test]
 fn slow_motion_is_hardly_damped() {
     for z in [0.05, 0.1] {

@@ -41,7 +41,7 @@ pub(super) fn follow<const D: usize>(
     h: f64,
 ) -> Result<f64, StepError> {
     if load == 0.0 && system.contacts.is_some() {
-        // A body that begins in an obstacle is first brought to its surface, before there is any load.
+        // A body that begins inside an obstacle is first moved to the surface of the obstacle, without any load.
         rule.balance(system, workspace, Reached { load, pin_motion: 1.0, time: h }, h)?;
     }
     let start = workspace.u.clone();
@@ -56,7 +56,7 @@ pub(super) fn follow<const D: usize>(
             if reached < 1.0 {
                 return Ok(reached);
             }
-            // Past the end, the equilibrium under the whole load is near.
+            // The step would pass the whole load, so the equilibrium under the whole load is near.
             rule.balance(system, workspace, Reached { load: 1.0, pin_motion: 1.0, time: h }, h)?;
             system.history.set(COMPLETE, true);
             return Ok(1.0);
@@ -77,13 +77,14 @@ pub(super) fn follow<const D: usize>(
 #[derive(Clone, Copy, Debug, Default)]
 struct Tried {
     solved: Solved,
-    /// Whether it found a point of the curve that is back or far to the side.
+    /// Whether it found a point of the curve that is backwards or far to the side.
     turned: bool,
     /// Whether there was no load that could move the body.
     unloaded: bool,
 }
 
-/// Whether the angle between two vectors is within that by which the curve may turn; a zero vector agrees with every vector.
+/// Whether the angle between two vectors is at most the angle by which the curve may turn; a zero vector agrees with every
+/// vector.
 fn agree(a: &[f64], b: &[f64]) -> bool {
     // Written so that the result is false for NaN.
     dot(a, b) >= LEAST_COSINE * (dot(a, a) * dot(b, b)).sqrt()
@@ -110,7 +111,7 @@ fn one_step<const D: usize>(
     let mut gone = vec![0.0; start.len()];
     let goal = rule.settings.tolerance * workspace.extent;
     workspace.contacting.clear(system.nodes);
-    // Whether the step ends at the whole load, and not after its length.
+    // Whether the step ends at the whole load instead of at its length.
     let mut ends = false;
     for iteration in 0..ITERATIONS {
         solved.iterations += 1;

@@ -4,9 +4,10 @@
 //! changing loads, pins and pointers (quasi-static motion); if nothing changes, one step is enough.
 //!
 //! Newton's method searches downhill: if there is a potential U, every iteration lowers it. If the equilibrium is far away, it
-//! helps to apply the weight and the loads in parts (`load_steps`), or to do so only if the whole load fails (`when_not_converged
-//! = "halve"`). In statics every change of energy is external work. When a weight is lowered slowly, the energy that it releases
-//! and the springs do not store goes into the hand that lowers it; it is entered with the work of the loads as `work_user`.
+//! helps to apply the weight and the loads in parts (`load_steps`), or to do so only if the whole load fails
+//! (`when_not_converged = "halve"`). In statics every change of energy is external work. When a weight is lowered slowly, it
+//! releases more energy than the springs store. The rest goes into the hand that lowers it; it is entered with the work of the
+//! loads as `work_user`.
 //!
 //! **Through a snap** (`arc_length`): when a shallow arch snaps, no equilibrium is near the old one. With this option the load is
 //! an unknown as well: each step moves by a given length along the curve of equilibria, past the limit points where the load
@@ -199,7 +200,7 @@ impl Equilibrium {
         outcome.map_err(|error| self.with_hint(error, system, (from.load > 0.0 && from.load < 1.0).then_some(from)))
     }
 
-    /// Adds to an error how much of the load was applied, and what helps in statics.
+    /// Adds to an error how much of the load was applied, and a hint for statics.
     fn with_hint<const D: usize>(&self, mut error: StepError, system: &System<D>, from: Option<Reached>) -> StepError {
         let helps = self.settings.hint_of_statics(self.arc_length.is_some(), system.contacts.is_none());
         match &mut error {
@@ -229,7 +230,8 @@ impl Equilibrium {
         let balance =
             Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: at.time, h, load: at.load, impulse: 1.0, echo: 0.0 };
         let mut solved = Newton(self.settings).minimise(system, workspace, &balance)?;
-        // A body that lies on obstacles may still be free to slide or to roll. The iteration then never ends, or ends anywhere.
+        // A body that lies on obstacles may still be free to slide or to roll. The iteration then does not end, or ends at an
+        // arbitrary position.
         if system.contacts.is_some() && rigid::is_loose(system) {
             self.refuse_what_is_free(system, workspace)?;
         }
@@ -299,7 +301,7 @@ impl Equilibrium {
     }
 }
 
-/// Motion ends at once; without a restoring force the position stays the same.
+/// Motion stops at once; without a restoring force the position does not change.
 fn to_rest(omega: f64) -> Amplification {
     let kept = if omega > 0.0 { 0.0 } else { 1.0 };
     Amplification::new([[kept, 0.0], [0.0, 0.0]])

@@ -1,4 +1,4 @@
-//! The rigid motions of a body or a piece: translations and rotations, and which of them pins prevent.
+//! The rigid motions of a body or a piece (translations and rotations), and which of them are prevented by pins.
 
 use crate::refusals::MotionName;
 use opruga_core::potential::{DensePart, Sink};
@@ -162,7 +162,7 @@ pub(super) fn loose_motions<const D: usize>(
         motions.iter().map(|motion| shape_at(x, system.nodes, piece, motion, &center)).collect();
     let n = motions.len();
 
-    // How much each combination moves pinned axes, or strains external ties.
+    // How far each combination moves pinned axes, or strains external ties.
     let mut resistance = vec![0.0; n * n];
     system.pinned_axes(&mut |node, d| {
         for p in 0..n {
@@ -216,7 +216,7 @@ pub(super) fn loose_motions<const D: usize>(
     of_weights(&motions, loose)
 }
 
-/// The motions that are given combinations of others, in as simple a form as possible.
+/// The motions that are combinations of others with given weights, in as simple a form as possible.
 pub(super) fn of_weights<const D: usize>(motions: &[Motion<D>], weights: Vec<Vec<f64>>) -> Vec<Motion<D>> {
     // The components of translations and rotations are treated separately, so the result is the same for all lists of motions.
     let turns = if D == 2 { 1 } else { 3 };

@@ -38,8 +38,8 @@ pub(crate) fn pieces<const D: usize>(system: &System<D>) -> Vec<Vec<usize>> {
     pieces
 }
 
-/// Which nodes have common second derivatives, whatever their values: every node points to another one of its piece, and the
-/// first node to itself.
+/// Which nodes share second derivatives, whatever their values. Every node points to another node of its piece, and the first
+/// one to itself.
 struct Ties {
     tied_to: Vec<usize>,
 }

@@ -1,14 +1,14 @@
-//! Which rigid motions of a body the loads leave free: those under which loads and weight do no work of any order.
+//! The rigid motions that the loads do not restrain: those under which loads and weight do no work of any order.
 //!
 //! In a rigid motion q (displacements φ_q, rotation ω_q) the force on a node changes by −K φ_q, where K = −∂F/∂x. If the forces
 //! rotated with the body, it would change by ω_q × F. Only the difference can hold the body in a position:
 //!
 //! P_pq = Σ φ_p·(ω_q × F + K φ_q)
 //!
-//! This is zero for pressure, which follows the body whatever its strength. It is φ_p·K φ_q for a spring to a pointer. For a dead
-//! load or the weight it is zero for the rotation about the axis along which they act, and if their resultant passes through the
-//! support of the body. In some poses a dead load has no second-order work although it has some in others (a horizontal
-//! pendulum), so several poses of the body are examined.
+//! This is zero for a pressure of any strength, because pressure follows the body. It is φ_p·K φ_q for a spring to a pointer.
+//! For a dead load or the weight, it is zero for the rotation about the axis along which they act, and if their resultant
+//! passes through the support of the body. In some poses, such as that of a horizontal pendulum, a dead load does no
+//! second-order work although it does in others. So several poses of the body are examined.
 
 use super::motion::{Motion, Projection, all_motions, center, displacement, of_weights, shape_at, unpinned_motions};
 use super::pieces::whole;
@@ -19,7 +19,7 @@ use opruga_core::tile::Tile;
 use opruga_math::{Column, WIDTH};
 use opruga_solve::dense::symmetric_eigen;
 
-/// Times after the present one at which loads are evaluated [s]: some loads begin at zero.
+/// Times after the present one at which loads are evaluated [s], because some loads begin at zero.
 const TIMES: [f64; 7] = [0.0, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
 
 /// Restraints below this fraction of the loads count as zero; squared, since P is squared.
@@ -28,8 +28,8 @@ const NOTHING: f64 = 1e-14;
 /// The angle of rotation of the other poses of the body [rad].
 pub(super) const TURN: f64 = 0.9;
 
-/// The motions of the whole, or of a piece, that are prevented neither by pins, nor by loads, nor by the weight of a pendulum,
-/// nor by obstacles that hold nodes along the given directions, with the nodes at the given positions; translations first.
+/// The motions of the body, or of a piece, that nothing prevents: neither pins, nor loads, nor the weight (as of a pendulum),
+/// nor obstacles that hold nodes along the given directions. The nodes are at the given positions. Translations come first.
 pub(super) fn free_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -73,8 +73,7 @@ pub(super) fn unstiffened_motions<const D: usize>(
     free
 }
 
-/// The external members, according to what they do and not to the account on which their energy is entered: loads, and every
-/// model that ties nodes to space.
+/// The external members: loads, and every model that ties nodes to space, whatever account its energy is entered in.
 pub(super) fn outer<const D: usize>(system: &System<D>) -> Vec<&Member<D>> {
     let acts =
         |member: &&Member<D>| member.potential.properties().account == Account::User || ties_to_space(system, member);
@@ -146,7 +145,7 @@ pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Me
         let (sum, sizes) = force.iter().fold((0.0, 0.0), |(sum, sizes), f| (sum + f[d], sizes + f[d].abs()));
         f64::abs(sum) > NO_TIE * sizes
     };
-    // A model whose results do not change with positions does not depend on them.
+    // A model whose results do not change with positions is taken to be independent of them.
     stiffness.largest > 0.0 && !(0..shapes.len()).any(brakes) && !(0..D).any(pushes)
 }
 
@@ -313,7 +312,7 @@ fn poses<const D: usize>(x: &Columns<D>, piece: &[usize], motions: &[Motion<D>],
     core::iter::once(x.clone()).chain(others.map(|motion| pose(x, piece, motion, center))).collect()
 }
 
-/// The body after a motion of a piece was continued until its rotation reached [`TURN`].
+/// The positions of the body after a piece has moved until its rotation reaches [`TURN`].
 pub(super) fn pose<const D: usize>(
     x: &Columns<D>,
     piece: &[usize],

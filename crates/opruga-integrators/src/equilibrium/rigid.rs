@@ -11,7 +11,7 @@ use opruga_core::system::System;
 use opruga_math::message::AnyMessage;
 use opruga_math::words::number;
 
-/// Refuses a body if it, or one of its pieces, can move rigidly.
+/// Refuses a body that can move rigidly, or that has a piece that can.
 pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<(), BuildError> {
     let x = &system.state.x;
     let refused = |refusal: Refusal| Err(BuildError::of("equilibrium", refusal));
@@ -95,7 +95,7 @@ pub fn unheld_motions<const D: usize>(system: &System<D>) -> Vec<Motion<D>> {
     untied_motions(system, &system.state.x, &whole(system))
 }
 
-/// The same for a piece, with the nodes at the given positions.
+/// The motions of a piece that neither pins nor loads with a stiffness prevent, with the nodes at the given positions.
 fn untied_motions<const D: usize>(system: &System<D>, x: &Columns<D>, piece: &[usize]) -> Vec<Motion<D>> {
     loose_motions(system, x, piece, &[], Some(&|projection| deliver_outer(system, x, projection)))
 }

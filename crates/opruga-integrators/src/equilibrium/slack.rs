@@ -1,8 +1,8 @@
-//! Rotations that meet no resistance however far they go: those of linear laws.
+//! Rotations that meet no resistance at any angle, which exist only for linear laws.
 //!
-//! A law that accounts for large rotations rotates with the body, and a weight returns the body as it does a pendulum. For a
-//! linear law a rotation is the straight motion ω × r: its forces do not change along that motion, so a torque at the start acts
-//! without end.
+//! A law that accounts for large rotations rotates with the body, and the weight brings the body back like a pendulum. For a
+//! linear law, a rotation is the straight motion ω × r. Its forces do not change along that motion, so a torque at the start
+//! acts for ever.
 
 use super::motion::{Motion, center, shape_at};
 use super::restraint::{TURN, add_forces_of, outer, pose, unstiffened_motions};
@@ -10,7 +10,7 @@ use opruga_core::state::{Columns, View};
 use opruga_core::system::{Member, Stage, System};
 use opruga_math::Column;
 
-/// Forces below this fraction of those of a stretch of the same length are rounding.
+/// Forces below this fraction of those due to a stretch of the same length count as rounding.
 const NOTHING: f64 = 1e-6;
 
 /// The rotations of a piece that neither pins nor loads with a stiffness prevent, if the forces of the body itself do not resist
@@ -22,7 +22,7 @@ pub(super) fn endless_turns<const D: usize>(system: &System<D>, piece: &[usize])
     if free.iter().all(endless) { free } else { Vec::new() }
 }
 
-/// Whether the forces of the body do not change under the straight motion of a rotation, although they do if its nodes move on
+/// Whether the forces of the body stay the same under the straight motion of a rotation, but change if its nodes move on
 /// circles.
 fn goes_on<const D: usize>(system: &System<D>, piece: &[usize], motion: &Motion<D>) -> bool {
     let x = &system.state.x;

@@ -1,4 +1,4 @@
-//! Hanging bars, a truss that snaps, bodies that nothing holds.
+//! Tests with hanging bars, a truss that snaps, and bodies that nothing holds.
 
 use super::{COMPLETE, Equilibrium, LOAD, SPEC};
 use crate::testing::problems::{Anchors, Springs};
@@ -64,7 +64,7 @@ fn a_hanging_bar_has_the_length_of_its_closed_form() {
         let sunk = -1.0 - system.state.x.at(springs)[1];
         assert!((sunk - 0.039_24).abs() < 1e-12, "{nodes} nodes: {sunk}");
         assert!(system.state.v.0.iter().flatten().all(|v| *v == 0.0));
-        // The energy that the weight releases and the springs do not store is external work: half of it. Nothing damps.
+        // Half of the energy that the weight releases is not stored by the springs, and is external work. Nothing damps.
         let (damped, work): (f64, f64) = (system.work.damping.iter().sum(), system.work.user.iter().sum());
         let stored = system.stored_energy(opruga_core::system::Stage::Current, 0.0);
         assert!(damped == 0.0 && work < 0.0, "{damped} {work}");

@@ -13,7 +13,7 @@
 //! energy grows by ω²h per second. A mode with damping is stable for h ≤ c/ω² (if it still oscillates) or h ≤ 2/|μ| (if it does
 //! not). Free fall is too slow: y = −g h² n(n − 1)/2 after n steps.
 //!
-//! It is here for comparison; [`crate::symplectic_euler`] costs the same and conserves the energy.
+//! It serves for comparison; [`crate::symplectic_euler`] costs the same and conserves the energy.
 
 #[cfg(test)]
 mod tests;

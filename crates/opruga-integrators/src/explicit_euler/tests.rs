@@ -1,4 +1,4 @@
-//! Order 1, growth without damping, the recurrence of free fall.
+//! Tests the order, which is 1, growth without damping, and the recurrence of free fall.
 
 use super::ExplicitEuler;
 use crate::testing;

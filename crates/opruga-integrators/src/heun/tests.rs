@@ -1,4 +1,4 @@
-//! Order 2, slow growth without damping, exact free fall.
+//! Tests the order, which is 2, slow growth without damping, and exact free fall.
 
 use super::Heun;
 use crate::testing;

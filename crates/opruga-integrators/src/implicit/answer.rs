@@ -9,8 +9,8 @@ use opruga_core::integrator::next_matrix_number;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 
-/// Factors the matrix of the last step, or the one that the minimiser keeps for later steps. Returns its number; none if there is
-/// no matrix.
+/// Factors the matrix of the last step, or the matrix that the minimiser keeps for later steps, and returns its number; none if
+/// there is no matrix.
 ///
 /// # Errors
 /// [`StepError`] if a model refuses.
@@ -41,7 +41,7 @@ fn begin<const D: usize>(workspace: &mut Workspace<D>, balance: &Balance) {
     answer.number = next_matrix_number();
 }
 
-/// Takes the matrix that later steps share, unless it is already there; returns whether it has a factor.
+/// Copies the matrix that later steps share, unless it has already been copied; returns whether it has a factor.
 fn take_kept<const D: usize>(workspace: &mut Workspace<D>, balance: &Balance) -> bool {
     let Workspace { answer, reused, free, projectors, .. } = &*workspace;
     let is_same = |node: usize| free[node] || answer.projectors[node] == projectors[node];

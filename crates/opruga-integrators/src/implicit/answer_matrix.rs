@@ -15,7 +15,7 @@ pub(crate) struct AnswerMatrix<const D: usize> {
     pub(crate) free: Vec<bool>,
     pub(crate) projectors: Vec<Block<D>>,
     pub(crate) theta: f64,
-    /// Its unique number; and its origin, if it is a matrix that later steps share.
+    /// Its unique number, and its origin if it is a matrix that later steps share.
     pub(crate) number: u64,
     pub(crate) origin: Option<Origin<D>>,
     /// Whether the matrix is solved by factors that do not require positive eigenvalues.

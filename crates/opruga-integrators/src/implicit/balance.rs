@@ -15,8 +15,8 @@ pub(crate) struct Balance {
     pub(crate) h: f64,
     /// The fraction of the weight and of the loads that acts.
     pub(crate) load: f64,
-    /// The change of momentum in the step by a force that acts only in this stage, in units of force times h, and the change that
-    /// the rule will add later from its memory.
+    /// The change of momentum in the step by a force that acts only in this stage, in units of force times h, including the
+    /// change that the rule will add later from its memory.
     pub(crate) impulse: f64,
     pub(crate) echo: f64,
 }
@@ -29,9 +29,9 @@ pub(crate) struct Solved {
     /// The largest displacement of a node in the last iteration [m].
     pub(crate) correction: f64,
     pub(crate) converged: bool,
-    /// How far the residual would still move a node [m], if it is rounding and large.
+    /// How far the residual would still move a node [m], if it consists of rounding errors and that distance is large.
     pub(crate) error_estimate: f64,
-    /// The forces due to rounding of positions, over the loads, if they matter.
+    /// The ratio of the forces due to rounding of positions to the loads, if it matters.
     pub(crate) conditioning: f64,
     /// If it did not converge: the rounding of positions [m], the largest rounding of a force [N], and how far that would move a
     /// node [m].

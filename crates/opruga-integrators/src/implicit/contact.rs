@@ -6,9 +6,9 @@
 //!     ──────●──────             slip:     t = µ λ s, s against its motion along the surface
 //! ```
 //!
-//! Whether a node is held is decided in every Newton iteration, from the gap after the last correction and the force of the
-//! constraint. A contact that changes too often slips, or is released, for the rest of the step: no force leaves Coulomb's cone,
-//! and in the end no node may be inside.
+//! Every Newton iteration decides whether a node is held, from the gap after the last correction and the force of the
+//! constraint. A contact that changes too often slips, or is released, for the rest of the step. So no force leaves Coulomb's
+//! cone, and no node may be inside at the end.
 
 use super::contact_query::ContactQuery;
 use super::friction::{Followed, SlipRule, against_slide, projected};
@@ -56,7 +56,7 @@ pub(crate) struct Verdict {
 /// How a node is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Hold {
-    /// Not held: the surface would have to pull.
+    /// It is not held, because the surface would have to pull.
     Released,
     /// It may move along the surface, against friction.
     Slip,
@@ -271,7 +271,7 @@ impl<const D: usize> Contacting<D> {
                     }
                 }
                 let size = dot(&rest, &rest).sqrt();
-                // A direction that is (nearly) held already is not held twice.
+                // A direction that is (nearly) held already is not added.
                 if rank == D || size < 1e-6 {
                     return;
                 }

@@ -10,7 +10,7 @@ const FOLLOWED: f64 = 0.1;
 /// A slide of more than this fraction of the extent always has a direction.
 const SLIDING: f64 = 1e-4;
 
-/// The distance from a node at which its surface is evaluated for differences, in extents of the body.
+/// The distance from a node at which its surface is evaluated for differences, as a fraction of the extent of the body.
 const BESIDE: f64 = 1e-5;
 
 impl<const D: usize> ContactQuery<'_, D> {
@@ -42,9 +42,9 @@ impl<const D: usize> ContactQuery<'_, D> {
 }
 
 impl<const D: usize> Contacting<D> {
-    /// Calls `visit` with blocks −∂f/∂u of the forces of held contacts: of friction, whose direction follows the slide w, µλ/|w|
-    /// across it; and of the constraint, whose direction follows the surface, −λ ∂n/∂x. If `clamped`, only blocks without
-    /// negative eigenvalues.
+    /// Calls `visit` with the blocks −∂f/∂u of the forces of held contacts. The direction of friction follows the slide w,
+    /// which gives µλ/|w| across w. The direction of the constraint follows the surface, which gives −λ ∂n/∂x. If `clamped` is
+    /// set, only blocks without negative eigenvalues are visited.
     pub(crate) fn derivatives(
         &self,
         contact_query: &ContactQuery<'_, D>,

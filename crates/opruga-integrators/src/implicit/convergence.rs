@@ -77,9 +77,10 @@ pub(super) fn refusal<const D: usize>(
 ) -> StepError {
     let (residual, tolerance) = (workspace.largest_residual(), settings.tolerance * workspace.extent);
     let [of_positions, of_forces, displacement] = solved.floor;
-    // If the iterations were used up, rounding is not to blame.
+    // If the iterations were used up, rounding is not the cause.
     let is_stuck = solved.iterations < settings.iterations;
-    // Forces and corrections below their rounding are lost in it; so is a body that rounding would move farther than its extent.
+    // Forces and corrections below their rounding errors are lost. So is a body that rounding would move farther than its
+    // extent.
     let is_lost = solved.correction <= of_positions || residual <= of_forces || displacement > workspace.extent;
     let is_rounding = is_stuck && is_lost;
     StepError::NotConverged {

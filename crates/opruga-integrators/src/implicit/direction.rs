@@ -19,9 +19,9 @@ use opruga_solve::dot;
 pub(super) enum Keep {
     /// The exact ones.
     Exact,
-    /// Those of each element without their negative eigenvalues.
+    /// The derivatives of each element without their negative eigenvalues.
     Clamped,
-    /// The same with the diagonal raised by a fraction of itself, for directions without any stiffness.
+    /// The clamped derivatives with the diagonal raised by a fraction of itself, for directions without any stiffness.
     Raised(f64),
 }
 
@@ -38,7 +38,7 @@ impl Keep {
     }
 }
 
-/// The largest number of corrections of a direction for the change of friction.
+/// How often a direction is corrected at most because friction has changed.
 const MOST_ROUNDS: u32 = 12;
 
 /// The relative error of the friction force that may remain in the first iteration.

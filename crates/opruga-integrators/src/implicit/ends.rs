@@ -18,7 +18,7 @@ pub(super) struct Found<R> {
     pub(super) solved: Solved,
 }
 
-/// The ledger before a step, and after the entries at its start.
+/// The ledger before a step, and the ledger after the entries at the start of the step.
 #[derive(Clone, Copy)]
 pub(super) struct Ledger {
     pub(super) before: Work8,
@@ -80,7 +80,7 @@ fn stop<const D: usize>(system: &mut System<D>) {
     system.state.v.0.iter_mut().for_each(|column| column.fill(0.0));
 }
 
-/// Takes the state at the start of a step, and enters the works of rules that use the mean of start and end.
+/// Takes the state at the start of a step, and enters the work for rules that use the mean of start and end.
 pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -96,7 +96,7 @@ pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
     Ok(Ledger { before, begun: system.work })
 }
 
-/// Enters the works of rules that use the stage, which was evaluated last, and those of coupled masses.
+/// Enters the work for rules that use the stage, which was evaluated last, and the work due to coupled masses.
 pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -122,7 +122,7 @@ pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
     }
 }
 
-/// Enters the works at the end of a step, for rules that use the mean of start and end.
+/// Enters the work at the end of a step, for rules that use the mean of start and end.
 pub(super) fn enter_end<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

@@ -11,16 +11,17 @@ use opruga_core::error::StepError;
 use opruga_core::history::Channel;
 use opruga_core::system::System;
 
-/// The number of iterations for steps that few iterations led astray.
+/// The number of iterations for steps in which few iterations gave a wrong result.
 const MOST_ITERATIONS: u32 = 50;
 
 /// The real-time setting as a minimiser.
 ///
 /// The result of few iterations is accepted only if it creates no energy. Otherwise the step is solved by Newton's method with
-/// its line search, and in two halves if that does not converge. The incremental potential must not be above that of a body that
-/// does not move. This is checked for bodies in the air, and for others whose matrix was rebuilt during the step, that moved far,
-/// or whose residual is larger than promised. The residual of a body on an obstacle counts as an impulse of the obstacle, which
-/// the potential does not contain: the end of such a step is doubtful ([`Solved::doubtful`]), and its energy decides.
+/// its line search, and in two halves if that does not converge. The incremental potential must not be above that of a body
+/// that does not move. This is checked for bodies in the air. It is also checked for other bodies if their matrix was rebuilt
+/// during the step, if they moved far, or if their residual is larger than promised. The residual of a body on an obstacle
+/// counts as an impulse of the obstacle, which the potential does not contain. The end of such a step is doubtful
+/// ([`Solved::doubtful`]), and its energy decides.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RealTime(pub(crate) Settings);
 
@@ -68,7 +69,7 @@ impl<const D: usize> Minimiser<D> for RealTime {
     fn keeps_matrix(&self, system: &System<D>) -> bool {
         real_time::keeps_matrix(system)
     }
-    /// In real time nobody can change a setting in between.
+    /// In real time nobody can change a setting between steps.
     fn always_halves(&self) -> bool {
         true
     }
@@ -80,7 +81,7 @@ impl<const D: usize> Minimiser<D> for RealTime {
     }
 }
 
-/// Moves the body to where the motion of the last step leads, without obstacles.
+/// Moves the body to the position to which it would move by itself, as in the last step, without obstacles.
 fn begin_anew<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
     workspace.contacting.clear(system.nodes);
     for k in 0..workspace.u.len() {
@@ -89,13 +90,13 @@ fn begin_anew<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, 
     }
 }
 
-/// The settings for steps that few iterations led astray.
+/// The settings for steps in which few iterations gave a wrong result.
 pub(crate) fn exactly(settings: &Settings) -> Settings {
     Settings { real_time: false, iterations: MOST_ITERATIONS, ..*settings }
 }
 
-/// Whether the incremental potential of the result is above that of the body where it was, except for held nodes. NaN counts as
-/// above, and so does a possible effect of forces without a potential.
+/// Whether the incremental potential of the result is above that of the initial positions, in which only held nodes are moved.
+/// NaN counts as above, and so does a possible effect of forces without a potential.
 fn has_risen<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

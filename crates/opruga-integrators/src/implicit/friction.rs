@@ -19,7 +19,7 @@ use opruga_solve::dot;
 /// How friction on a slipping node follows from its slide.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SlipRule {
-    /// It acts against the slide. A slide that moves a node by less than `tolerance` of the extent counts as zero.
+    /// Friction acts against the slide. A slide that moves a node by less than `tolerance` of the extent counts as zero.
     AgainstSlide { tolerance: f64 },
     /// The previous force, minus the slide times a stiffness, is projected onto Coulomb's cone.
     Projected,
@@ -27,7 +27,7 @@ pub(crate) enum SlipRule {
 
 /// k as a fraction of the diagonal of the block of a node. Since neighbours move too, the stiffness of a node is less than its
 /// block, and k has to stay below twice that. With 2 instead of 0.5, 20 of 720 steps in the test `real_time_contact` leave a
-/// larger residual than promised, instead of 1.
+/// larger residual than promised; with 0.5 it is 1.
 const PART_OF_DIAGONAL: f64 = 0.5;
 
 /// The effect of friction on a slipping node.
@@ -37,7 +37,7 @@ pub(super) enum Followed<const D: usize> {
     Sticks,
     /// It acts in this direction.
     Pushes([f64; D]),
-    /// The node does not slide; the known direction remains valid.
+    /// The node does not slide, and the known direction remains valid.
     Rests,
 }
 

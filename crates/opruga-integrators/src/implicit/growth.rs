@@ -1,4 +1,4 @@
-//! The guard of growth: refuses a body that accepted but unconverged steps have blown up.
+//! The guard against growth: refuses a body that has become too large in accepted but unconverged steps.
 
 use super::balance::Solved;
 use super::workspace::Workspace;

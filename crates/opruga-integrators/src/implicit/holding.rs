@@ -1,9 +1,9 @@
 //! The effect of pins on nodes that a consistent mass matrix couples to pinned nodes.
 //!
 //! A pinned node has the velocity of its pin from the moment at which it is pinned; in a step this is the mean velocity w over
-//! the step. If the node had another velocity (a body is caught in flight, or a table of motion has a corner or many small ones),
-//! the pin gives an impulse at the start of the step. It acts only on the pinned node, but consistent masses couple nodes, so its
-//! neighbours recoil, as a bat does away from the grip:
+//! the step. If the node had another velocity (because a body is caught in flight, or because a table of motion has corners),
+//! the pin gives an impulse at the start of the step. The impulse acts only on the pinned node, but consistent masses couple
+//! nodes, so its neighbours recoil, as a bat does beyond the grip:
 //!
 //! M_ff Δv_f + M_fp (w − v_p) = 0,
 //!
@@ -19,9 +19,9 @@ use opruga_math::WIDTH;
 use opruga_solve::blocks::{Block, isotropic};
 use opruga_solve::{BlockJacobi, Directions, conjugate_gradients};
 
-/// Gives pinned nodes the velocities for the coming step of `h`, and their neighbours the velocities that follow from the masses;
-/// the change of kinetic energy is work of the pins. `kick` is then the change of every velocity, and empty if there is none.
-/// Returns the previous velocities if they have changed.
+/// Gives pinned nodes the velocities for the coming step of `h`, and their neighbours the velocities that follow from the
+/// masses; the change of kinetic energy is work of the pins. Afterwards `kick` is the change of every velocity; it is empty if
+/// there is none. Returns the previous velocities if they have changed.
 pub(super) fn take_hold<const D: usize>(system: &mut System<D>, kick: &mut Vec<f64>, h: f64) -> Option<Columns<D>> {
     kick.clear();
     if system.inertia.is_none() || system.pins.is_empty() {
@@ -107,7 +107,7 @@ pub fn accelerations<const D: usize>(system: &System<D>, pinned: &[bool], force:
     let blocks: Vec<Block<D>> = (0..system.nodes).map(|node| isotropic(system.mass.at(node))).collect();
     let mut lumped = BlockJacobi::default();
     let mut out = vec![0.0; pinned.len()];
-    // The mass matrix is as well conditioned as that of a cell: some tens of products give all digits.
+    // The mass matrix is as well conditioned as that of a single cell, so some tens of products give all digits.
     let solved = lumped.update(blocks.iter()).and_then(|()| {
         let mut workspace = Directions::default();
         conjugate_gradients(multiply, &lumped, &right, &mut out, 1e-14, 1000, &mut workspace)

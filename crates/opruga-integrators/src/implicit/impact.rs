@@ -12,7 +12,7 @@ use opruga_solve::blocks::{Block, isotropic, nodes};
 const MOVES_ALONG: f64 = 0.1;
 
 impl<const D: usize> Contacting<D> {
-    /// Moves nodes that are still inside onto the surface; `reaction` is the residual without them.
+    /// Moves nodes that are still inside an obstacle to its surface; afterwards `reaction` is the residual without them.
     pub(crate) fn expel(
         &self,
         system: &mut System<D>,
@@ -43,8 +43,8 @@ impl<const D: usize> Contacting<D> {
         }
     }
 
-    /// Ends a step: enters the work of the forces that held nodes (`ending.reaction`), and corrects velocities. In the directions
-    /// in which a surface has stopped nodes, rules discard their memory; `struck` then names those nodes.
+    /// Ends a step: enters the work of the forces that held nodes (`ending.reaction`), and corrects velocities. Rules discard
+    /// their memory in the directions in which a surface has stopped nodes; `struck` lists these nodes.
     pub(crate) fn end(
         &self,
         system: &mut System<D>,
@@ -121,8 +121,8 @@ impl<const D: usize> Ending<'_, D> {
         let (node, lane) = (contacts[0].node, contacts[0].node % WIDTH);
         let (x0, v0) = (self.part(node, self.x0), self.part(node, self.v0));
         let share = if motion.fresh { self.balance.impulse } else { 1.0 };
-        // The work entered beyond the share of this step stands for the memory of the rule, and does not count as a loss of the
-        // rule itself.
+        // The work that is entered beyond the share of this step replaces the memory of the rule. It does not count as a loss
+        // by the rule itself.
         let beyond = |share: f64, work: f64| (share - self.balance.impulse) * work;
         let mut rest = *force;
         let mut carrier = None;
@@ -164,7 +164,8 @@ struct Motion<const D: usize> {
 }
 
 impl<const D: usize> Motion<D> {
-    /// Applies a surface to the motion: the normal velocity is stopped or reversed, and friction takes µ times that change too.
+    /// Applies a surface to the motion: it stops or reverses the normal velocity, and friction reduces the tangential velocity
+    /// by µ times that change.
     ///
     /// The impulses of a whole step, including the memory of the rule, obey J_t = µ J_n against the slide.
     fn meet(&mut self, work: &mut Work8, ending: &Ending<'_, D>, contact: &Contact<D>, force: &Force<D>, alone: bool) {
@@ -184,8 +185,8 @@ impl<const D: usize> Motion<D> {
             |displacement: f64, own: f64| displacement.abs() <= MOVES_ALONG * own.abs() + SMALL * ending.extent / h;
         let size = |vector: &[f64; D]| dot(vector, vector).sqrt();
 
-        // Along the normal: the incoming velocity is lost, or a part of it is returned; no surface pulls. A node that has just
-        // reached the surface without being held meets it now.
+        // Along the normal, the incoming velocity is lost, or a part of it is returned; no surface pulls. A node that has just
+        // reached the surface without being held hits it now.
         let nears = dot(&beside, &touch.normal);
         let own = dot(&turned, &touch.normal);
         let impact = touch.gap_before > touch.rounding || nears < 0.0 && !still(nears, own);

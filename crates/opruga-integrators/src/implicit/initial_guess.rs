@@ -6,11 +6,11 @@ use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::system::System;
 
-/// Evaluates the initial guess of the iteration: the state to which the motion leads, or the present state if the body would be
-/// torn there.
+/// Evaluates the initial guess of the iteration: the state to which the motion leads, or the present state if that would tear
+/// the body.
 ///
-/// Pins move to their final positions at once, so the cells next to them take the whole displacement, many times their share. If
-/// that alone tears these cells, the iteration begins with no displacement, and pins move together with the rest of the body
+/// Pins move to their final positions at once, so the cells next to them take the whole displacement instead of a small part of
+/// it. If that tears these cells, the iteration begins with no displacement, and pins move together with the rest of the body
 /// during the iterations. The error of the model is returned in case these fail.
 pub(super) fn begin<const D: usize>(
     system: &mut System<D>,
@@ -33,7 +33,7 @@ pub(super) fn begin<const D: usize>(
     }
 }
 
-/// The same with pins at their final positions.
+/// Evaluates the initial guess with pins at their final positions.
 fn begin_with_pins<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

@@ -1,23 +1,23 @@
 //! Corrections that leave an unstable equilibrium.
 //!
-//! A straight bar under too much compression is in equilibrium, and a matrix without negative eigenvalues leads there as surely
-//! as to any other equilibrium. From there on corrections grow by a few per cent each, because the matrix is too stiff in the
-//! direction in which the body buckles. Once they have grown for a while, such a correction is extended as far as it leads
-//! downhill.
+//! A straight bar under too much compression is in equilibrium, and a matrix without negative eigenvalues leads to it as surely
+//! as to any other equilibrium. Each further correction is then a few per cent larger than the last one, because the matrix is
+//! too stiff in the direction in which the body buckles. After several such corrections, the next one is extended as far as it
+//! leads downhill.
 
 use super::line_search::{LONGEST_STRETCH, Stretches};
 use opruga_math::Lane;
 
-/// Corrections above this fraction of the extent are far from the solution.
+/// If a correction is above this fraction of the extent, the solution is still far away.
 const ROUGH: f64 = 1e-3;
 
 /// The number of consecutive growing corrections that indicates an unstable equilibrium.
 const OFTEN: u32 = 4;
 
-/// How far such a correction may be extended, in extents of the body.
+/// How far such a correction may be extended, as a fraction of the extent of the body.
 const REACH: f64 = 1e-2;
 
-/// The change of corrections, with a matrix without negative eigenvalues, from one to the next.
+/// Detects an unstable equilibrium by how corrections grow from one to the next, while the matrix has no negative eigenvalues.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instability {
     /// The last correction [m].

@@ -12,8 +12,7 @@ use opruga_solve::dot;
 /// The fraction of the slope that may remain after a step of the line search.
 const SLOPE_LEFT: f64 = 0.8;
 
-/// A step whose slope at the end is steeper than this fraction of the initial slope is extended, up to this many times its
-/// length.
+/// A step is extended if the slope at its end is steeper than this fraction of the initial slope.
 const STEEP: f64 = 0.3;
 pub(super) const LONGEST_STRETCH: f64 = 16.0;
 
@@ -42,7 +41,7 @@ pub(super) fn line_search<const D: usize>(
     slope: f64,
     stretches: Stretches,
 ) -> Result<f64, StepError> {
-    // Damping has no potential; friction and constraints count with the forces that they are expected to have.
+    // Damping has no potential. Friction and constraints are included with the forces that they are expected to have.
     let before = if system.is_damped() { None } else { potential(system, workspace, balance, false) };
     let given = given_along(workspace);
     let cancelled = rounding_of_models(system);
@@ -97,7 +96,7 @@ fn stretch<const D: usize>(
     };
     let mut last = before.and_then(|(_, given)| Some(potential(system, workspace, balance, false)?.0 - given));
     loop {
-        // The secant of the slopes, but at most twice as far.
+        // The secant of the slopes gives the length, but at most twice the last one.
         let left = slope.abs() + now;
         let longer = length * if left > 0.0 { (slope.abs() / left).smaller(2.0) } else { 2.0 };
         for k in 0..workspace.u.len() {
@@ -140,7 +139,7 @@ pub(super) fn given_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
     let mut work = dot(right, step);
     Filter { free, projectors }.apply(right);
     work -= dot(right, step);
-    // Friction: what is subtracted from zero.
+    // Subtracted from zero, this is the friction.
     right.fill(0.0);
     contacting.subtract_friction(right);
     work - dot(right, step)

@@ -22,7 +22,8 @@ pub(crate) struct Linear<const D: usize> {
     added: Vec<(usize, Block<D>)>,
     jacobi: BlockJacobi<D>,
     incomplete: IncompleteCholesky<D>,
-    /// The complete factor, and whether it is valid for the present matrix; whether so many products were needed that it is used.
+    /// The complete factor, whether it is valid for the present matrix, and whether it is used because earlier solutions needed
+    /// many products.
     filled: FilledCholesky<D>,
     is_filled: bool,
     is_slow: bool,
@@ -36,7 +37,8 @@ pub(crate) struct Linear<const D: usize> {
 /// The largest number of iterations of conjugate gradients.
 const MOST_PRODUCTS: u32 = 20_000;
 
-/// The largest number of rank-one terms with which a sparse factor pays: each needs one solution, and every pair a number.
+/// The largest number of rank-one terms with which a sparse factor is worthwhile: each term needs a solution, and each pair of
+/// terms a number.
 const MOST_PARTS: usize = 64;
 
 /// After this many products the complete factor is used: a nearly incompressible solid needs thousands with an incomplete one.
@@ -69,7 +71,7 @@ pub(crate) struct Mixture<'a, const D: usize> {
     pub(crate) matrix_free: bool,
 }
 
-/// The free directions: all of a node, or those of its projector.
+/// The free directions of each node: all of them, or those of its projector.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Filter<'a, const D: usize> {
     pub(crate) free: &'a [bool],
@@ -249,7 +251,7 @@ impl<const D: usize> Linear<D> {
             let size = self.full.diagonal_size(node);
             self.full.add_diagonal(node, part * if size > 0.0 { size } else { 1.0 });
         }
-        // Without a matrix, the products have to include it too.
+        // If there is no matrix, products have to include this block.
         for (node, block) in self.diagonal.iter_mut().enumerate() {
             let size = (0..D).map(|d| block[d][d].abs()).sum::<f64>() / D as f64;
             let more = part * if size > 0.0 { size } else { 1.0 };

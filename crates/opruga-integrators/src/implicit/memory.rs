@@ -24,7 +24,7 @@ pub(crate) fn of_body<const D: usize>(settings: &Settings, counts: &Counts, coup
         return VECTORS_WITHOUT_MATRIX * vector;
     }
     let block = 8.0 * dimension * dimension;
-    // Including those below the diagonal, each with its index.
+    // This includes the blocks below the diagonal, each with its index.
     let matrix = (nodes + 2.0 * couplings) * (block + 16.0);
     let whole = |number: f64| number.smaller(f64::from(u32::MAX)) as usize;
     let direct = match settings.solver {

@@ -1,8 +1,9 @@
 //! Anderson mixing: estimates what the matrix of an iteration leaves out from the previous iterations.
 //!
 //! The derivatives of damping by position, of friction by the normal force and of curved obstacles are not symmetric, or belong
-//! to no model; without them corrections fall by a constant factor. An iteration is a map z → z + f(z) of the displacements and
-//! the forces of the constraints. The next state follows from the combination of the last few pairs (z, f) with the smallest |f|:
+//! to no model. Without them, corrections only fall by a constant factor in each iteration. An iteration is a map z → z + f(z)
+//! of the displacements and the forces of the constraints. The next state follows from the combination of the last few pairs
+//! (z, f) with the smallest |f|:
 //!
 //! z' = z + f − Σ γⱼ (Δzⱼ + Δfⱼ),  γ = argmin |f − Σ γⱼ Δfⱼ|.
 //!
@@ -15,10 +16,10 @@ use opruga_solve::dot;
 /// The largest number of pairs that are remembered.
 const MOST: usize = 8;
 
-/// A difference whose component orthogonal to the others is below this fraction of it adds no information.
+/// A difference adds no information if its component orthogonal to the others is below this fraction of its size.
 const NOTHING_NEW: f64 = 1e-6;
 
-/// The iterations since the last change of anything else.
+/// The iterations since anything but the state has changed.
 #[derive(Debug, Default)]
 pub(crate) struct Mixing {
     /// The last state and its change; empty if there is none.
@@ -28,7 +29,7 @@ pub(crate) struct Mixing {
     changes: Vec<Vec<f64>>,
     displacements: Vec<Vec<f64>>,
     known: usize,
-    /// The same, orthogonalised; and the remainder of a change.
+    /// The same differences after orthogonalisation, and the remainder of a change.
     across: Vec<Vec<f64>>,
     combined: Vec<Vec<f64>>,
     rest: Vec<f64>,

@@ -27,14 +27,14 @@
 //! | `rigid_balance` | whether that balance holds at the end of an iteration |
 //! | `mixing` | an estimate of what the matrix leaves out, from previous iterations |
 //! | `real_time` | the iteration with a fixed budget |
-//! | `fallback` | its guard: steps that it leads astray are made by `newton` |
+//! | `fallback` | its guard: steps in which it gives a wrong result are made by `newton` |
 //! | `reused_matrix` | the matrix that it keeps from step to step |
 //! | `linear` | the linear solver of a direction: conjugate gradients or sparse Cholesky |
 //! | `step_limit` | limits of corrections in statics, which keep bodies without inertia out of obstacles |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
 //! | `contact_query` | the positions of nodes within a step, as obstacles see them |
 //! | `contact_derivatives` | derivatives of contact forces by positions |
-//! | `growth` | refuses bodies that accepted steps have blown up |
+//! | `growth` | refuses bodies that have become too large in accepted steps |
 //! | `slenderness` | for which bodies the real-time setting factors its matrix |
 //! | `impact` | effects of obstacles at the end of a step: velocities and the ledger |
 //!
@@ -46,13 +46,13 @@
 //! `tolerance` times the extent of the body.
 //!
 //! **Contact.** Obstacles hold nodes by constraints, not by penalties: a node that would end inside is moved to the surface
-//! within the iteration, all others follow by elasticity, and the force of the constraint follows from the balance. In statics,
-//! where nothing else keeps a falling body from passing through an obstacle, a correction ends where it meets one. A node is
-//! released when that force pulls. It sticks while the tangential part obeys Coulomb's law |f_t| ≤ µ f_n, and otherwise slips
-//! against a friction of µ f_n. This is the primal–dual active set method, a semi-smooth Newton method (Hintermüller, Ito,
-//! Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few additional iterations. Friction uses the normal force that the
-//! direction itself causes. Velocities are corrected at the end of the step: the incoming normal velocity is lost or returned
-//! according to the restitution, and friction takes µ times that change as well.
+//! within the iteration, all other nodes follow by elasticity, and the force of the constraint follows from the balance. A node
+//! is released when that force pulls. In statics, a correction ends at the first obstacle that it meets, because nothing else
+//! would keep a falling body from passing through. It sticks while the tangential part obeys Coulomb's law |f_t| ≤ µ f_n, and
+//! otherwise slips against a friction of µ f_n. This is the primal–dual active set method, a semi-smooth Newton method
+//! (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few additional iterations. Friction uses the
+//! normal force that the direction itself causes. Velocities are corrected at the end of the step: the incoming normal velocity
+//! is lost or returned according to the restitution, and friction takes µ times that change as well.
 
 mod answer;
 mod answer_matrix;

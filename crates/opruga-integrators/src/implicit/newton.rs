@@ -17,10 +17,10 @@ use opruga_core::error::StepError;
 use opruga_core::system::System;
 use opruga_math::Lane;
 
-/// If a correction is above this fraction of the previous one, corrections fall slowly.
+/// Convergence is slow if a correction is above this fraction of the previous one.
 const SLOW: f64 = 0.03;
 
-/// From this iteration on contacts do not change: those that still would differ by little.
+/// From this iteration on contacts do not change; contacts that would still change then make little difference.
 const MOST_DECISIONS: u32 = 30;
 
 /// Newton's method: exact, to the tolerance of its settings.
@@ -109,7 +109,7 @@ struct Correction {
     gone: f64,
     /// Whether previous iterations are mixed in.
     mixed: bool,
-    /// Whether it is at most half the previous one.
+    /// Whether it is at most half of the previous one.
     nears: bool,
     /// The fraction of it that was taken.
     length: f64,
@@ -169,7 +169,8 @@ impl<'a> Iteration<'a> {
         Some((keep, slope))
     }
 
-    /// Measures the correction in `workspace.step`, shortens it in statics, and mixes in previous ones if they fall slowly.
+    /// Measures the correction in `workspace.step`, shortens it in statics, and mixes in previous corrections if convergence is
+    /// slow.
     fn measure<const D: usize>(
         &mut self,
         system: &System<D>,
@@ -182,18 +183,18 @@ impl<'a> Iteration<'a> {
         self.solved.correction = plain;
         let mut gone = plain;
         if self.balance.sigma == 0.0 {
-            // Without inertia a soft direction leads far.
+            // Without inertia, a step in a soft direction can be very long.
             let part = part_without_inertia(system, workspace, self.balance, plain);
             workspace.step.iter_mut().for_each(|s| *s *= part);
             gone *= part;
             slope *= part;
         }
-        // If corrections fall slowly, the effect of what the matrix leaves out becomes visible.
+        // If convergence is slow, the terms that the matrix leaves out matter.
         if changed {
             workspace.mixing.forget();
         }
         let mixed = mix(workspace, plain > SLOW * self.before, &mut slope);
-        // With inertia, rounding is reached when a correction no longer halves the previous one.
+        // With inertia, rounding is reached when a correction is no longer below half of the previous one.
         let halves = self.solved.iterations == 1 || self.before.is_finite() && plain <= 0.5 * self.before;
         let nears = self.balance.sigma != 0.0 && halves;
         self.before = plain;
@@ -275,7 +276,7 @@ impl<'a> Iteration<'a> {
         true
     }
 
-    /// Decides from the forces of the constraints which nodes stay held; returns whether that has changed.
+    /// Decides from the forces of the constraints which nodes remain held; returns whether any of this has changed.
     fn judge<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) -> bool {
         if system.contacts.is_none() || self.solved.iterations >= MOST_DECISIONS {
             return false;
@@ -311,7 +312,8 @@ impl<'a> Iteration<'a> {
         Ok(self.solved.converged)
     }
 
-    /// Estimates how far rounding may have moved the result, or what it hides if the iteration did not converge.
+    /// Estimates how far rounding may have moved the result, or how large a displacement it hides if the iteration did not
+    /// converge.
     fn estimate_error<const D: usize>(&mut self, system: &mut System<D>, workspace: &mut Workspace<D>) {
         let Iteration { balance, settings, size, .. } = *self;
         if !self.solved.converged {
@@ -345,8 +347,8 @@ fn left_over<const D: usize>(
     Some(longest(&workspace.step, D))
 }
 
-/// Records an iteration and, if `wanted`, replaces its step by the one to which it and the previous ones lead; returns whether it
-/// did.
+/// Records an iteration and, if `wanted` is set, replaces its step by the combination with previous iterations; returns whether
+/// it did.
 fn mix<const D: usize>(workspace: &mut Workspace<D>, wanted: bool, slope: &mut f64) -> bool {
     workspace.mixing.note(&workspace.u, &workspace.step);
     if !wanted || workspace.mixing.is_empty() {

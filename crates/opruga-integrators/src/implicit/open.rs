@@ -51,7 +51,7 @@ pub(super) fn open<R: Rule<D>, const D: usize>(
     let mut workspace = system.cache.take::<Workspace<D>>();
     let rule = rule.pushed();
     let rule = rule.in_contact().unwrap_or(rule);
-    // Data reused from step to step belong to searches of the body alone.
+    // Data that are reused from step to step are valid only for searches of the body alone.
     workspace.answer.last = None;
     holding::take_hold(system, &mut workspace.kick, h);
     let account = Account::Motion(Box::new(open_ledger::<R, D>(system, &mut workspace, h)?));

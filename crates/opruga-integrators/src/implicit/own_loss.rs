@@ -10,7 +10,7 @@
 //!
 //! L = W + U₀ − U₁ − v̄·J.
 //!
-//! It is signed, and exact for any U. With g = ∇U, if nothing else acts, this gives the following.
+//! This value is signed, and exact for any U. If nothing else acts, it is as follows, with g = ∇U.
 //!
 //! | rule | L |
 //! |---|---|
@@ -19,9 +19,9 @@
 //! | BDF2 | ½ Δv·M Δv − ⅓ v₁·M Δ₋v − ⅓ g₁·Δ₋x + U₀ − U₁ + g₁·Δx |
 //! | generalised-α | U₀ − U₁ + g_f·Δx + (1 − γ − α_m) Δx·M Δa + h² (β − γ/2) (½ Δ(a·M a) + (γ − ½) Δa·M Δa) |
 //!
-//! Δ goes from n to n + 1 and Δ₋ from n − 1 to n; g_f = (1 − α_f) g₁ + α_f g₀ if forces are linear, and in general it is g in the
-//! averaged state. The tests of the rules compare them. The work of r, h i v̄·r, is in no channel of the ledger, so it remains
-//! unexplained. The contacts enter the work of R.
+//! Δ goes from n to n + 1 and Δ₋ from n − 1 to n; g_f = (1 − α_f) g₁ + α_f g₀ if forces are linear, and in general it is g in
+//! the averaged state. Tests compare the rules with these formulas. The work of r, h i v̄·r, is in no channel of the ledger, so
+//! it remains unexplained. The contacts enter the work of R.
 //!
 //! Pinned nodes do not count: the work of pins is entered with the kinetic energy of these nodes.
 
@@ -43,7 +43,7 @@ pub(super) fn add_given(work: &mut Work8, before: &[f64; WIDTH]) {
     }
 }
 
-/// Adds the work of the forces of other bodies to W: it is in no account of the ledger yet, and contact enters its losses.
+/// Adds the work of the forces of other bodies to W. The ledger does not contain it yet; the code of contact enters its losses.
 pub(super) fn add_pushes<const D: usize>(system: &mut System<D>, u1: &[f64]) {
     let System { pushes, work, .. } = system;
     for (node, force) in pushes.iter().flatten() {

@@ -1,9 +1,9 @@
-//! The real-time setting: few iterations with a matrix that is kept as long as it leads to the end of a step.
+//! The real-time setting: few iterations with a matrix that is kept as long as the iteration with it finds the end of a step.
 //!
-//! Every iteration balances the exact forces; the matrix only determines the correction. If it belongs to another shape of the
-//! body, or its equations are solved roughly, a part of the residual remains, and the next step begins with it. At rest nothing
-//! remains. The iteration begins where the acceleration of the last step would lead the body, with the contact forces of that
-//! step (`contact_forces`).
+//! Every iteration balances the exact forces; the matrix only determines the correction. If the matrix belongs to another shape
+//! of the body, or its equations are solved roughly, a part of the residual remains, and the next step begins with it. At rest
+//! nothing remains. The iteration begins with the positions to which the acceleration of the last step would lead, and with the
+//! contact forces of that step (`contact_forces`).
 //!
 //! The residual of a step shows whether the matrix is still good enough. Near obstacles the residual comes mostly from changes of
 //! contacts; there, the measure is the difference between the forces after an iteration and those that the matrix predicted.
@@ -30,14 +30,14 @@ use opruga_solve::Indefinite;
 /// The largest fraction of the residual that the linear solver may leave.
 const LINEAR: f64 = 0.05;
 
-/// The fraction above which the next step rebuilds the matrix.
+/// If a larger fraction of the residual remains, the next step rebuilds the matrix.
 const MOST_MISMATCH: f64 = 0.2;
 
-/// The same for bodies that are free or near obstacles: three iterations with it leave a thousandth.
+/// This fraction for bodies that are free or near obstacles: after three such iterations, a thousandth remains.
 const MOST_MISMATCH_LOOSE: f64 = 0.1;
 
-/// The fraction that the linear solver may leave for bodies that are free or near obstacles; an iteration is good enough with its
-/// square.
+/// The fraction of the residual that the linear solver may leave for bodies that are free or near obstacles. An iteration is
+/// good enough if it leaves the square of this.
 const LOOSE: f64 = 1e-3;
 
 /// A residual counts as zero if it moves nodes by less than this fraction of the extent.
@@ -46,9 +46,9 @@ const NOTHING: f64 = 1e-9;
 /// The largest number of products with the matrix in an iteration.
 const PRODUCTS: u32 = 1000;
 
-/// Iterations with more products than this count as cut off. If information travels so slowly through a body, it is
-/// ill-conditioned, and the residual, in which stiff motions dominate, says little about the slow ones, such as the bending of a
-/// slender body.
+/// Iterations with more products than this count as cut off. A body through which information travels so slowly is
+/// ill-conditioned. Stiff motions dominate its residual, which says little about slow motions such as the bending of a slender
+/// body.
 const MANY_PRODUCTS: u32 = 120;
 
 /// The shape in which the matrix was made [m], the velocity at the start of the last step [m/s] and its length [s]; zero if its
@@ -97,7 +97,7 @@ pub(super) fn predict<const D: usize>(system: &System<D>, workspace: &mut Worksp
     });
 }
 
-/// Keeps the velocities at the start of a step; for nodes that met an obstacle, those at its end.
+/// Keeps the velocities at the start of a step, or at its end for nodes that met an obstacle.
 pub(super) fn remember<const D: usize>(system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
     // The acceleration of an impact cannot be continued.
     system.history.set(STEP, if workspace.struck.is_empty() { h } else { 0.0 });
@@ -163,7 +163,7 @@ impl Task<'_> {
         self.make(system, workspace, true);
     }
 
-    /// Makes the matrix of the reference shape in the state, unless it is already there; none if there is no reference.
+    /// Makes the matrix in the reference shape, which is in the state, unless it exists; none if there is no reference.
     fn recall<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<bool, StepError> {
         if !keeps_matrix(system) || !system.hessian_is_of_positions() {
             return Ok(false);
@@ -185,7 +185,7 @@ impl Task<'_> {
         Ok(true)
     }
 
-    /// Begins with the matrix of the reference in the state, or with one of the initial shape.
+    /// Begins with the matrix in the reference shape that the state contains, or in the initial shape if it contains none.
     fn begin<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<(), StepError> {
         let recalled = self.recall(system, workspace)?;
         evaluate(system, workspace, self.balance, false)?;
@@ -225,7 +225,7 @@ impl Task<'_> {
         let Workspace { reused, right, step, .. } = &mut *workspace;
         let (products, indefinite) = reused.solve(system, right, self.direct, goal, PRODUCTS, step)?;
         if indefinite {
-            // The solution so far leads downhill; the next matrix will be another one.
+            // The solution so far leads downhill. The next step will use another matrix.
             mark_stale(system);
         }
         Ok(products)
@@ -239,7 +239,7 @@ pub(super) fn mark_stale<const D: usize>(system: &mut System<D>) {
     }
 }
 
-/// Whether the matrix of the reference shape is there and the next step begins with it.
+/// Whether the matrix in the reference shape exists and the next step begins with it.
 pub(super) fn keeps_matrix<const D: usize>(system: &System<D>) -> bool {
     system.history.get(MATRIX) && !system.history.get(STALE)
 }
@@ -249,9 +249,9 @@ pub(super) fn keeps_matrix<const D: usize>(system: &System<D>) -> bool {
 pub(super) enum Trust {
     /// It is.
     Always,
-    /// It is, unless the incremental potential has risen.
+    /// Accepted, unless the incremental potential has risen.
     IfDownhill,
-    /// It is, unless the body has more energy at the end of the step than before.
+    /// Accepted, unless the body has more energy at the end of the step than before.
     IfNoGain,
     /// It is not.
     None,
@@ -285,7 +285,7 @@ pub(super) fn iterate<const D: usize>(
     let mut solved = Solved { converged: true, ..Solved::default() };
     task.begin(system, workspace)?;
     let (mut first, mut undecided, mut slow, mut remade) = (0.0, false, false, false);
-    // The fraction of the residual that the matrix of another shape left in the last iteration.
+    // The fraction of the residual that remained in the last iteration because the matrix belongs to another shape.
     let mut mismatch = 0.0;
     loop {
         system.go_on()?;
@@ -331,7 +331,7 @@ pub(super) fn iterate<const D: usize>(
         }
         solved.iterations += 1;
         let goal = if is_loose(system) { (linear * size).larger(enough) } else { (linear * first).larger(floor) };
-        // A pushing gas, for example: the step is solved exactly.
+        // This happens with a gas that pushes, for example; the step is then solved exactly.
         let Ok(products) = task.direction(system, workspace, goal) else {
             solved.converged = false;
             return Ok((solved, Trust::None));
@@ -385,16 +385,16 @@ fn conclude<const D: usize>(
         (false, true) if !remade => Trust::Always,
         _ => Trust::IfDownhill,
     };
-    // A residual that moves no node against the stiffness of the others may move all of them together.
+    // A residual that is too small to move one node against the stiffness of the others may still move all of them together.
     let trust =
         if settles(system, workspace, balance, settings, [NOTHING, LOOSE * LOOSE])? { trust } else { Trust::None };
     solved.conditioning = workspace.rigid.conditioning;
     Ok((solved, trust))
 }
 
-/// Takes the step, including prescribed displacements; `workspace.reaction` is then the force of the constraints. For bodies that
-/// are free or near obstacles, returns by how much the matrix has missed the present forces: r − (r₀ + A Δ). Here r₀ + A Δ is the
-/// residual of the linear solver; if no node is held, it counts as zero.
+/// Takes the step, including prescribed displacements; `workspace.reaction` is then the force of the constraints. For bodies
+/// that are free or near obstacles, returns the difference between the present forces and those that the matrix predicted: r −
+/// (r₀ + A Δ). Here r₀ + A Δ is the residual of the linear solver; if no node is held, it counts as zero.
 fn go<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

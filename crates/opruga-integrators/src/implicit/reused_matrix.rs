@@ -1,7 +1,7 @@
 //! The matrix that the real-time setting keeps from step to step.
 //!
-//! It is made in one shape of the body, the *reference*, and used until it no longer leads to the end of a step. The reference is
-//! part of the state, so a resumed run makes the same matrix from it.
+//! It is computed in one shape of the body, the *reference*, and reused until the iteration with it no longer finds the end of
+//! a step. The reference is part of the state, so a resumed run makes the same matrix from it.
 
 use super::linear::{Filter, Linear, Mixture};
 use opruga_core::state::Columns;
@@ -29,8 +29,8 @@ pub(crate) struct ReusedMatrix<const D: usize> {
     packed: Packed<D>,
     cholesky: Cholesky,
     /// Whether it was made in the shape of the iteration and has not been used yet; then one pass through a dense factor also
-    /// solves for the right-hand side. A matrix that is made again when a run is resumed counts as used, because its solutions
-    /// must have the same bits.
+    /// solves for the right-hand side. A matrix that is made again because a run is resumed counts as used, so that its
+    /// solutions have the same bits as in the original run.
     is_new: bool,
     /// The solution for the present right-hand side, and whether it is known.
     solution: Vec<f64>,
@@ -63,8 +63,8 @@ impl<const D: usize> ReusedMatrix<D> {
         })
     }
 
-    /// Makes the matrix in the shape that was evaluated last, which is `reference`; `is_new` tells whether that is the shape of
-    /// the iteration.
+    /// Makes the matrix for `reference`, the shape that was evaluated last. `is_new` says whether the iteration is at that
+    /// shape.
     pub(crate) fn make(&mut self, linear: &mut Linear<D>, mixture: &Mixture<D>, reference: &Columns<D>, is_new: bool) {
         linear.assemble(mixture);
         self.packed.take(linear.full(), mixture.system.threads);

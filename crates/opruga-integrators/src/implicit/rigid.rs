@@ -4,17 +4,18 @@
 //! multiple of its weight: E ε |x|/(ρ g ℓ²) times the weight in a body with cells of size ℓ. The residual of a single node is
 //! then meaningless. But whatever the positions are, the forces between nodes and their moments sum to zero over a piece of a
 //! body, up to the rounding of that sum, which is smaller by another ε. So the sum of the residuals is known even if its terms
-//! are not: it consists of weight, loads and inertia. A matrix whose stiffness is 1/ε of its mass is equally useless for these
-//! motions, since the sums of its rows are rounding too.
+//! are not: it consists of weight, loads and inertia. A matrix whose stiffness is 1/ε times its mass is also useless for these
+//! motions, since the sums of its rows are rounding errors.
 //!
 //! For each piece (`pieces`) let φ be its motions t + ω × (x − c) that neither pins nor obstacles prevent, orthonormal with
 //! respect to the masses. Then
 //!
 //! (σ + φᵀ(K + βC)φ) a = −φᵀ r
 //!
-//! is the motion that balances the piece. Models that exert forces only between nodes are left out of r and of K: their sums are
-//! zero, but a law rounds its moments as it does its forces. Any model that ties nodes to space resists, if that is more than
-//! rounding. A piece moves by a finite rotation (Cayley's), which does not change its shape.
+//! is the motion that balances the piece. Models that exert forces only between nodes are left out of r and of K: their sums
+//! are zero, but their computed moments have rounding errors like their forces. Any model that ties nodes to space resists
+//! rigid motion, if its resistance exceeds rounding. A piece moves by a finite rotation (Cayley's), which does not change its
+//! shape.
 
 use super::contact::Contacting;
 use super::linear::{Filter, Mixture};
@@ -47,7 +48,7 @@ pub(crate) struct Rigid<const D: usize> {
     /// The models that exert forces only between nodes; none if not determined in this step.
     inner: Option<Vec<usize>>,
     pieces: Vec<Piece<D>>,
-    /// The forces due to rounding of positions, over the loads; zero if that is not needed.
+    /// The ratio of the forces due to rounding of positions to the loads; zero if it is not needed.
     pub(super) conditioning: f64,
 }
 
@@ -228,8 +229,8 @@ impl<const D: usize> Rigid<D> {
         let there = self.sums(x0, u, &moved);
         let wanted: Vec<f64> =
             self.shares(&self.sums(x0, u, &self.residual(stage))).iter().map(|share| -share).collect();
-        // The present ones are removed, and the wanted ones are added as finite rotations: in a straight motion a stiff body
-        // resists its stretch.
+        // The present motions are removed, and the required ones are added as finite rotations, because a straight motion would
+        // stretch the body.
         let motions = self.motions(&there).into_iter().zip(self.motions(&wanted));
         for (((found, wanted), piece), nodes) in motions.zip(&self.pieces).zip(&self.nodes) {
             for node in nodes {
@@ -261,7 +262,7 @@ impl<const D: usize> Piece<D> {
     fn free(nodes: &[usize], mixture: &Mixture<D>, x0: &[f64], u: &[f64], filter: &Filter<D>) -> Piece<D> {
         let mass = mixture.mass;
         let total: f64 = nodes.iter().map(|node| mass[*node]).sum();
-        // Relative to a node, so that nothing is lost far from the origin.
+        // Relative to a node, so that no digits are lost far from the origin.
         let first: [f64; D] = arm(x0, u, nodes[0], &[0.0; D]);
         let mut center = first;
         let mut spread = 0.0;

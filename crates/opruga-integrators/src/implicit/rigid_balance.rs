@@ -15,8 +15,8 @@ use opruga_math::Lane;
 /// The largest number of rigid moves; two are enough unless rotations are large.
 const MOST_MOVES: usize = 8;
 
-/// Whether the result of Newton's method is acceptable in the rigid motions. If these may be lost, because the matrix is
-/// inaccurate in them or because the residual was taken for rounding, they are balanced first. `size` is the size of coordinates
+/// Whether the result of Newton's method is acceptable in the rigid motions. These may be wrong if the matrix is inaccurate in
+/// them, or if the residual was taken for rounding; in both cases they are balanced first. `size` is the size of coordinates
 /// [m].
 pub(super) fn accepts<const D: usize>(
     system: &mut System<D>,
@@ -44,7 +44,8 @@ pub(super) fn accepts<const D: usize>(
 }
 
 /// Moves the pieces of a body until their total residual no longer halves, which is its rounding; pieces that would move by no
-/// more than `least` [m] stay. Returns how far they moved [m]; none if they could not be brought closer to balance.
+/// more than `least` [m] are not moved. Returns how far the pieces moved [m]; none if they could not be brought closer to
+/// balance.
 pub(super) fn balance_rigid_motions<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -86,7 +87,7 @@ fn balance_with<const D: usize>(
         for (u, step) in workspace.u.iter_mut().zip(&workspace.step) {
             *u += step;
         }
-        // The sums do not need the models that exert forces only between nodes, which may take long.
+        // The sums do not need the models that exert forces only between nodes, whose evaluation may take long.
         tried = true;
         Workspace::show(system, &workspace.x0, &workspace.u, &workspace.z, balance.beta);
         system.prepare_some(&outer, Workspace::<D>::STAGE, balance.time)?;
@@ -139,7 +140,8 @@ fn sums<const D: usize>(
     rigid.sums(&workspace.x0, &workspace.u, &rigid.residual(&stage(system, workspace, balance, settings)))
 }
 
-/// Records the forces due to rounding of positions, over the loads, or over the forces that hold a rotating body together.
+/// Records the ratio of the forces due to rounding of positions to the loads, or to the forces that hold a rotating body
+/// together.
 fn note<const D: usize>(
     rigid: &mut Rigid<D>,
     system: &mut System<D>,
@@ -169,8 +171,8 @@ fn note<const D: usize>(
     }
 }
 
-/// The same for the real-time setting: for a body whose forces were so small that they counted as zero, or whose matrix is too
-/// inaccurate. Returns whether the whole body is balanced.
+/// Balances the rigid motions for the real-time setting, if the forces of the body were so small that they counted as zero, or
+/// if its matrix is too inaccurate. Returns whether the whole body is balanced.
 pub(super) fn settles<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

@@ -36,8 +36,8 @@ impl<const D: usize> Motion<D> {
         let turned = cross(&self.rotation, arm);
         core::array::from_fn(|d| self.translation[d] + turned[d])
     }
-    /// The displacement in a finite rotation: R − 1 = α (ω× + ½ ω×ω×), α = 1/(1 + ¼ω²), about the axis that the motion leaves in
-    /// place, plus the translation along that axis.
+    /// The displacement in a finite rotation: R − 1 = α (ω× + ½ ω×ω×), α = 1/(1 + ¼ω²), about the axis that does not move
+    /// sideways, plus the translation along that axis.
     pub(super) fn finite_displacement(&self, arm: &[f64; D]) -> [f64; D] {
         let (displacement, turn) = (self.displacement(arm), &self.rotation);
         let again = cross(turn, &displacement);
@@ -162,8 +162,8 @@ mod tests {
     use super::*;
     use opruga_solve::blocks::isotropic;
 
-    /// Nodes of a plane body that all slide along one straight guide: the body can only slide, however many they are. Differences
-    /// of their directions by rounding are not separate directions.
+    /// If nodes of a plane body all slide along one straight guide, the body can only slide, however many these nodes are.
+    /// Differences of their directions by rounding are not separate directions.
     #[test]
     fn nodes_that_a_guide_holds_leave_one_motion() {
         let normal = [0.6, 0.8];

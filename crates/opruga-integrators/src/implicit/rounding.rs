@@ -46,10 +46,10 @@ pub(super) fn at_rounding<const D: usize>(
     })
 }
 
-/// Continues in statics as long as the residual, though as small as rounding, would still visibly move a node, and every further
-/// correction halves that displacement. This is little for a stout body, and much for a body that is stiff along and soft across.
-/// Returns the remaining displacement of a node [m]; zero if it is not visible. To be called after [`at_rounding`], which leaves
-/// the residual in `workspace.right`.
+/// Continues the iteration in statics if the residual is as small as rounding, but would still visibly move a node, and as long
+/// as every further correction halves that displacement. The displacement is small in a stout body, but large in a body that is
+/// stiff lengthwise and soft sideways. Returns the remaining displacement of a node [m]; zero if it is not visible. To be
+/// called after [`at_rounding`], which leaves the residual in `workspace.right`.
 pub(super) fn settle<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -90,8 +90,8 @@ pub(super) fn visible(displacement: f64, extent: f64) -> f64 {
     if displacement > VISIBLE * extent { displacement } else { 0.0 }
 }
 
-/// Whether the residual of statics is a small fraction of the loads. If not, it may be rounding, which far from the origin is as
-/// large as the loads: further iterations average it out, or [`settle`] reduces it.
+/// Whether the residual of statics is a small fraction of the loads. If not, it may consist of rounding errors, which are as
+/// large as the loads far from the origin. Further iterations average them out, or [`settle`] reduces them.
 pub(super) fn carries<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, balance: &Balance) -> bool {
     if balance.sigma != 0.0 {
         return true;
@@ -101,7 +101,8 @@ pub(super) fn carries<const D: usize>(system: &mut System<D>, workspace: &mut Wo
     loads == 0.0 || dot(&workspace.right, &workspace.right).sqrt() <= UNCARRIED * loads
 }
 
-/// Whether statics leaves the loads themselves as a residual: rounding has random directions, not those of the loads.
+/// Whether the residual of statics consists of the loads themselves: rounding errors would have random directions instead of
+/// those of the loads.
 fn leaves<const D: usize>(workspace: &mut Workspace<D>, loads: f64) -> bool {
     take_residual(workspace);
     let nodes = workspace.right.as_chunks::<D>().0.iter().enumerate();
@@ -112,7 +113,7 @@ fn leaves<const D: usize>(workspace: &mut Workspace<D>, loads: f64) -> bool {
 /// An equilibrium of statics that may be wrong.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Doubt {
-    /// The largest displacement of a node, which is all uncertain [m]; zero without doubt.
+    /// The largest displacement of a node, all of which is uncertain [m]; zero if there is no doubt.
     pub(super) displacement: f64,
     /// Whether the loads are so small that they are lost in the rounding of forces.
     pub(super) lost: bool,
@@ -159,7 +160,7 @@ pub(super) fn most_rounding<const D: usize>(
     [f64::EPSILON * size, force, if balance.sigma == 0.0 { 0.0 } else { displacement }]
 }
 
-/// How far rounding may move a node with the matrix of the result [m]: by forces of about its size and either sign.
+/// How far rounding errors of the forces, of random signs, may move a node with the matrix of the result [m].
 pub(super) fn random_error<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,
@@ -177,7 +178,8 @@ pub(super) fn random_error<const D: usize>(
     correction(system, workspace, balance, settings).unwrap_or(f64::INFINITY)
 }
 
-/// How far a force that is all rounding would move a node against its inertia [m], if its stiffness is its mass times a factor.
+/// How far a force that consists of rounding errors would move a node against its inertia [m], if its stiffness is its mass
+/// times a factor.
 pub(super) fn roundings_of(contrast: f64, size: f64) -> f64 {
     ROUNDING * contrast * size
 }

@@ -10,14 +10,14 @@ use opruga_core::system::System;
 pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + 'static {
     /// The name of the integrator.
     const NAME: &'static str;
-    /// Whether works are integrated by the trapezoidal rule over start and end, instead of by the value in the stage.
+    /// Whether work is integrated by the trapezoidal rule over start and end, instead of by the value in the stage.
     const TRAPEZOID: bool;
-    /// The same for the form of the rule with which a step was made.
+    /// Whether the form of the rule with which a step was made integrates work by the trapezoidal rule.
     fn is_trapezoid(&self) -> bool {
         Self::TRAPEZOID
     }
-    /// The rule for a step in which obstacles hold nodes, if it differs: one that damps motion much faster than the step, which
-    /// contact would otherwise excite for ever.
+    /// The rule for a step in which obstacles hold nodes, if it differs. It damps motion that is much faster than the step,
+    /// which contact would otherwise excite for ever.
     fn in_contact(self) -> Option<Self> {
         None
     }
@@ -25,8 +25,8 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     fn calmed(self) -> Option<Self> {
         None
     }
-    /// The rule for a step in which other bodies push, or may push. Its end is its stage, and the body reaches it with the
-    /// velocity at the end, so that bodies that come to rest on one another stay at rest.
+    /// The rule for a step in which other bodies push, or may push. The end of the step is its stage, and the body reaches it
+    /// with the velocity at the end. So bodies that come to rest on one another remain at rest.
     fn pushed(self) -> Self {
         self
     }

@@ -10,8 +10,8 @@ use opruga_core::system::System;
 /// The fraction of the residual at which an iteration is good enough, and the fraction that may remain after the last one.
 const ENOUGH: [f64; 2] = [0.2, 0.2];
 
-/// The same for a rule that damps slow motions little. The residual returns in the next step, delayed, and pushes along with the
-/// motion: with a fiftieth, a beam of 10 × 2 quadrilaterals still gained energy under `bdf2`.
+/// These fractions for a rule that damps slow motions little. Its residual acts in the next step, with a delay, and pushes in
+/// the direction of the motion: with a fiftieth, a beam of 10 × 2 quadrilaterals still gained energy under `bdf2`.
 const ENOUGH_UNDAMPED: [f64; 2] = [1e-3, 0.05];
 
 /// How the equations of a step are solved.
@@ -19,9 +19,9 @@ const ENOUGH_UNDAMPED: [f64; 2] = [1e-3, 0.05];
 pub(crate) struct Settings {
     /// The largest number of Newton iterations.
     pub(crate) iterations: u32,
-    /// The same for a step whose end is found together with those of other bodies.
+    /// The largest number of iterations for a step whose end is found together with those of other bodies.
     pub(crate) common_iterations: u32,
-    /// The correction below which the iteration ends, in extents of the body.
+    /// The correction below which the iteration ends, as a fraction of the extent of the body.
     pub(crate) tolerance: f64,
     /// Whether a step has a fixed budget, and counts as converged when that is spent.
     pub(crate) real_time: bool,
@@ -122,7 +122,7 @@ and cannot be combined with \"matrix_free\"."
     ),
     ..LINEAR_SOLVER
 };
-/// What to do without convergence in statics.
+/// What to do in statics if a step does not converge.
 pub(crate) const OTHERWISE_OF_STATICS: Field = Field {
     documentation: "What happens if no equilibrium is found: \"error\" is an error that leaves the state unchanged, \"halve\" makes two steps with \
 half of the load and half of the motion of pins (these are halved again, down to 1/256), \"accept\" accepts the state and counts it in a warning. \
@@ -180,7 +180,8 @@ impl Settings {
             return Err(BuildError::of(
                 kind,
                 match values.number("spectral_radius") {
-                    // Its acceleration is that of the displacement, balanced or not, and the next step begins with it.
+                    // Its acceleration follows from the displacement, even if forces do not balance there, and the next step
+                    // begins with it.
                     Some(radius) if radius < 1.0 => Refusal::DampsLittle { integrator: kind, radius },
                     _ => Refusal::DampsNothing { integrator: kind },
                 },

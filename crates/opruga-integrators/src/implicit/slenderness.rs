@@ -1,5 +1,6 @@
-//! Whether a body is slender, from which of its nodes are coupled. In slender bodies the sparse factor is narrow. Conjugate
-//! gradients, which pass information on by one cell per product, are slow and would stop before the whole body has bent.
+//! Whether a body is slender, as determined from the couplings of its nodes. In slender bodies the sparse factor is narrow.
+//! Conjugate gradients pass information on by only one cell per product, so they are slow and would stop before the whole body
+//! has bent.
 
 use opruga_core::potential::{Definiteness, DensePart, Sink};
 use opruga_core::system::{Stage, System};
@@ -53,7 +54,7 @@ pub(crate) fn is_slender<const D: usize>(system: &System<D>) -> bool {
         list.sort_unstable();
         list.dedup();
     }
-    // Starting from one end: the last node of a walk from anywhere.
+    // The layers start from one end of the body: the last node of a walk from any node.
     let Some(end) = layers(&touching.neighbours, 0).last().and_then(|layer| layer.first().copied()) else {
         return false;
     };

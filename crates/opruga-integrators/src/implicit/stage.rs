@@ -13,8 +13,8 @@ use opruga_core::system::System;
 use opruga_core::threads::each_block;
 use opruga_math::Lane;
 
-/// The rounding of an energy as a fraction of the terms whose difference it is. If a law subtracts the energy at rest, this can
-/// exceed the energy of a stiff body.
+/// The rounding error of an energy, as a fraction of the terms whose difference it is. If a law subtracts the energy at rest,
+/// this error can exceed the energy of a stiff body.
 pub(super) const CANCELLATION: f64 = 1e-15;
 
 /// The largest displacement of a node.
@@ -139,7 +139,7 @@ pub(crate) fn potential<const D: usize>(
     if balance.sigma != 0.0
         && let Some(coupled) = &system.inertia
     {
-        // The forces were evaluated last, and with them the displacement.
+        // The displacement was computed when the forces were evaluated last.
         inertia += coupled.square::<D>(&workspace.displacement);
     }
     inertia *= 0.5 * balance.sigma;

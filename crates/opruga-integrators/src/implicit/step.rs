@@ -5,7 +5,7 @@
 //! | guard | what it refuses, and what it does instead | where |
 //! |---|---|---|
 //! | halving | steps that do not converge: two steps of half the length | `Method::advance` |
-//! | growth | bodies that accepted steps have blown up: nothing | `growth` |
+//! | growth | bodies that have become too large in accepted steps: nothing | `growth` |
 //! | energy of the rule | a gain of energy in contact: a rule that damps | `energy` |
 //! | energy of the minimiser | a gain of energy by a doubtful stage: Newton's method | `energy` |
 //! | impact | nodes that end inside obstacles: they are moved to the surface | `impact` |
@@ -152,7 +152,7 @@ struct Method<'a, R, const D: usize> {
 }
 
 impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
-    /// Makes a step of h, or two of half the length if it does not converge: the outermost guard.
+    /// Makes a step of h, or two of half the length if it does not converge. This is the outermost guard.
     fn advance(
         &self,
         system: &mut System<D>,
@@ -243,7 +243,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         }
     }
 
-    /// The guard of growth: refuses a body that unconverged steps have blown up.
+    /// The guard against growth: refuses a body that has become too large in unconverged steps.
     fn refuse_growth(
         &self,
         system: &mut System<D>,

@@ -1,4 +1,4 @@
-//! Limits of corrections towards obstacles if there is no inertia.
+//! Limits on corrections towards obstacles if there is no inertia.
 
 use super::balance::Balance;
 use super::contact::{Contact, Contacting};
@@ -9,11 +9,11 @@ use opruga_core::system::System;
 use opruga_math::Lane;
 use opruga_solve::blocks::nodes;
 
-/// The longest correction of a node in statics, in extents of the body.
+/// The longest correction of a node in statics, as a fraction of the extent of the body.
 const LONGEST: f64 = 0.5;
 
-/// The depth up to which nodes are caught, in extents of the body. If whole rows of nodes behind a surface were all moved onto
-/// it, the resulting shape would be unusable.
+/// The depth up to which nodes are caught, as a fraction of the extent of the body. If whole rows of nodes behind a surface
+/// were all moved onto it, the resulting shape would be unusable.
 const CAUGHT: f64 = 1e-3;
 
 /// The number of bisections of the fraction of a step, so that half the extent is resolved more finely than `CAUGHT`.
@@ -22,7 +22,7 @@ const BISECTIONS: usize = 12;
 /// The largest number of moves that lift a body as a whole out of obstacles, from surface to surface.
 const MOST_LIFTS: u32 = 32;
 
-/// The largest depth of a node in equilibrium, in extents of the body.
+/// The largest depth of a node in equilibrium, as a fraction of the extent of the body.
 const LEFT: f64 = 1e-6;
 
 /// If no pin holds a body that begins deep in obstacles, the iteration begins with the body moved out of them as a whole, in
@@ -44,17 +44,18 @@ pub(crate) fn lift_out<const D: usize>(system: &System<D>, workspace: &mut Works
             lift[d] -= touch.gap * touch.normal[d];
         }
     }
-    // There is no room for the body between the obstacles, so it begins where it is.
+    // There is no room for the body between the obstacles, so it begins at its present position.
 }
 
-/// Whether the displacement in `workspace.u` leaves a node that nothing else holds inside an obstacle, because its contact
-/// changed too often.
+/// Whether the displacement in `workspace.u` leaves a node inside an obstacle because its contact changed too often. Only nodes
+/// that nothing else holds are considered.
 pub(crate) fn leaves_nodes_inside<const D: usize>(system: &System<D>, workspace: &Workspace<D>, h: f64) -> bool {
     let most = LEFT * workspace.extent;
     deepest(system, workspace, &|node, d| workspace.u[node * D + d], h).is_some_and(|touch| touch.gap < -most)
 }
 
-/// The deepest position of a node that no pin holds, with `displacement` as a function of node and axis; none if all are outside.
+/// The deepest position of a node that no pin holds, given its `displacement` as a function of node and axis; none if all nodes
+/// are outside.
 fn deepest<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,
@@ -97,7 +98,7 @@ pub(super) fn part_without_inertia<const D: usize>(
 }
 
 impl<const D: usize> Contacting<D> {
-    /// The fraction of a step at which the first free node enters an obstacle, or the whole.
+    /// The fraction of a step at which the first free node enters an obstacle; 1 if none does.
     fn part_to_obstacles(&self, contact_query: &ContactQuery<'_, D>, step: &[f64]) -> f64 {
         if !self.comes_in(contact_query, step, 1.0) {
             return 1.0;
@@ -114,7 +115,7 @@ impl<const D: usize> Contacting<D> {
         allowed
     }
 
-    /// Whether a fraction of a step moves a free node deeper into an obstacle than it is.
+    /// Whether a fraction of a step moves a free node deeper into an obstacle.
     fn comes_in(&self, contact_query: &ContactQuery<'_, D>, step: &[f64], part: f64) -> bool {
         let ContactQuery { system, x0, u, theta, h, extent } = *contact_query;
         let Some(obstacles) = &system.contacts else { return false };

@@ -1,7 +1,7 @@
 //! The θ-method: M (v₁ − v₀) = h F at the fraction θ between x₀ and x₁ = x₀ + h w, with w = (1 − θ) v₀ + θ v₁.
 //!
-//! θ = ½ is the implicit midpoint rule, θ = 1 is backward Euler. In a step, motion much faster than the step falls by the factor
-//! (1 − θ)/θ, and an oscillation with small hω by (θ − ½) h²ω² (Hughes 1987, 8.2).
+//! θ = ½ is the implicit midpoint rule, θ = 1 is backward Euler. In a step, the amplitude of motion much faster than the step
+//! is multiplied by (1 − θ)/θ, and that of an oscillation with small hω loses the fraction (θ − ½) h²ω² (Hughes 1987, 8.2).
 
 use super::balance::Balance;
 use super::workspace::Workspace;
@@ -10,7 +10,8 @@ use super::workspace::Workspace;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Theta(f64);
 
-/// The factor by which motion much faster than a step falls in a step with contact, for rules that otherwise damp nothing.
+/// The factor by which the amplitude of motion much faster than the step is multiplied in a step with contact, for rules that
+/// otherwise damp nothing.
 const RADIUS_IN_CONTACT: f64 = 0.9;
 
 impl Theta {

@@ -44,7 +44,7 @@ pub(crate) struct Workspace<const D: usize> {
     pub(crate) right: Vec<f64>,
     /// The displacement from y, if a mass matrix couples nodes.
     pub(crate) displacement: Vec<f64>,
-    /// The part of the force that held directions take [N].
+    /// The part of the force that acts along held directions [N].
     pub(crate) reaction: Vec<f64>,
     pub(crate) prescribed: Vec<f64>,
     /// How far pinned axes have to move in the stage; NaN for free axes.
@@ -59,7 +59,7 @@ pub(crate) struct Workspace<const D: usize> {
     pub(crate) linear: Linear<D>,
     /// The matrix with which its end responds to other bodies.
     pub(crate) answer: AnswerMatrix<D>,
-    /// Whether the real-time setting factors its matrix with a given solver, once determined.
+    /// Whether the real-time setting factors its matrix with a given solver, if already determined.
     pub(crate) direct: Option<(Solver, bool)>,
     /// The matrix of the real-time setting.
     pub(crate) reused: ReusedMatrix<D>,
@@ -68,7 +68,7 @@ pub(crate) struct Workspace<const D: usize> {
     pub(crate) rigid: Rigid<D>,
     /// The last iterations, for mixing.
     pub(crate) mixing: Mixing,
-    /// The same for the normal forces that determine friction, within a direction.
+    /// Mixing of the normal forces that determine friction, within a direction.
     pub(crate) friction: Mixing,
     /// The largest extent of the body [m].
     pub(crate) extent: f64,

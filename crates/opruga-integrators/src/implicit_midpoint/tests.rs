@@ -1,4 +1,5 @@
-//! Order 2, no limit, conservation of momentum and of the energy of linear systems, exact free fall.
+//! Tests the order, which is 2, stability without a limit, conservation of momentum and of the energy of linear systems, and
+//! exact free fall.
 
 use super::{ImplicitMidpoint, SPEC};
 use crate::implicit::step::Implicit;
@@ -31,7 +32,7 @@ fn energy_of_a_nonlinear_spring_stays_bounded() {
     testing::check_bounded_energy(&rule(), 2.0);
 }
 
-/// With converged Newton iterations: angular momentum to 1e-10 (validation B4), with damping too.
+/// With converged Newton iterations, angular momentum is conserved to 1e-10 (validation B4), with damping too.
 #[test]
 fn momentum_is_kept() {
     for h in [0.01, 0.1] {

@@ -3,15 +3,16 @@
 //! x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁),  v₁ = v₀ + h ((1 − γ) a₀ + γ a₁),
 //! M ((1 − α_m) a₁ + α_m a₀) = F(x_s, v_s, t_s),  x_s = (1 − α_f) x₁ + α_f x₀, v_s and t_s likewise.
 //!
-//! Without `spectral_radius` it is the average acceleration method: α_m = α_f = 0, γ = ½, β = ¼. Second order, stable for every
-//! step on linear systems, no damping at any frequency. With `spectral_radius` ρ from 0 to 1 it is the generalised-α method. Its
-//! amplitude at hω → ∞ falls by the factor ρ in a step, and its damping of slow motion is the smallest that this permits: α_m =
-//! (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². Second order as well.
+//! Without `spectral_radius` it is the average acceleration method: α_m = α_f = 0, γ = ½, β = ¼. It has second order, is stable
+//! for every step size on linear systems, and damps no frequency. With `spectral_radius` ρ from 0 to 1 it is the generalised-α
+//! method. At hω → ∞, the amplitude is multiplied by ρ in each step, and slow motion is damped as little as this permits: α_m =
+//! (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². It also has second order.
 //!
-//! **Memory.** The integrator remembers the acceleration. It begins with F/M, and does so again after a program has placed a
-//! node. Nodes that meet an obstacle lose the component of theirs normal to the surface, because it belongs to the time before
-//! the impact. Free fall is exact. The average acceleration method damps nothing and would sustain an oscillation of the contact
-//! forces (Hughes et al. 1976). So steps in which obstacles hold nodes use the related implicit midpoint rule in contact.
+//! **Memory.** The integrator remembers the acceleration. It begins with F/M, and does so again after a program has moved a
+//! node. When a node meets an obstacle, the component of its acceleration normal to the surface is discarded, because it
+//! belongs to the time before the impact. Free fall is exact. The average acceleration method damps nothing and would sustain
+//! an oscillation of the contact forces (Hughes et al. 1976). So steps in which obstacles hold nodes use the related implicit
+//! midpoint rule in contact.
 //!
 //! Source: Newmark 1959; Chung and Hulbert, *A time integration algorithm for structural dynamics with improved numerical
 //! dissipation: the generalized-α method*, 1993 (the force in the averaged state: Erlicher, Bonaventura, Bursi 2002).
@@ -127,7 +128,7 @@ impl<const D: usize> Rule<D> for Newmark {
         let (square, theta) = (omega * omega, 1.0 - alpha_f);
         let factor = 1.0 / (1.0 - alpha_m + theta * (square * h * h * beta + c * h * gamma));
         let (early, kick) = (h * h * (0.5 - beta), h * (1.0 - gamma));
-        // At ρ = 1 the mean of both accelerations is what the equation gives, so the next motion does not depend on earlier
+        // At ρ = 1 the equation gives the mean of both accelerations, so the next motion does not depend on earlier
         // accelerations.
         let keeps = alpha_m == 0.5 && alpha_f == 0.5;
         let kept = (alpha_m + square * theta * early + c * theta * kick) * factor;
@@ -149,7 +150,7 @@ impl<const D: usize> Rule<D> for Newmark {
         let theta = 1.0 - alpha_f;
         let rate = gamma / (beta * h);
         first_acceleration(system, workspace);
-        // Nodes that pins have just caught no longer accelerate; otherwise it would affect their neighbours.
+        // Nodes that pins have just caught no longer accelerate; otherwise their acceleration would affect their neighbours.
         let stopped = if begun && system.inertia.is_some() { pinned_coordinates(system) } else { Vec::new() };
         for node in 0..system.nodes {
             for d in 0..D {

@@ -1,4 +1,4 @@
-//! Order 2, no limit, the specified damping at high frequencies, exact free fall.
+//! Tests the order, which is 2, stability without a limit, the specified damping at high frequencies, and exact free fall.
 
 use super::{Newmark, SPEC};
 use crate::implicit::step::Implicit;
@@ -58,7 +58,8 @@ fn the_spectral_radius_is_the_one_that_was_asked_for() {
     }
 }
 
-/// The rule that conserves every oscillation has no limit and lets none grow, damped or not: rounding does not count as growth.
+/// The rule that conserves every oscillation has no limit and lets no oscillation grow, damped or not; rounding does not count
+/// as growth.
 #[test]
 fn a_radius_of_one_lets_nothing_grow() {
     for rho in [0.0, 0.5, 0.9, 0.99, 0.999, 1.0] {

@@ -11,12 +11,12 @@
 //! ```
 //!
 //! Fourth order (also with damping), four forces per step. The stability function is R(z) = 1 + z + z²/2 + z³/6 + z⁴/24; on the
-//! imaginary axis |R|² = 1 − (hω)⁶/72 + (hω)⁸/576: stable without damping for h ω ≤ 2√2 = 2.828, where it dissipates the fraction
-//! (hω)⁶/72 of the energy per step. A mode without stiffness is stable for h c ≤ 2.785. Free fall is exact.
+//! imaginary axis |R|² = 1 − (hω)⁶/72 + (hω)⁸/576. So it is stable without damping for h ω ≤ 2√2 = 2.828, and dissipates the
+//! fraction (hω)⁶/72 of the energy per step. A mode without stiffness is stable for h c ≤ 2.785. Free fall is exact.
 //!
 //! **Slopes are not stored**: h a₀ = 2 (v₁ − v₀), h a₁ = 2 (v₂ − v₀), h a₂ = v₃ − v₀, and the slopes of x are the velocities of
-//! the stages. The end except for h a₃/6 is therefore known as soon as y₃ is, and replaces y₂. Two pairs of work columns are
-//! enough for four stages:
+//! the stages. So the end of the step, except for h a₃/6, is known as soon as y₃ is, and replaces y₂. Two pairs of work columns
+//! are enough for four stages:
 //!
 //! ```text
 //! stage   forces in   reads           writes

@@ -1,4 +1,4 @@
-//! Order 4, limit 2√2, exact free fall.
+//! Tests the order, which is 4, the limit 2√2, and exact free fall.
 
 use super::RungeKutta;
 use crate::testing;

@@ -1,8 +1,8 @@
 //! # Symplectic Euler
 //!
-//! v₁ = v₀ + h a(x₀, v₀), x₁ = x₀ + h v₁ (the method of the thesis, section 2.4). First order; it conserves the symplectic form,
-//! and so keeps the energy of an undamped system within O(h) for ever. Stable without damping for h ω < 2; with damping taken at
-//! the old velocity for h < (2/ω)(√(1 + ζ²) − ζ).
+//! v₁ = v₀ + h a(x₀, v₀), x₁ = x₀ + h v₁ (the method of the thesis, section 2.4). First order; it conserves the symplectic
+//! form, and so keeps the energy of an undamped system within O(h) for ever. It is stable for h ω < 2 without damping. With
+//! damping, which is evaluated at the old velocity, it is stable for h < (2/ω)(√(1 + ζ²) − ζ).
 
 #[cfg(test)]
 mod tests;

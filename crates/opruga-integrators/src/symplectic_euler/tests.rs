@@ -1,4 +1,4 @@
-//! Order 1, limit 2, bounded energy, the recurrence of free fall.
+//! Tests the order, which is 1, the limit 2, bounded energy, and the recurrence of free fall.
 
 use super::SymplecticEuler;
 use crate::testing;

@@ -1,5 +1,5 @@
-//! The contract of every integrator: obstacles once per step and with the positions before it, pins, the ledger, the clock, and
-//! the same bits with any vector instructions.
+//! The contract of every integrator: it applies obstacles once per step and with the positions before the step, moves pins,
+//! keeps the ledger and the clock, and gives the same bits with any vector instructions.
 
 use super::{oscillator, problems, run, state, two_nodes};
 use crate::explicit_euler::ExplicitEuler;
@@ -136,7 +136,7 @@ fn the_work_of_pins_is_in_the_ledger() {
             system.gravity = [0.3, -2.0];
             let (start, speed) = (system.state.x.at(0), [2.0, -0.5]);
             let motion = Arc::new(vec![vec![0.0, 0.0, 0.0], vec![10.0, 10.0 * speed[0], 10.0 * speed[1]]]);
-            // The same node twice: it is pinned once.
+            // A node that is listed twice is pinned once.
             system.pins.push(Pin { index: 0, axes: [true, true], anchor: start, motion: Arc::clone(&motion) });
             system.pins.push(Pin { index: 0, axes: [true, false], anchor: start, motion });
             system.state.v.set(0, speed);
@@ -158,7 +158,7 @@ fn the_work_of_pins_is_in_the_ledger() {
     }
 }
 
-/// One node or eight bodies, any vector instructions: the same bits.
+/// The bits are the same for one body and for eight, and for any vector instructions.
 #[test]
 fn bits_depend_neither_on_instructions_nor_on_the_layout() {
     for (rule, _) in &rules() {

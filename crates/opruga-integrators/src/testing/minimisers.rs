@@ -75,7 +75,7 @@ impl Minimiser<2> for GradientDescent {
     }
 }
 
-/// Lets both find the same stage from the same start; the result of Newton's method counts.
+/// Lets both find the same stage from the same start, and uses the result of Newton's method.
 #[derive(Debug)]
 struct Both {
     newton: Newton,
@@ -144,7 +144,7 @@ fn check<R: Rule<2>>(spec: &'static Spec, rule: R) {
         let apart = (descended - found).abs();
         assert!(apart <= 1e-8 * (begun - found), "{}: {descended} and {found} from {begun}", spec.kind);
     }
-    // Whole steps too, with the memory of rules.
+    // Whole steps agree too, including the memory of rules.
     let apart = distance(&by_newton, &by_descent) / distance(&by_newton, &vec![0.0; by_newton.len()]);
     assert!(apart <= 1e-8, "{}: {apart}", spec.kind);
 }

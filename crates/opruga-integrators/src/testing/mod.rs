@@ -137,7 +137,7 @@ pub(crate) fn check_order(plane: &dyn Integrator<2>, space: &dyn Integrator<3>, 
     for (problem, orders) in rows {
         assert!(orders.len() >= 3);
         assert!(orders.iter().all(|p| *p >= theory - 0.2), "{problem}: {orders:?}, theory {theory}");
-        // And that the integrator is not accidentally better than documented.
+        // The integrator must not be accidentally better than documented.
         assert!(orders.iter().all(|p| *p <= theory + 0.6), "{problem}: {orders:?}, theory {theory}");
     }
 }
@@ -162,7 +162,7 @@ pub(crate) fn check_free_fall(integrator: &dyn Integrator<3>, factor: fn(f64) ->
     assert!((system.time - 10.0).abs() < 1e-9);
 }
 
-/// Checks stability for every step, however large, with and without damping.
+/// Checks stability for every step size, however large, with and without damping.
 pub(crate) fn check_no_limit(integrator: &dyn Integrator<2>) {
     for (omega, damping) in [
         (5.0, 0.0),

@@ -1,4 +1,4 @@
-//! The own dissipation of implicit integrators, compared with formulas in differences of states, and the ledger.
+//! Compares the dissipation by implicit integrators themselves with formulas in differences of states, and with the ledger.
 
 use super::{problems, two_nodes};
 use opruga_core::history::Content;
@@ -140,7 +140,7 @@ fn dissipated(formula: Formula, system: &mut System<2>, [before, start, end]: [O
 }
 
 /// A spring that spins, drifts and oscillates with a large amplitude, undamped, nine steps per period: every step obeys its
-/// formula, and their sum is the energy that is missing in the end.
+/// formula, and the sum over all steps is the energy that is missing in the end.
 #[test]
 fn what_a_rule_dissipates_is_what_its_formula_says() {
     for formula in FORMULAS {
@@ -174,7 +174,7 @@ fn what_a_rule_dissipates_is_what_its_formula_says() {
     }
 }
 
-/// With a damper, weight, a node that a pin moves, and steps of other lengths: nothing remains unexplained.
+/// No energy remains unexplained with a damper, weight, a node that a pin moves, and steps of other lengths.
 #[test]
 fn the_ledger_of_implicit_rules_closes_whatever_acts() {
     for formula in FORMULAS {

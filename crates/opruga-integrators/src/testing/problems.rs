@@ -1,4 +1,4 @@
-//! Small models, written independently and plainly, since integrators do not depend on the crate of models.
+//! Small models, written independently and in a simple way, since integrators do not depend on the crate of models.
 
 use opruga_core::error::StepError;
 use opruga_core::potential::{Definiteness, Observe, Potential, Properties, Sink, Views};

@@ -1,4 +1,4 @@
-//! The frame rate of the display leaves no trace in the state.
+//! The state does not depend on the frame rate of the display.
 
 use super::{state, two_nodes};
 use crate::symplectic_euler::SymplecticEuler;

@@ -71,7 +71,7 @@ fn rings_have_the_frequency_of_their_closed_form() {
     for nodes in [4, 6, 36, 300, 1024, 4096] {
         let system = ring(nodes, 1.0, 1.0, 1600.0, 40.0, 0.0);
         let stability = estimated(&system, &SymplecticEuler);
-        // All springs stretched alternately, all nodes along the radius or along the edge, whichever is faster.
+        // Springs are stretched alternately, and all nodes move along the radius or along the edge, whichever is faster.
         let (sin, cos) =
             (libm::sin(core::f64::consts::PI / nodes as f64), libm::cos(core::f64::consts::PI / nodes as f64));
         let omega = 80.0 * if sin > cos { sin } else { cos };

@@ -9,9 +9,10 @@
 //! stable for h ω < 2. With damping the stable region is smaller; a mode without stiffness is stable for h c < 2. Free fall is
 //! exact.
 //!
-//! **Two forces per step.** The usual saving, to reuse a₁ as the a₀ of the next step, is not possible: a₁ belongs to v* and not
-//! to v₁, and obstacles, pins and commands move nodes in between. It would keep the order, but the acceleration would become part
-//! of the state (of snapshots, hashes, merged islands), and the step would no longer be a function of (x, v).
+//! **Two forces per step.** It is common to save one by reusing a₁ as the a₀ of the next step. This is not done here, because
+//! a₁ belongs to v* and not to v₁, and because obstacles, pins and commands move nodes between steps. It would keep the order,
+//! but the acceleration would become part of the state (of snapshots, hashes, merged islands), and the step would no longer be
+//! a function of (x, v).
 //!
 //! Source: Swope et al. 1982; predicted velocity: Allen and Tildesley, *Computer Simulation of Liquids*, 3.2;
 //! Hairer, Lubich, Wanner, *Geometric numerical integration illustrated by the Störmer–Verlet method*, 2003.

@@ -1,4 +1,4 @@
-//! Order 2 even with damping, limit 2, bounded energy, exact free fall.
+//! Tests the order, which is 2 even with damping, the limit 2, bounded energy, and exact free fall.
 
 use super::Verlet;
 use crate::testing;

@@ -1,8 +1,8 @@
 //! # The published ball
 //!
-//! The step of the program in D. Križaić, *Postupci izrade elastično deformabilnih objekata* (bachelor's thesis 2460, University
-//! of Zagreb, 2012), reproduced to rounding: what was printed, beside what was meant. Every edge of the outline is a spring
-//! between i and j, with d = x_i − x_j and r = |d|:
+//! The step of the program in D. Križaić, *Postupci izrade elastično deformabilnih objekata* (bachelor's thesis 2460,
+//! University of Zagreb, 2012), reproduced up to rounding. The table compares what was printed with what was meant. Every edge
+//! of the outline is a spring between i and j, with d = x_i − x_j and r = |d|:
 //!
 //! - F_i −= (d/r) f, F_j += (d/r) f with f = (r − l) KS + ((v_i − v_j)·d) KD / r, if r ≠ 0;
 //! - n = (d_y/r, −d_x/r), "volume" V = Σ ½ |d_x| |n_x| r;
@@ -11,10 +11,10 @@
 //! - the mouse: with d = x − pointer and r = |d|, F −= (d/r)(r + (v·d)/r) on the vertex nearest to it;
 //! - v_x += F_x/MASS · DT, v_y += F_y · DT, x += v · DT.
 //!
-//! It is an ordinary model. `prepare` computes the forces; the ramp and the vertex that the mouse holds are its memory. F_y is
-//! multiplied by the mass of its node, so that the integrator's division gives the published v_y (E9). The published floor (y =
-//! 500, v_y = −½ v_y on crossing) is the engine's collider with restitution ½ and no friction. Edges run with the interior to
-//! their left (with y downwards, this is the direction of the thesis); i is their second node.
+//! It is an ordinary model. `prepare` computes the forces. The memory of the model is the state of the ramp and the vertex that
+//! the mouse holds. F_y is multiplied by the mass of its node, so that the integrator's division gives the published v_y (E9).
+//! The published floor (y = 500, v_y = −½ v_y on crossing) is the engine's collider with restitution ½ and no friction. Edges
+//! run with the interior to their left (with y downwards, this is the direction of the thesis); i is their second node.
 //!
 //! ## Where it is not the physics
 //!

@@ -5,7 +5,7 @@ use crate::vectors::{cross, dot, in_dimension, in_space, inverse, minus, scaled}
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;
 
-/// Nodes a, b of the edge, c, d opposite of it; parameters k [N·m], c [N·m·s], cos θ₀, sin θ₀.
+/// Nodes a and b are on the edge, c and d are opposite to it; parameters k [N·m], c [N·m·s], cos θ₀, sin θ₀.
 ///
 /// ```text
 ///         c            e = b − a

@@ -76,7 +76,7 @@ impl<const D: usize> Model<D> for BendingModel {
             return Err(Refusal::NoHinges {}.into());
         }
 
-        // The rest shape: for each hinge cos θ₀ and sin θ₀, and k per E t³/12 (E π t⁴/64 for a chain in space).
+        // The rest shape of each hinge: cos θ₀, sin θ₀, and k divided by E t³/12 (by E π t⁴/64 for a chain in space).
         let at = |node: u32| in_space(&mesh.positions[node as usize]);
         let mut turn_shapes = Vec::with_capacity(turns.len());
         for &[before, node, after] in &turns {
@@ -85,7 +85,7 @@ impl<const D: usize> Model<D> for BendingModel {
             let mut sine = if D == 2 { normal[2] } else { dot(&normal, &normal).sqrt() };
             let cosine = dot(&u, &w);
             if D == 3 && cosine > 0.0 && sine < 1e-9 * cosine {
-                // Straight except for rounding, so all directions of bending are equivalent.
+                // The chain is straight up to rounding, so all directions of bending are equivalent.
                 sine = 0.0;
             }
             let length = 0.5 * (dot(&u, &u).sqrt() + dot(&w, &w).sqrt());

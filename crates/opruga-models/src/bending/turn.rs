@@ -5,7 +5,7 @@ use crate::vectors::{cross, dot, in_dimension, in_space, inverse, minus};
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;
 
-/// Nodes before, at and after the hinge; parameters k [N·m], c [N·m·s], cos θ₀, sin θ₀.
+/// The nodes are before, at and after the hinge; parameters k [N·m], c [N·m·s], cos θ₀, sin θ₀.
 ///
 /// ```text
 ///             w   2        θ from u to w: signed in the plane (left is positive), 0 … π in space

@@ -1,11 +1,11 @@
-//! From the boundary to its stiffness: G t = H u, K = symmetric part of Mᵀ G⁻¹ H without rigid motion.
+//! Computes the stiffness of a boundary: G t = H u, K = symmetric part of Mᵀ G⁻¹ H without rigid motion.
 //!
 //! The equation at a point ξ of the boundary, with u(ξ) taken out of the strongly singular integral,
 //!
 //! interior ∫ T (u(y) − u(ξ)) dS = ∫ U t dS,  exterior u(ξ) + ∫ T (u(y) − u(ξ)) dS = ∫ U t dS,
 //!
-//! holds at corners too, has no strongly singular integral, and is solved by translations of the body to rounding. Rotations
-//! solve it to the error of the integrals; removing them from the stiffness corrects that error.
+//! holds at corners too and has no strongly singular integral. Translations of the body satisfy it up to rounding. Rotations
+//! satisfy it up to the error of the integrals; removing them from the stiffness corrects that error.
 
 use super::integrals::{Integrator, Sums};
 use super::kernels::{Block, Kelvin};
@@ -243,7 +243,7 @@ fn rotation_traction<const D: usize>(
     let mut traction = force.to_vec();
     factors.solve(&mut traction);
     let most = traction.iter().fold(0.0, |most, x| larger(most, x.abs()));
-    // |motion| = angle · distance from the axis: the largest distance is at most 1 and at least a third of it in what follows.
+    // |motion| = angle · distance from the axis. The largest distance is at most 1, and in this case at least a third of that.
     let moved = motion.chunks_exact(D).map(|x| x.iter().map(|x| x * x).sum::<f64>().sqrt());
     let reach = surface.points.iter().map(|x| x.iter().map(|x| x * x).sum::<f64>().sqrt());
     most * reach.fold(0.0, larger) / moved.fold(0.0, larger)
@@ -294,8 +294,8 @@ fn free_and_symmetrise(size: usize, motions: &[Vec<f64>], k: &mut [f64], changes
     changes.asymmetry = (skew / even).sqrt();
 }
 
-/// The largest number of vertices for which negative eigenvalues are searched one by one: finding all eigenvectors takes as long
-/// as everything else.
+/// The largest number of vertices for which negative eigenvalues are removed individually. Finding all eigenvectors takes as
+/// long as everything else.
 const MOST_CLAMPED: usize = 1000;
 
 /// The largest part of a stiffness that may be removed with its negative eigenvalues.

@@ -61,7 +61,7 @@ fn a_ball_shrinks_under_pressure() {
         let (surface, stiffness) = report("ball", &Mesh::icosphere(1.0, subdivisions).unwrap(), false);
         let u: Vec<f64> = surface.points.iter().flatten().copied().collect();
         let force = applied(&stiffness, &u);
-        // For μ = 1: σ = 3K ε = 2 (1 + ν)/(1 − 2ν) for ε = 1, on lumped areas.
+        // With μ = 1 and ε = 1, σ = 3K ε = 2 (1 + ν)/(1 − 2ν), which acts on lumped areas.
         let mut expected = vec![0.0; u.len()];
         for (facet, side) in surface.facets.iter().zip(&surface.sides) {
             for node in facet {

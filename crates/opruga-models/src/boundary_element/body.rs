@@ -26,7 +26,7 @@ pub struct BoundaryElement<const D: usize> {
     bodies: Vec<Body>,
     /// Indices of the vertices of each body.
     indices: Vec<Vec<u32>>,
-    /// What the frame follows at rest ([`Rest::follows`]).
+    /// The displacements that the frame follows at rest ([`Rest::follows`]).
     follows: Arc<Vec<f64>>,
     /// The length of a column.
     column: usize,

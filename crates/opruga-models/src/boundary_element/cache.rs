@@ -47,8 +47,8 @@ pub(super) fn stiffness<const D: usize>(
     if let Some(shared) = KNOWN.lock().unwrap_or_else(PoisonError::into_inner).find(&key) {
         return Ok(shared);
     }
-    // Not under the lock, so that other threads can build their own meanwhile. If the same stiffness is computed twice, the bits
-    // are equal.
+    // This is computed without the lock, so that other threads can build theirs in the meantime. If the same stiffness is
+    // computed twice, the bits are equal.
     let made = Arc::new(Stiffness::new(surface, poisson, exterior, asked, break_off)?);
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(shared) = known.find(&key) {

@@ -24,7 +24,7 @@ use opruga_math::rotation::nearest_rotation;
 use opruga_math::{matrix, symmetric};
 use std::sync::Arc;
 
-/// Below this fraction of the value of the body at rest, its rotation is not determined; the frame then does not follow.
+/// Below this fraction of its value at rest, the rotation of the body is undetermined, and the frame does not follow it.
 const UNDETERMINED: f64 = 1e-12;
 
 type Vector = [f64; 3];
@@ -71,7 +71,7 @@ fn axes<const D: usize>() -> core::ops::Range<usize> {
 }
 
 impl<const D: usize> Rest<D> {
-    /// Makes a body from positions about any point [m] and the shares of its vertices, which need not sum to 1.
+    /// Makes a body from positions relative to any point [m], and from the shares of its vertices, which need not sum to 1.
     pub(super) fn new(positions: &[[f64; D]], shares: &[f64]) -> Rest<D> {
         let all: f64 = shares.iter().sum();
         let weights: Vec<f64> = shares.iter().map(|share| share / all).collect();

@@ -1,8 +1,8 @@
 //! Integrals of Kelvin's solution over one side: an edge of the plane, a triangle of space.
 //!
-//! If the source lies on the side, the side is divided into parts with their apex at the source, r = s ρ(t). Neither U dS nor T
-//! (u(y) − u(ξ)) dS depends on s then, so the integral over s is done analytically. The remaining integrand is smooth in the
-//! variable τ with dt/ρ = dτ/ℓ; each piece of length 1 takes 12 points. Otherwise Gauss's rules take as many points as the
+//! If the source lies on the side, the side is divided into parts with their apex at the source, r = s ρ(t). Then neither U dS
+//! nor T (u(y) − u(ξ)) dS depends on s, and the integral over s is computed analytically. The remaining integrand is smooth in
+//! the variable τ with dt/ρ = dτ/ℓ; each piece of length 1 takes 12 points. Otherwise Gauss's rules take as many points as the
 //! distance requires, and sides that are nearer than 1.6 times their size (in the plane, than their length) are halved in each
 //! direction. The total error is below 1e-9 of the integrals; the tractions of a rotation, which should be zero, measure it
 //! (docs/boundary-elements.md).
@@ -146,7 +146,7 @@ impl<const D: usize> Integrator<D> {
         sums
     }
 
-    /// From the source along r. ∫₀¹ ln s ds = −1 and ∫₀¹ s ln s ds = −¼.
+    /// The integrals over a segment from the source along r, with ∫₀¹ ln s ds = −1 and ∫₀¹ s ln s ds = −¼.
     fn of_segment(&self, r: &[f64; D], shape: &[f64; D], step: &[f64; D], normal: &[f64; D], sums: &mut Sums<D>) {
         let length = square(r).sqrt();
         let [unit, _] = self.kelvin.displacement_factors::<D>();
@@ -162,7 +162,7 @@ impl<const D: usize> Integrator<D> {
         }
     }
 
-    /// Over the triangle of the source and two arms; `twice` is double its area.
+    /// The integrals over the triangle that the source and two arms span; `twice` is double its area.
     fn of_triangle(
         &self,
         arms: &[[f64; D]; 2],

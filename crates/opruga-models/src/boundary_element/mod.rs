@@ -6,7 +6,7 @@
 //! symmetric part of Mᵀ G⁻¹ H without rigid motion (file `assembly`). A moving body has U = ½ uᵀ K u with u = Rᵀ(x − x̄) − X in
 //! the nearest frame R (file `frame`). The infinite medium around a boundary (`exterior`) does not rotate: u = x − X.
 //!
-//! Collocation is used instead of Galerkin's method: it needs one integral instead of two. It loses symmetry, but only a little
+//! Collocation is used instead of Galerkin's method, because it needs one integral instead of two. It is slightly unsymmetric
 //! (the readings report how much).
 //!
 //! Limits: strain is small in the frame R, and there is only one frame, so a slender body that bends by large angles is too stiff
@@ -54,8 +54,8 @@ pub const MOST_VERTICES: usize = 2000;
 #[derive(Debug)]
 pub struct BoundaryElementModel;
 
-/// The memory that the matrices take while they are computed [bytes]: three matrices with D rows for each traction. There are a
-/// seventh more tractions than vertices.
+/// The memory that the matrices take while they are computed [bytes]: three matrices with D rows for each traction. There are
+/// about 15 % more tractions than vertices.
 fn bytes(dimensions: usize, nodes: f64) -> f64 {
     let rows = 1.15 * dimensions as f64 * nodes;
     8.0 * 3.5 * rows * rows

@@ -38,7 +38,7 @@ pub(super) struct Constants {
     /// μ [Pa].
     pub(super) shear: f64,
     pub(super) poisson: f64,
-    /// Whether the stress across the plane is zero.
+    /// Whether the stress out of the plane is zero.
     pub(super) plane_stress: bool,
 }
 

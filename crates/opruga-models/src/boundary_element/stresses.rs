@@ -20,7 +20,8 @@ pub(super) const fn components(dimensions: usize) -> &'static [(usize, usize, &'
     if dimensions == 2 { ALL.split_at(3).0 } else { ALL }
 }
 
-/// For every component at every point, one row over the displacements of all vertices, given the tractions of every displacement.
+/// Returns a row for every component of stress at every point, with an entry for each displacement of the vertices, given the
+/// tractions due to each displacement.
 pub(super) fn rows<const D: usize>(
     surface: &Surface<D>,
     kelvin: Kelvin,

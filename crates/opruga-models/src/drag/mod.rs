@@ -1,10 +1,10 @@
 //! # Drag
 //!
-//! Every node is braked in proportion to its mass and velocity, as in thin air at rest:
+//! Every node is slowed down in proportion to its mass and velocity, as in thin air at rest:
 //!
 //! f_i = −λ m_i v_i, so a_i = −λ v_i and v falls as e^(−λt).
 //!
-//! By design it brakes rigid motion as well: a falling body tends to the speed g/λ, and a flying body loses momentum. To damp
+//! By design it damps rigid motion as well: a falling body tends to the speed g/λ, and a flying body loses momentum. To damp
 //! oscillations alone, use the damping of springs or of bending, which is zero under rigid motion. Drag has no energy; the
 //! dissipated power is λ Σ m v². Also known as mass-proportional (Rayleigh) damping.
 

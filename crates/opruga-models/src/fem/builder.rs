@@ -13,7 +13,8 @@ use opruga_core::error::BuildError;
 use opruga_core::potential::Ingredients;
 use opruga_mesh::Mesh;
 
-/// Below this fraction of the cube (square) of the longest edge, det ∂X/∂ξ counts as no volume.
+/// A cell counts as having no volume if det ∂X/∂ξ is below this fraction of the cube (in the plane, the square) of the longest
+/// edge.
 const NO_VOLUME: f64 = 1e-12;
 
 /// The data that are common to all cells while a solid is built.
@@ -71,7 +72,7 @@ impl<'a, const D: usize> Builder<'a, D> {
         self.ingredients.values[0].text("locking").unwrap_or("refuse")
     }
 
-    /// Adds a section of one kind of cells; the first of them has the number `first` in the mesh.
+    /// Adds a section of one kind of cells, the first of which has the number `first` in the mesh.
     pub(super) fn add<E: Shape<D, N>, const N: usize>(
         &self,
         built: &mut Built<D>,
@@ -196,7 +197,8 @@ impl<'a, const D: usize> Builder<'a, D> {
     }
 }
 
-/// The density of every cell [kg/m³, in the plane per area]: as given, or else the total mass over the measure.
+/// The density of every cell [kg/m³, in the plane per area]. If it is not given, it is the total mass divided by the total
+/// measure.
 fn densities<const D: usize>(ingredients: &Ingredients<D>) -> Result<Vec<f64>, BuildError> {
     if let Some(densities) = ingredients.densities {
         let depth = if D == 2 { ingredients.thickness } else { 1.0 };

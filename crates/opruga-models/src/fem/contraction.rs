@@ -108,7 +108,7 @@ fn complete<R: Register, const D: usize, const N: usize>(blocks: &mut [[Matrix<R
     }
 }
 
-/// The same for simplices from tangents in the frame of the singular vectors, F = U diag(σ) Vᵀ.
+/// Computes the blocks of simplices from tangents that are given in the frame of the singular vectors, F = U diag(σ) Vᵀ.
 ///
 /// With ĝ = Vᵀ ∂N/∂X the block K_ab is U K̂ Uᵀ, where K̂ᵢₖ = Hᵢₖ ĝᵃᵢ ĝᵇₖ + Tᵢₖ ĝᵃₖ ĝᵇᵢ off the diagonal and K̂ᵢᵢ = Hᵢᵢ ĝᵃᵢ ĝᵇᵢ +
 /// Σⱼ Sᵢⱼ ĝᵃⱼ ĝᵇⱼ on it, so the D⁴ numbers are never written out.
@@ -117,7 +117,7 @@ pub(super) struct ContractPrincipal<'a, E, const D: usize, const N: usize> {
     pub(super) group: Group<'a>,
     /// The index of the pack in the group.
     pub(super) pack: usize,
-    /// As [`crate::materials::law::Law::principal`] writes them.
+    /// The data that [`crate::materials::law::Law::principal`] writes.
     pub(super) principal: &'a [f64],
     pub(super) blocks: &'a mut [f64],
 }
@@ -182,7 +182,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractPrincipal<
     }
 }
 
-/// The same for simplices from derivatives by the invariants I = tr FᵀF and J = det F.
+/// Computes the blocks of simplices from derivatives by the invariants I = tr FᵀF and J = det F.
 ///
 /// With g = ∂N/∂X, f = F g and c = cof F g the block K_ab is
 /// V (2ψ_I gᵃ·gᵇ 1 + 4ψ_II fᵃ fᵇᵀ + ψ_JJ cᵃ cᵇᵀ + ψ_J W) with Wᵢₖ = εᵢₖₘ wₘ and w = F (gᵃ × gᵇ).
@@ -252,7 +252,8 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractInvariants
     }
 }
 
-/// Adds s εᵢₖₘ wₘ with w = F (a × b). In the plane F has no part in it: the product is along the normal of the plane.
+/// Adds s εᵢₖₘ wₘ with w = F (a × b). In the plane, F does not contribute, because the product is along the normal of the
+/// plane.
 #[inline(always)]
 fn add_turn<R: Register, const D: usize>(block: &mut Matrix<R, D>, s: R, f: &Matrix<R, D>, a: &[R; D], b: &[R; D]) {
     let cross = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];

@@ -8,9 +8,9 @@ use opruga_mesh::{TETRAHEDRON_EDGES, TETRAHEDRON_SHARES, TRIANGLE_SHARES, TRIANG
 
 /// A kind of element with N nodes in D dimensions.
 pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sync + 'static {
-    /// Integration points of the whole law.
+    /// The number of integration points for the whole law.
     const POINTS: usize;
-    /// Weights of the points in the measure of the reference cell.
+    /// The weights of the points; their sum is the measure of the reference cell.
     const WEIGHTS: &'static [f64];
     /// ∂Nₐ/∂ξ at the points, `[point][node][axis]`.
     const SLOPES: &'static [[[f64; D]; N]];
@@ -84,7 +84,7 @@ fn box_values<const D: usize, const N: usize>(at: [f64; 3]) -> [f64; N] {
     core::array::from_fn(|a| (0..D).map(|d| 0.5 * (1.0 + CORNERS[a][d] * at[d])).product())
 }
 
-/// Triangle of three nodes, one point.
+/// A triangle with three nodes and one point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Triangle;
 impl Shape<2, 3> for Triangle {
@@ -98,7 +98,7 @@ impl Shape<2, 3> for Triangle {
     }
 }
 
-/// Tetrahedron of four nodes, one point.
+/// A tetrahedron with four nodes and one point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tetrahedron;
 impl Shape<3, 4> for Tetrahedron {
@@ -146,7 +146,7 @@ const fn quadratic_slopes<const D: usize, const N: usize, const C: usize>(
     out
 }
 
-/// Triangle of six nodes, three points (degree 2).
+/// A triangle with six nodes and three points (degree 2).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct QuadraticTriangle;
 impl Shape<2, 6> for QuadraticTriangle {
@@ -171,7 +171,7 @@ impl Shape<2, 6> for QuadraticTriangle {
     }
 }
 
-/// Tetrahedron of ten nodes, four points (degree 2; Keast 1986).
+/// A tetrahedron with ten nodes and four points (degree 2; Keast 1986).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct QuadraticTetrahedron;
 impl Shape<3, 10> for QuadraticTetrahedron {
@@ -245,7 +245,7 @@ const fn gauss_slopes<const D: usize, const N: usize>() -> [[[f64; D]; N]; N] {
     out
 }
 
-/// Quadrilateral of four nodes: 2 × 2 points.
+/// A quadrilateral with four nodes and 2 × 2 points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quadrilateral;
 impl Shape<2, 4> for Quadrilateral {
@@ -260,7 +260,7 @@ impl Shape<2, 4> for Quadrilateral {
     const BOX: bool = true;
 }
 
-/// Hexahedron of eight nodes: 2 × 2 × 2 points.
+/// A hexahedron with eight nodes and 2 × 2 × 2 points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hexahedron;
 impl Shape<3, 8> for Hexahedron {

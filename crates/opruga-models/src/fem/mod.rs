@@ -7,7 +7,7 @@
 //!
 //! | cell | points | locks |
 //! |---|---|---|
-//! | triangle, tetrahedron | 1 | in bending; near incompressibility unless the nodes resist the volume (file `nodal_volume`): refused above ν = 0.45 |
+//! | triangle, tetrahedron | 1 | in bending; near incompressibility, unless the nodes resist changes of volume (file `nodal_volume`): refused above ν = 0.45 |
 //! | quadrilateral, hexahedron | 4, 8, and the mean above ν = 1/3 | no |
 //! | quadratic triangle, tetrahedron | 3, 4 | no |
 //!
@@ -24,8 +24,9 @@
 //! small strain (file `materials/heat`). Without expansion none of this is computed.
 //!
 //! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws. At small
-//! strain, boxes bend according to Hooke's law with their E and ν; this also determines, in all states, how much a bent cell
-//! swells across. Corotated laws have no unique rotation, and so no unique force, if the two smallest stretches are opposite.
+//! strain, boxes bend according to Hooke's law with their E and ν. This also determines, in all states, how much a bent cell
+//! expands sideways. Corotated laws have no unique rotation, and so no unique force, if the two smallest stretches are
+//! opposite.
 
 mod boxes;
 mod builder;

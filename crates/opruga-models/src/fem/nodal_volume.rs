@@ -41,7 +41,7 @@ pub(super) struct NodalVolumes<const D: usize> {
     /// The cells around each node: the start of its list, and the lists.
     start: Vec<u32>,
     around: Vec<u32>,
-    /// The location of J − 1 of these cells, once it is known.
+    /// The location of J − 1 of these cells, once they have been located.
     grown: Vec<u32>,
     /// The start of the energies and pressures of every block of nodes.
     starts: Vec<usize>,
@@ -239,7 +239,7 @@ impl<const D: usize> NodalVolumes<D> {
         sum / (D + 1) as f64
     }
 
-    /// Visits, for every node, the nodes of all cells around it.
+    /// Visits the nodes of all cells around a node, for every node.
     pub(super) fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         let mut nodes = Vec::new();
         for node in 0..self.nodes {
@@ -257,7 +257,7 @@ impl<const D: usize> NodalVolumes<D> {
     /// the cells.
     pub(super) fn hessian(&self, view: &View<D>, sink: &mut dyn Sink<D>) {
         let bodies = self.bodies();
-        // The index of a node in the list of those around another node.
+        // The index of a node in the list of nodes around another node.
         let mut seat = vec![u32::MAX; self.nodes];
         let mut around: Vec<(usize, [f64; D])> = Vec::new();
         let mut slopes = vec![[0.0; D]; self.slopes.len()];

@@ -10,7 +10,8 @@ use opruga_core::spec::{Field, Values};
 /// The parameters of an element: μ, λ, the material's own, thermal growth, retardation time.
 pub(super) const NUMBERS: usize = 5;
 
-/// λ − λ′ with λ′ = min(λ, 2μ): the volumetric stiffness that few cells could have at every point and still bend.
+/// λ − λ′ with λ′ = min(λ, 2μ): the part of the volumetric stiffness with which most cells could not bend if it acted at every
+/// point.
 pub(super) fn beyond(mu: f64, lambda: f64) -> f64 {
     if lambda > 2.0 * mu { lambda - 2.0 * mu } else { 0.0 }
 }
@@ -18,8 +19,8 @@ pub(super) fn beyond(mu: f64, lambda: f64) -> f64 {
 /// Poisson's ratio above which linear triangles and tetrahedra are refused.
 const LOCKS_ABOVE: f64 = 0.45;
 
-/// Parameters that the mesh may give per cell: the field of the scene that holds for all cells, and the field that names values
-/// of the mesh.
+/// A parameter that the mesh may give for each cell: the field of the scene that applies to all cells, and the field that names
+/// values of the mesh.
 pub(super) const YOUNGS_MODULUS: [&str; 2] = ["youngs_modulus", "youngs_modulus_of_cells"];
 const POISSONS_RATIO: [&str; 2] = ["poissons_ratio", "poissons_ratio_of_cells"];
 const DAMPING: [&str; 2] = ["damping", "damping_of_cells"];
@@ -105,7 +106,7 @@ impl<'a> Numbers<'a> {
     fn ratio(&self, cell: u32, body: usize) -> f64 {
         self.number(POISSONS_RATIO[0], self.ratios, cell, body)
     }
-    /// T and T₀ [K]. If no temperature is given, T is the reference temperature.
+    /// T and T₀ [K]. If no temperature is given, T is the reference temperature T₀.
     fn temperatures(&self, cell: u32, body: usize) -> [f64; 2] {
         let reference = self.number(REFERENCE[0], self.references, cell, body);
         let own = || self.values[body.min(self.values.len() - 1)].number(TEMPERATURE[0]).unwrap_or(reference);

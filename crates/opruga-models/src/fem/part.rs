@@ -1,4 +1,4 @@
-//! The interface of a section to its solid: shares that are evaluated in parallel, matrices, states of cells.
+//! The interface between a section and its solid: shares that are evaluated in parallel, matrices, and states of cells.
 
 use super::elements::{Cell, Shape};
 use super::nodal_volume::Pressures;
@@ -32,9 +32,9 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
         pressures: Pressures<'_>,
         scratch: &mut [f64],
     ) -> Result<(), StepError>;
-    /// Writes J − 1 of the elements of a share to its scratch, if their nodes resist volume.
+    /// Writes J − 1 of the elements of a share to its scratch, if their nodes resist changes of volume.
     fn grow(&self, share: &Share, simd: Simd, view: &View<D>, scratch: &mut [f64]);
-    /// The location of J − 1 of a pack in the scratch of the section, if it is there.
+    /// The location of J − 1 of a pack in the scratch of the section, if the scratch contains it.
     fn grown_at(&self, pack: usize) -> Option<usize>;
     /// Delivers ∂²U/∂x∂x, after all shares have been evaluated in the same state.
     fn hessian(
@@ -45,7 +45,7 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
         keep: Definiteness,
         sink: &mut dyn Sink<D>,
     );
-    /// Delivers −∂F/∂v, on the same condition.
+    /// Delivers −∂F/∂v, under the same condition.
     fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>);
     /// Stress and volume ratio of the cells of a body.
     fn cell_states(&self, view: &View<D>, body: usize, out: &mut Vec<CellState>);
@@ -53,7 +53,7 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
     fn heap_bytes(&self) -> usize;
 }
 
-/// Copies a vector of some nodes to rows.
+/// Copies a vector at some nodes to rows.
 fn to_rows<const D: usize>(columns: &[&[f64]; D], nodes: &[u32], rows: &mut [f64]) {
     for (node, row) in nodes.iter().zip(rows.chunks_exact_mut(ROW)) {
         for d in 0..D {

@@ -21,7 +21,8 @@ use opruga_core::potential::{CellState, Definiteness, StencilPack, StencilPacks}
 use opruga_core::state::{Layout, View};
 use opruga_math::{Simd, WIDTH};
 
-/// The number of packs of points whose tangents are kept at a time if elements have one point; they fit the first-level cache.
+/// The number of packs of points whose tangents are kept at a time if elements have one point. They fit into the first-level
+/// cache.
 const TANGENTS: usize = 4;
 
 /// The largest number of packs of boxes that are processed together.
@@ -36,7 +37,7 @@ pub(super) struct Pass<'a, E, const D: usize, const N: usize> {
     kept: PackBuffer<{ MOST_BOXES * KEPT * WIDTH }>,
     numbers: PackBuffer<{ MOST_PACKS * PARAMETERS * WIDTH }>,
     times: PackBuffer<{ MOST_PACKS * WIDTH }>,
-    /// Pressures of cells whose nodes resist volume.
+    /// Pressures of cells whose nodes resist changes of volume.
     pressures: PackBuffer<{ MOST_PACKS * WIDTH }>,
 }
 
@@ -296,13 +297,13 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                     let matrix: [[f64; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|j| f(i, j)));
                     let ratio = opruga_math::matrix::determinant(&matrix);
                     look(ratio);
-                    // The mean of a box repeats its points, so it does not count again.
+                    // The mean of a box repeats its points, so it is not counted again.
                     if q < E::POINTS {
                         measure += weight;
                         now += weight * ratio;
                     }
-                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one. A law of small motions has only one shape and one
-                    // symmetric stress.
+                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one. A law for small motions has only one shape and
+                    // one symmetric stress.
                     for i in 0..axes {
                         for j in 0..3 {
                             for k in 0..axes {

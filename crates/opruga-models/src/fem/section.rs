@@ -5,7 +5,8 @@
 //!            └────────────── a few kilobytes that stay in the first-level cache ──────────────┘
 //! ```
 //!
-//! Every element is evaluated once. A pack is eight neighbouring elements of one body, or the same one of eight bodies.
+//! Every element is evaluated once. A pack consists of eight neighbouring elements of one body, or of the same element of eight
+//! bodies.
 //!
 //! The elements of a body are divided into *shares* for threads. A share has its own rows for the nodes that it touches; forces
 //! are summed there in the order of its elements, and then at each node in the order of the shares. Shares are the same for every
@@ -24,7 +25,7 @@ use opruga_core::error::StepError;
 use opruga_core::state::{Layout, View};
 use opruga_math::{Column, ROW, WIDTH};
 
-/// The number of packs of points in a share: a hundred kilobytes, half a millisecond at most.
+/// The number of packs of points in a share. A share takes a hundred kilobytes and half a millisecond at most.
 const SHARE: usize = 512;
 
 /// The offset of the forces of a share in its scratch, after energies and powers.
@@ -36,7 +37,7 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     shape: PhantomData<E>,
     pub(super) layout: Layout,
     pub(super) law: Box<dyn Law<D>>,
-    /// The law in space, for stresses across the plane; none in plane stress.
+    /// The law in space, for the out-of-plane stress; none in plane stress.
     pub(super) law_in_space: Option<Box<dyn Law<3>>>,
     /// The elements, ordered by lowest node.
     pub(super) cells: Vec<Cell<N>>,
@@ -51,9 +52,9 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     /// (∂X/∂ξ)⁻¹ row by row and the measure [m³], point by point; in packs for one body. Boxes have data of their own.
     pub(super) geometry: Column,
     pub(super) boxes: Boxes,
-    /// [`NUMBERS`] packs for every pack of elements, or one set for all.
+    /// The parameters: [`NUMBERS`] values for every pack of elements, or one set for all of them.
     pub(super) parameters: Column,
-    /// Whether the parameters of the first pack hold for all.
+    /// Whether the parameters of the first pack apply to all packs.
     pub(super) uniform: bool,
     pub(super) damped: bool,
     /// Whether the nodes resist changes of volume beyond λ′.
@@ -111,7 +112,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
                 beyond(mu, lambda) > 0.0
             })
         };
-        // Boxes evaluate the law at their mean too if it resists volume strongly.
+        // Boxes also evaluate the law at their mean if it resists changes of volume strongly.
         let mean = E::BOX && !plane_stress && cells.iter().any(resists_volume);
         let points = E::POINTS + usize::from(mean);
         let stored = stored::<E, D, N>();

@@ -264,7 +264,7 @@ impl<const D: usize> Solid<D> {
             }
         }
         if let Some(volumes) = &mut volumes {
-            // After the sums of the whole solid.
+            // The data follow the sums of the whole solid.
             let start =
                 |part: usize| shares.iter().find(|task| task.part == part).map_or(0, |task| task.start - FORCES);
             let mut of_parts = parts.iter().enumerate();

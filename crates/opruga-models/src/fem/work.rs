@@ -97,7 +97,7 @@ pub(super) fn scatter<P: Pack, const D: usize, const N: usize>(
     match group.layout {
         Layout::Single => {
             let indices = &group.node_indices[pack * N * WIDTH..(pack + 1) * N * WIDTH];
-            // Whole rows: one addition of four numbers.
+            // Whole rows are added, four numbers at a time.
             let mut rows = [[[0.0; ROW]; WIDTH]; N];
             for a in 0..N {
                 for part in 0..P::PARTS {
@@ -217,8 +217,8 @@ fn integrate<P: Pack, const D: usize>(group: &Group<'_>, k: usize, density: &mut
 }
 
 impl<E, const D: usize, const N: usize> Forces<'_, E, D, N> {
-    /// Prefetches the data of a pack for the next group. Every step reads more than fits into a cache, and the processor fetches
-    /// none of it by itself while the law is evaluated.
+    /// Prefetches the data of a pack for the next group. Every step reads more than fits into a cache, and the processor does
+    /// not fetch it by itself while the law is evaluated.
     #[inline(always)]
     fn fetch(&self, pack: usize) {
         if self.group.layout == Layout::Single {

@@ -18,8 +18,8 @@ use opruga_math::{Lane, Pack, Register, RepeatStrip, Simd, Strip, StripMut, WIDT
 
 /// The data of a node and the edge after it: see [`Along::numbers`].
 pub(super) const NUMBERS: usize = 6;
-/// 1/L [1/m] of the edge; for the bend, the share of the edge before it in the tangent, 1/ℓ [1/m] and B₀ [1/m]; for damping, L
-/// and ℓ [m]. A missing edge or bend has 1/L = 0, or 1/ℓ = B₀ = 0.
+/// The numbers are: 1/L [1/m] of the edge; for the bend, the share of the previous edge in the tangent, 1/ℓ [1/m] and B₀ [1/m];
+/// for damping, L and ℓ [m]. A missing edge has 1/L = 0; a missing bend has 1/ℓ = B₀ = 0.
 const INVERSE: usize = 0;
 const SHARE: usize = 1;
 const PER_MEAN: usize = 2;
@@ -142,7 +142,7 @@ fn bend<S: Lane, const D: usize>(
     let positive = S::zero().less(curvature_square);
     let curvature = S::select(positive, S::select(positive, curvature_square, S::one()).sqrt(), S::zero());
     let per_curvature = inverse(curvature);
-    // Without a curvature at rest the force is smooth in the straight state; otherwise it has no direction there.
+    // If the curve is straight at rest, the force is smooth in the straight state; otherwise it has no direction in that state.
     let curved = S::zero().less(numbers[REST]);
     let mut part = S::one() - S::select(curved, numbers[REST] * per_curvature, S::zero());
     let scale = numbers[PER_MEAN] * per_square;
@@ -235,8 +235,8 @@ impl<const D: usize, const BATCH: bool, const DAMPED: bool> Work for Force<'_, '
     }
 }
 
-/// The results of the previous nodes that the next ones need: g of their edges with its rate, 1/L and the known part of N; and N
-/// of the edges before them.
+/// The results of the previous nodes that the next ones need: g of their edges, its rate, 1/L, the known part of N, and N of
+/// the edges before them.
 ///
 /// For bodies side by side this is a pack, the previous node of each. For one body it is the previous register, in the first part
 /// of each pack.
@@ -261,13 +261,13 @@ fn back<R: Register, const BATCH: bool>(now: R, previous: R) -> R {
 }
 
 impl<P: Pack, const D: usize> Walker<'_, P, D> {
-    /// Processes one part of eight nodes from index `k` of the strips on: returns the forces on the nodes one before, and the
-    /// power that damping dissipates. It proceeds register by register, because the data of a bend fit into the registers of any
-    /// processor.
+    /// Processes one part of eight nodes from index `k` of the strips on: returns the forces on the previous nodes, shifted by
+    /// one, and the power that damping dissipates. It proceeds register by register, because the data of a bend fit into the
+    /// registers of any processor.
     #[inline(always)]
     fn step<const BATCH: bool, const DAMPED: bool>(&mut self, k: usize, part: usize) -> ([P::Part; D], P::Part) {
         let (next, slot) = if BATCH { (WIDTH, part) } else { (1, 0) };
-        // For bodies side by side nothing follows the padding; 1/L is zero there.
+        // For bodies side by side nothing follows the padding, in which 1/L is zero.
         let there = if BATCH && k + next > self.end { self.end } else { k + next };
         let mut numbers = [P::Part::zero(); NUMBERS];
         for n in 0..if DAMPED { NUMBERS } else { LENGTH } {
@@ -311,7 +311,7 @@ impl<P: Pack, const D: usize> Walker<'_, P, D> {
         }
         (force, loss + more)
     }
-    /// Processes all parts, without the forces.
+    /// Processes all parts, but does not compute forces.
     #[inline(always)]
     fn lead<const BATCH: bool, const DAMPED: bool>(&mut self, k: usize) -> P {
         let mut power = P::zero();

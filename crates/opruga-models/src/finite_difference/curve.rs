@@ -126,7 +126,8 @@ impl<const D: usize> Kernel<D, 3, 7> for Bend {
         let factor = if D == 2 {
             p[0] * (bent.curvature - p[5])
         } else {
-            // Without a curvature at rest the square root is not used: its derivative is undefined where the curve is straight.
+            // If the curve is straight at rest, the square root is not used, because its derivative is undefined in the
+            // straight state.
             let curved = S::zero().less(p[5]);
             let quotient = p[5] * inverse(S::select(curved, bent.curvature, S::one()));
             p[0] * (S::one() - S::select(curved, quotient, S::zero()))

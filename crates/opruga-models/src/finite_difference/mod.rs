@@ -363,7 +363,7 @@ impl<const D: usize> Plan<'_, D> {
         let normal = cross(&a, &b);
         let size = dot(&tangent, &tangent).sqrt() * 0.5 * (low + high);
         let across = if D == 2 { normal[2] } else { dot(&normal, &normal).sqrt() };
-        // Straight except for rounding, so all directions of bending are equivalent.
+        // The curve is straight up to rounding, so all directions of bending are equivalent.
         if D == 3 && across < 1e-9 { 0.0 } else { across / size }
     }
 

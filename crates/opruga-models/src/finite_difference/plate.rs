@@ -30,13 +30,13 @@ fn second<S: Lane>(before: &[S; 3], at: &[S; 3], after: &[S; 3]) -> [S; 3] {
     minus(&minus(after, at), &minus(at, before))
 }
 
-/// The contributions of one moment: through its second difference, and through the tangents that rotate the normal.
+/// The contributions of one moment: that of its second difference, and that of the tangents, which rotate the normal.
 struct Moved<S> {
     by_second: [S; 3],
     by_first: [[S; 3]; 2],
 }
 
-/// The terms of M ∂B/∂x with B = n·d: M n for d, and M (d − B n)/|m| · ∂m with m = p × q for the tangents.
+/// The terms of M ∂B/∂x with B = n·d: M n for d, and M (d − B n)/|m| · ∂m for the tangents, with m = p × q.
 #[inline(always)]
 fn moved<S: Lane>(moment: S, d: &[S; 3], n: &[S; 3], per_length: S, p: &[S; 3], q: &[S; 3]) -> Moved<S> {
     let curvature = dot(n, d);
@@ -81,7 +81,7 @@ fn raised<S: Lane, const D: usize, const N: usize>(x: &[[S; D]; N]) -> [[S; 3]; 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Inner;
 
-/// The differences at an inner node: second along both axes, first along both axes.
+/// The differences at an inner node: second differences along both axes, then first differences along both axes.
 struct Differences<S> {
     second: [[S; 3]; 2],
     first: [[S; 3]; 2],
@@ -166,7 +166,7 @@ impl<const D: usize> Kernel<D, 5, 7> for Inner {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge;
 
-/// The second difference along the edge, the first along it, the first across it.
+/// The second difference along the edge, the first difference along the edge, and the first difference across it.
 type AtEdge<S> = [[S; 3]; 3];
 
 impl Edge {

@@ -39,7 +39,7 @@ impl<const D: usize> Cells<D> {
         cells.map(state).collect()
     }
     fn state(&self, cell: u32, at: &[[f64; D]], spacing: &[f64; D], elastic: &Elastic) -> CellState {
-        // Whether a corner is at the far end of an axis, and the corner at the other end of that axis.
+        // Whether a corner is at the far end of its edge along an axis, and the corner at the other end of that edge.
         let stepped = |corner: usize, axis: usize| match D {
             2 => QUADRILATERAL.1[corner][axis] == 1,
             _ => HEXAHEDRON.1[corner][axis] == 1,
@@ -73,7 +73,7 @@ impl<const D: usize> Cells<D> {
         let strain = |i: usize, j: usize| 0.5 * (product(&mean[i], &mean[j]) - if i == j { 1.0 } else { 0.0 });
         let trace: f64 = (0..D).map(|i| strain(i, i)).sum();
         let stress = |i: usize, j: usize| 0.5 * four_mu * strain(i, j) + if i == j { lambda * trace } else { 0.0 };
-        // Without stress across the plane the depth changes. Otherwise it stays, and a stress acts across the plane.
+        // In plane stress the depth changes. Otherwise it does not, and there is an out-of-plane stress.
         let poisson = elastic.poissons_ratio;
         let deepened = 1.0 - 2.0 * poisson / (1.0 - poisson) * trace;
         let (deep, across) = match (D, elastic.plane_stress) {

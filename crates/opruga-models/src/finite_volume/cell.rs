@@ -163,7 +163,7 @@ pub(super) fn dual_faces<C: Cell<D, N>, const D: usize, const N: usize>(x: &[[f6
             (turned[0], turned[1]) = (out[1], -out[0]);
             return turned;
         }
-        // Half the cross product of the diagonals, oriented towards the second node.
+        // Half of the cross product of the diagonals, oriented towards the second node.
         let [one, other] = C::SIDES[number].map(|rest| mean(x, rest.iter().copied().chain([i, j])));
         let across: [f64; D] = core::array::from_fn(|d| other[d] - one[d]);
         let mut area = [0.0; D];

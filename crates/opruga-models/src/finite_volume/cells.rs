@@ -6,7 +6,8 @@ use core::marker::PhantomData;
 use opruga_core::state::Layout;
 use opruga_math::{Column, WIDTH, fetch_early};
 
-/// Below this fraction of the cube (square) of the longest edge, det ∂X/∂ξ counts as no volume.
+/// A cell counts as having no volume if det ∂X/∂ξ is below this fraction of the cube (in the plane, the square) of the longest
+/// edge.
 const NO_VOLUME: f64 = 1e-12;
 
 /// Cells of one kind.
@@ -107,7 +108,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Cells<C, D, N> {
         Ok(())
     }
 
-    /// Prefetches the data that a pass reads of a pack of one body: each pass reads more than fits into a cache.
+    /// Prefetches the data that a pass reads from a pack of one body, because each pass reads more than fits into a cache.
     #[inline(always)]
     pub(super) fn fetch(&self, pack: usize) {
         if self.layout == Layout::Single {

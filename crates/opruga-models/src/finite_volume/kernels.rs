@@ -1,4 +1,4 @@
-//! From positions to deformation gradients, from stresses to forces, and from tangents to matrices, for every set of vector
+//! Converts positions to deformation gradients, stresses to forces, and tangents to matrices, for every set of vector
 //! instructions.
 
 use super::cell::Cell;
@@ -78,7 +78,7 @@ fn area<R: Register, C: Cell<D, N>, const D: usize, const N: usize>(
     }
 }
 
-/// F of a group, with D² packs for every pack of points.
+/// Computes F of a group, D² packs for every pack of points.
 pub(super) struct Gradients<'a, C, const D: usize, const N: usize> {
     pub(super) cells: &'a Cells<C, D, N>,
     pub(super) group: Group,
@@ -129,7 +129,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Tractions<'_, C, D,
     fn run<P: Pack>(self) {
         let cells = self.cells;
         for pack in self.group.packs.clone() {
-            // The law does not read the cells, so there is time to fetch those of the next group from memory.
+            // The law does not read the cells, so there is time to fetch the cells of the next group from memory.
             cells.fetch(pack + self.group.packs.len());
             let mut corners = [[P::zero(); D]; N];
             for part in 0..P::PARTS {
@@ -146,8 +146,8 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Tractions<'_, C, D,
                             for j in 0..D {
                                 traction += stress[i][j] * area[j];
                             }
-                            // The force on the part of one node is opposite to that of the other; the first corner of a simplex
-                            // gets the negative sum.
+                            // The forces on the two sides of a dual face are opposite; the first corner of a simplex gets the
+                            // negative sum of the others.
                             let [to, from] = if C::SIMPLEX { [k + 1, 0] } else { C::EDGES[q] };
                             force[to][i] += traction;
                             force[from][i] -= traction;

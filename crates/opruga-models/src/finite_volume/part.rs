@@ -15,7 +15,7 @@ use opruga_math::{Simd, WIDTH, matrix};
 #[derive(Debug)]
 pub(super) struct Matter<const D: usize> {
     pub(super) law: Box<dyn Law<D>>,
-    /// The law in space, if it gives the stress across the plane.
+    /// The law in space, if it gives the out-of-plane stress.
     pub(super) in_space: Option<Box<dyn Law<3>>>,
     /// μ, λ, the material's own parameter and a thermal growth of one, for [`MOST_PACKS`] packs of points.
     pub(super) parameters: Vec<f64>,

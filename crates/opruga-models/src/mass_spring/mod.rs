@@ -78,7 +78,7 @@ impl<const D: usize> Model<D> for MassSpring {
         let values = |body: usize| ingredients.values[body.min(ingredients.values.len() - 1)];
         let count = table.parameter_count();
         let each = |number: &dyn Fn(usize, usize) -> f64| {
-            // The padding pair after the last one has no stiffness and no damping.
+            // The padding pair after the last pair has no stiffness and no damping.
             Parameter::from_items(ingredients.layout, count, |spring, body| {
                 if spring < edges.len() { number(spring, body) } else { 0.0 }
             })

@@ -20,7 +20,8 @@ pub struct AtPoint<const D: usize> {
     pub stress: [[f64; D]; D],
     /// ∂Pᵢⱼ/∂Fₖₗ in row i·D + j and column k·D + l [Pa].
     pub tangent: Vec<Vec<f64>>,
-    /// The stretch across the plane: 1 in plane strain; in plane stress the one without stress across the plane; none in space.
+    /// The out-of-plane stretch: 1 in plane strain; in plane stress, that for which the out-of-plane stress is zero; none in
+    /// space.
     pub across: Option<f64>,
 }
 

@@ -8,7 +8,7 @@ use opruga_math::rotation::nearest_rotation;
 /// ψ = μ |F − R|² + λ/2 tr²(RᵀF − 1) with the rotation R nearest to F; P = 2μ(F − R) + λ tr(RᵀF − 1) R.
 ///
 /// R is proper (det R = 1), so an inverted point is pushed back. The law resists changes of volume only through the linear
-/// strain: strong compression can flatten a bar with a finite force.
+/// strain: a finite force can compress a bar to zero length.
 ///
 /// # Source
 /// Müller, Gross, "Interactive virtual materials" (2004); R differentiated exactly as in McAdams et al. (2011).

@@ -1,12 +1,12 @@
-//! Thermal expansion: laws of bodies that are warmer or colder than at rest.
+//! Thermal expansion: laws for bodies that are warmer or colder than at rest.
 //!
 //! If a point has expanded by the factor g = 1 + α ΔT in every direction, the law applies to the remaining, elastic deformation:
 //!
 //! F = g F_e,  ψ_T(F) = g³ ψ(F/g),  P = g² P_e,  ∂P/∂F = g ∂P_e/∂F_e:
 //!
 //! g³ is the ratio of the volume of the unconstrained heated body to that at rest, to which ψ refers. The law of small strain
-//! subtracts the thermal strain instead, ψ_T = ψ(ε − αΔT 1), which is g² ψ(F/g) with that law. Both forms hold in space and for a
-//! plate, whose stretch of the thickness is free. In plane strain nothing moves across the plane, so the elastic stretch in that
+//! subtracts the thermal strain instead, ψ_T = ψ(ε − αΔT 1), which is g² ψ(F/g) with that law. Both forms hold in space and for
+//! a plate, whose thickness is free to change. In plane strain nothing moves out of the plane, so the elastic stretch in that
 //! direction is 1/g, and the law in space is evaluated.
 //!
 //! # Source
@@ -22,8 +22,8 @@ use opruga_math::{Simd, WIDTH};
 #[derive(Debug)]
 pub(crate) struct Heated<const D: usize>(pub(crate) Box<dyn Law<D>>);
 
-/// A law in plane strain with thermal expansion: the law in space where a point has expanded, and the law in the plane where it
-/// has not.
+/// A law in plane strain with thermal expansion: the law in space for points that have expanded, and the law in the plane for
+/// all others.
 #[derive(Debug)]
 pub(crate) struct HeatedSlice {
     pub(crate) plane: Box<dyn Law<2>>,
@@ -98,7 +98,7 @@ impl<const D: usize> Law<D> for Heated<D> {
 }
 
 impl HeatedSlice {
-    /// Elastic deformation gradients in space: nothing moves across the plane, which leaves 1/g there.
+    /// Elastic deformation gradients in space. Nothing moves out of the plane, so the stretch in that direction is 1/g.
     fn raised(points: &Points<'_>) -> PackBuffer<{ MOST_PACKS * 9 * WIDTH }> {
         let mut out = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
         for point in 0..points.count {
@@ -112,8 +112,8 @@ impl HeatedSlice {
         out
     }
 
-    /// Replaces the results of the law in space by those of the law in the plane where a point has not expanded. So the result of
-    /// a body does not depend on the bodies next to it.
+    /// Replaces the results of the law in space by those of the law in the plane for points that have not expanded. So the
+    /// result of a body does not depend on the bodies next to it.
     fn keep_what_is_cold(points: &Points<'_>, packs: usize, cold: &[f64], numbers: &mut [f64]) {
         for point in 0..points.count {
             let growths = growths(points, point);
@@ -156,7 +156,7 @@ impl Law<2> for HeatedSlice {
         let gradient = HeatedSlice::raised(&points);
         let mut in_space = PackBuffer([0.0; MOST_PACKS * 81 * WIDTH]);
         self.space.tangent(simd, Points { gradient: &gradient.0, ..points }, keep, &mut in_space.0);
-        // A part of a matrix without negative eigenvalues has none either.
+        // A diagonal block of a matrix without negative eigenvalues has none either.
         for point in 0..points.count {
             for (row, from) in [0, 1, 3, 4].into_iter().enumerate() {
                 for (column, at) in [0, 1, 3, 4].into_iter().enumerate() {

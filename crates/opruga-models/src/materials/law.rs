@@ -1,4 +1,5 @@
-//! Materials behind one call for several points, so that elements and materials are compiled separately and not in pairs.
+//! The interface between elements and materials: one call for several points, so that they are compiled separately and not in
+//! pairs.
 //!
 //! Elements write deformation gradients of some packs of points to a buffer in the first-level cache, a law computes stresses
 //! from them, and elements compute forces from these. Two calls for 64 points cost less than a nanosecond per point.
@@ -21,8 +22,8 @@ pub(crate) trait Law<const D: usize>: Send + Sync + Debug {
         self.tangent(simd, points, keep, out);
         Form::Whole
     }
-    /// Writes the stretch across the plane that the law determines at every point (a pack per pack of points); returns whether
-    /// the law determines one.
+    /// Writes the out-of-plane stretch that the law determines at every point (a pack per pack of points); returns whether the
+    /// law determines one.
     fn thickness(&self, _simd: Simd, _points: Points<'_>, _out: &mut [f64]) -> bool {
         false
     }

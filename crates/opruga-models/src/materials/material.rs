@@ -12,7 +12,7 @@ pub struct Parameters<S> {
     pub mu: S,
     /// Lamé's first parameter λ = Eν/((1 + ν)(1 − 2ν)) [Pa].
     pub lambda: S,
-    /// A parameter of the material's own; for Mooney–Rivlin, the share of the second constant.
+    /// An additional parameter of the material; for Mooney–Rivlin, the share of the second constant.
     pub own: S,
 }
 
@@ -26,7 +26,7 @@ pub type Tangent<S, const D: usize> = [[[[S; D]; D]; D]; D];
 pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     /// The name of the material in scenes.
     const NAME: &'static str;
-    /// Whether a rotated body has no energy: true for all laws but that of small rotation.
+    /// Whether a rotated body has no energy. This is true for all laws except that for small rotations.
     const TURNS: bool = true;
     /// Whether ψ at rest is a difference of terms as large as the moduli instead of a sum of squares. Rounding then leaves a
     /// remainder of these terms.
@@ -35,12 +35,12 @@ pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>);
     /// The second derivatives by the principal stretches σ of F: ∂P/∂F in the frame of its singular vectors [Pa].
     fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>, sigma: &[S; D]) -> Principal<S, D>;
-    /// The derivatives by tr FᵀF and det F, for a law that depends on nothing else; its tangent needs no more.
+    /// The derivatives by tr FᵀF and det F, for a law that depends on nothing else. They are all that its tangent needs.
     #[inline(always)]
     fn invariants<S: Lane>(_p: &Parameters<S>, _f: &Matrix<S, D>) -> Option<Invariants<S>> {
         None
     }
-    /// The tangent ∂P/∂F [Pa]. A formula of its own pays if the tangent needs neither invariants nor singular vectors.
+    /// The tangent ∂P/∂F [Pa]. A separate formula is worthwhile if the tangent needs neither invariants nor singular vectors.
     #[inline(always)]
     fn tangent<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> Tangent<S, D> {
         if let Some(invariants) = Self::invariants(p, f) {
@@ -91,7 +91,7 @@ impl<S: Lane> Invariants<S> {
 pub struct Principal<S, const D: usize> {
     /// ψᵢⱼ = ∂²ψ/∂σᵢ∂σⱼ.
     pub second: Matrix<S, D>,
-    /// (ψᵢ − ψⱼ)/(σᵢ − σⱼ), for i < j; its limit where the two are equal.
+    /// (ψᵢ − ψⱼ)/(σᵢ − σⱼ), for i < j; its limit if the two stretches are equal.
     pub difference: Matrix<S, D>,
     /// (ψᵢ + ψⱼ)/(σᵢ + σⱼ), for i < j.
     pub sum: Matrix<S, D>,
@@ -140,7 +140,7 @@ impl<S: Lane, const D: usize> Principal<S, D> {
         }
     }
 
-    /// The same without negative eigenvalues.
+    /// These derivatives without negative eigenvalues.
     #[inline(always)]
     pub fn clamped(&self) -> Self {
         let mut own = *self;

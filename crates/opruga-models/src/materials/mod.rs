@@ -45,7 +45,7 @@ pub(crate) struct Entry {
     pub(crate) name: &'static str,
     /// At the reference temperature.
     pub(crate) cold: Laws,
-    /// If any point may have another temperature.
+    /// The laws if the temperature of any point may differ from the reference.
     pub(crate) heated: Laws,
 }
 

@@ -9,7 +9,7 @@ pub(crate) fn lame(modulus: f64, ratio: f64) -> [f64; 2] {
     [modulus / (2.0 * (1.0 + ratio)), modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio))]
 }
 
-/// Refuses a Mooney–Rivlin solid whose constants are not convex with a Poisson's ratio.
+/// Refuses a Mooney–Rivlin solid whose constants do not give a polyconvex law for a Poisson's ratio.
 pub(crate) fn refuse_what_is_not_convex(values: &Values, ratio: f64) -> Result<(), BuildError> {
     if values.text("material") != Some("mooney_rivlin") {
         return Ok(());

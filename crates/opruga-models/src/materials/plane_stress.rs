@@ -30,7 +30,7 @@ struct Space {
 }
 
 impl PlaneStress {
-    /// Finds the thickness of all points; then gradients and stresses in space belong to it.
+    /// Finds the thickness at all points; afterwards gradients and stresses in space are those for this thickness.
     fn solve(&self, simd: Simd, points: Points<'_>, space: &mut Space) {
         for point in 0..points.count {
             for i in 0..3 {
@@ -109,8 +109,8 @@ impl Law<2> for PlaneStress {
     }
 }
 
-/// One Newton iteration for the thickness; returns whether all points have converged. In the `last` call, those that have not
-/// become NaN.
+/// One Newton iteration for the thickness; returns whether all points have converged. In the `last` call, points that have not
+/// converged become NaN.
 struct Thin<'a> {
     count: usize,
     space: &'a mut Space,

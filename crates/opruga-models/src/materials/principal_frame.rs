@@ -63,7 +63,7 @@ fn twin<R: Lane, const D: usize>(one: &Matrix<R, D>, other: &Matrix<R, D>) -> Ma
 /// Computes singular vectors and values of F.
 pub(crate) struct Frames<'a, const D: usize> {
     pub(crate) points: Points<'a>,
-    /// Whether the law accounts for rotations. A law that does not is the same in every frame, and uses the unit vectors.
+    /// Whether the law accounts for rotations. If it does not, it is the same in every frame, and uses the unit vectors.
     pub(crate) turns: bool,
     pub(crate) out: &'a mut [f64],
 }

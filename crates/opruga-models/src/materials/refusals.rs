@@ -18,7 +18,7 @@ messages! {
         "model.no_value" #[error("`{material}` has no value at this deformation gradient, whose determinant is {determinant}: the numbers are too large")]
         #[allowed("det F > 0, and stretches that the law can follow")]
         TooLarge { material: String, determinant: f64 },
-        /// A deformation for which plane stress has no thickness.
+        /// A deformation for which no thickness gives plane stress.
         "model.no_value"
         #[error("`{material}` has no value at this deformation gradient, whose determinant is {determinant}: no positive thickness gives zero stress across the plane")]
         #[allowed("det F > 0, and stretches that the law can follow")]

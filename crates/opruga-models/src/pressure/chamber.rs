@@ -32,7 +32,7 @@ pub(super) struct NodeRings {
     pub(super) facets: Vec<[u32; 3]>,
 }
 
-/// Edges in the plane: each end gets half of the outward normal times the gauge pressure.
+/// The pressure on edges in the plane: each end gets half of the outward normal times the gauge pressure.
 #[derive(Clone, Copy)]
 struct EdgePush<'a> {
     layout: Layout,
@@ -87,8 +87,8 @@ impl<P: Pack, const D: usize> PairTerm<P, D> for TwiceArea<'_, P, D> {
     }
 }
 
-/// Loads one number of each body. For one body a single number is read: reading eight that have just been written one by one
-/// would stall.
+/// Loads one number of each body. For one body a single number is read, because reading eight numbers that have just been
+/// written one by one would stall.
 #[inline(always)]
 fn of_bodies<P: Pack>(layout: Layout, numbers: &[f64]) -> P {
     match layout {

@@ -21,11 +21,11 @@ pub(super) struct CurvedSides {
 /// ends).
 const PARABOLA: [Term; 3] = [([0, 2, 2], 4.0 / 3.0), ([2, 1, 1], 4.0 / 3.0), ([0, 1, 1], -1.0 / 3.0)];
 
-/// The same for the bilinear side of a box: the mean of the two divisions into triangles.
+/// The terms of the bilinear side of a box: the mean of the two divisions into triangles.
 const SADDLE: [Term; 4] = [([0, 1, 2], 0.5), ([0, 2, 3], 0.5), ([0, 1, 3], 0.5), ([1, 2, 3], 0.5)];
 
-/// The same for x·(∂x/∂ξ × ∂x/∂η) over a quadratic triangle with the corners 0–2 and the midpoints 3 (0–1), 4 (1–2), 5 (2–0):
-/// twice the alternating sum of ∫ Nᵢ ∂Nⱼ/∂ξ ∂N_k/∂η, a polynomial of fourth degree.
+/// The integral of x·(∂x/∂ξ × ∂x/∂η) over a quadratic triangle with the corners 0–2 and the midpoints 3 (0–1), 4 (1–2), 5
+/// (2–0): twice the alternating sum of ∫ Nᵢ ∂Nⱼ/∂ξ ∂N_k/∂η, a polynomial of fourth degree.
 const CAP: [Term; 20] = [
     ([0, 1, 2], 2.0 / 15.0),
     ([0, 1, 3], 0.2),
@@ -228,7 +228,7 @@ mod tests {
             |node, by| (0..3).for_each(|d| push[node as usize][d] += by[d]),
         );
         assert!((volume - 1.0).abs() < 1e-14, "{volume}");
-        // A third of the area of a triangle for each of its midpoints, nothing for its corners.
+        // Each midpoint of a triangle gets a third of its area, and corners get nothing.
         let mut expected = vec![0.0; all.len()];
         for side in list.iter().filter(|side| side.iter().all(|n| mesh.positions[*n as usize][0] == 1.0)) {
             side[3..].iter().for_each(|middle| expected[*middle as usize] += 0.5 / 3.0);

@@ -3,9 +3,10 @@
 use opruga_core::spec::Values;
 use opruga_math::Lane;
 
-/// The fraction of the rest volume below which the pressure no longer rises, if it is not given; the pressure is then fifty times
-/// that at rest. With a thousandth, a ball that was thrown or shaken hard enough to be flattened gained energy without bound,
-/// even in steps of a fraction of the stable step, because the steps jump across the narrow range of high pressure.
+/// The default of the fraction of the rest volume below which the pressure no longer rises. At this volume, the pressure is
+/// fifty times that at rest. With a thousandth instead, a ball that was thrown or shaken hard enough to be flattened gained
+/// energy without bound, even with steps far below the stable step, because the steps jumped across the narrow range of high
+/// pressure.
 pub(super) const SMALLEST_VOLUME: f64 = 0.02;
 
 /// How the temperature of the gas behaves.
@@ -79,7 +80,7 @@ impl Gas {
             temperature,
         }
     }
-    /// nRT₀ that has entered until a time, minus what has been lost since [J].
+    /// nRT₀ that has entered up to a time, minus the amount that has been lost [J].
     pub(super) fn cold_at(&self, time: f64, lost: f64) -> f64 {
         let ramp = if self.ramp > 0.0 { (time / self.ramp).larger(0.0).smaller(1.0) } else { 1.0 };
         // If a ramp is lengthened while it lasts, less may have entered than was lost.
@@ -109,7 +110,7 @@ impl Gas {
         if pressure > 0.0 {
             return cold * (after / pressure);
         }
-        // An empty chamber: the amount of gas that has unit pressure.
+        // For an empty chamber: the amount of gas that has unit pressure.
         let v = volume.larger(self.smallest_volume * self.rest_volume);
         let unit = match self.process {
             Process::Isothermal => v,
@@ -132,9 +133,9 @@ impl Gas {
     }
     /// The state at a volume V for this nRT (at the rest volume).
     ///
-    /// Below the volume V_s (a fraction of the rest volume, or the volume at which the largest pressure is reached) the pressure
-    /// stays P(V_s), and the energy continues along its tangent, through zero and for inverted bodies too. U is a function of V
-    /// with a continuous slope, so no energy is created, and the force keeps opening the body.
+    /// Below the volume V_s (a fraction of the rest volume, or the volume at which the largest pressure is reached) the
+    /// pressure stays P(V_s), and the energy continues along its tangent, also at zero volume and for inverted bodies. U is a
+    /// function of V with a continuous slope, so no energy is created, and the force still inflates the body.
     pub(super) fn at(&self, volume: f64, amount: f64) -> GasState {
         let v0 = self.rest_volume;
         let mut least = self.smallest_volume * v0;

@@ -56,7 +56,7 @@ struct Chamber {
     boundary: Boundary,
     /// One gas per body.
     gases: Vec<Gas>,
-    /// The offset of its data in the scratch: volume, force per ∂V/∂x, nRT of each body, then area vectors.
+    /// The offset of its data in the scratch: volume, force per ∂V/∂x and nRT of each body, then the area vectors.
     scratch: usize,
     area_len: usize,
 }
@@ -113,7 +113,7 @@ impl<const D: usize> Model<D> for PressureModel {
                 Boundary::Plane(PairTable::new(ingredients.layout, nodes, &edges, false))
             } else {
                 let triangles: Vec<[u32; 3]> = facets.iter().map(|f| [f[0], f[1], f[D - 1]]).collect();
-                // Only the surface of this chamber, so that nodes of others have an empty ring.
+                // Only the surface of this chamber, so that nodes of other chambers have an empty ring.
                 let skin = Mesh::<3> {
                     positions: mesh.positions.iter().map(|p| [p[0], p[1], p[D - 1]]).collect(),
                     facets: triangles.clone(),
@@ -140,7 +140,7 @@ fn chambers<const D: usize>(mesh: &Mesh<D>, values: &[&Values]) -> Result<Vec<Ve
     if values.first().and_then(|v| v.text("inside")) != Some("cavities") {
         return Ok(mesh.chambers().map_err(open)?.iter().map(|part| facets(part)).collect());
     }
-    // A hole of the boundary has the opposite orientation when seen from inside.
+    // Seen from inside, a hole of the boundary has the opposite orientation.
     let holes = mesh.components().map_err(open)?.into_iter().filter(|component| component.signed_volume < 0.0);
     let mut parts: Vec<Vec<[u32; D]>> = holes.map(|hole| facets(&hole.facets)).collect();
     if parts.is_empty() {
@@ -156,8 +156,8 @@ impl Chamber {
     fn gas(&self, body: usize) -> &Gas {
         &self.gases[body.min(self.gases.len() - 1)]
     }
-    /// The results of `prepare`: volume (area), gauge pressure times depth, nRT of each body, one if its pressure was limited;
-    /// and area vectors.
+    /// The results of `prepare`. For each body: volume (area), gauge pressure times depth, nRT, and 1 if its pressure was
+    /// limited; then the area vectors.
     fn known<'a>(&self, scratch: &'a [f64]) -> Known<'a> {
         let (numbers, area) = scratch[self.scratch..self.scratch + NUMBERS + self.area_len].split_at(NUMBERS);
         let (volume, rest) = numbers.split_at(WIDTH);
@@ -257,7 +257,7 @@ impl<const D: usize> Potential<D> for Pressure {
                 let volume = scratch[chamber.scratch + body] * self.depth;
                 let before = gas.amount_at(view.time - h, memory[body]);
                 if gas.leak > 0.0 {
-                    // Half of the inflow, the leak, the other half.
+                    // Half of the inflow, then the leak, then the other half of the inflow.
                     let middle = view.time - 0.5 * h;
                     let cold = gas.cold_at(middle, memory[body]);
                     memory[body] += cold - gas.after_leak(cold, gas.warmth(middle), volume, h);

@@ -8,7 +8,7 @@ use super::shape::{inertia, turned_trace};
 use opruga_core::potential::{Definiteness, Sink};
 use opruga_math::{matrix, symmetric};
 
-/// Below this fraction of the value of the cluster at rest, its rotation is not determined and has no stiffness.
+/// Below this fraction of its value at rest, the rotation of a cluster is undetermined and has no stiffness.
 const UNDETERMINED: f64 = 1e-12;
 
 impl<const D: usize> Matching<D> {

@@ -34,7 +34,7 @@ impl Stored {
         let slots = if clusters.is_whole { 0 } else { clusters.slots() * clusters.layout.stride() };
         self.forces + D * slots + WIDTH
     }
-    /// Loads a number of a cluster: that of one body eight times, or those of eight bodies.
+    /// Loads a number of a cluster: for one body, the same number eight times; for eight bodies, the number of each.
     #[inline(always)]
     fn spread<P: Pack>(&self, layout: Layout, scratch: &[f64], column: usize, cluster: usize) -> P {
         match layout {
@@ -134,7 +134,7 @@ impl<const D: usize, const K: usize> Work for Moments<'_, D, K> {
                     }
                 }
                 Layout::Batch => {
-                    // The partial sums that one body has in its eight lanes, one after the other.
+                    // The partial sums that one body has in eight lanes, here one after the other.
                     let from: [P; D] = load(&view.x, index);
                     let mut firsts = [[P::zero(); WIDTH]; D];
                     let mut all = [[[P::zero(); WIDTH]; K]; D];

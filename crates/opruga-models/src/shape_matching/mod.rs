@@ -80,7 +80,7 @@ impl<const D: usize> Model<D> for ShapeMatchingModel {
         &SPEC
     }
     fn need(&self, counts: &Counts) -> Need {
-        // For a body that is one cluster: masses and columns. With boxes, a node is in 2ᴰ clusters.
+        // This is the need of a body that is one cluster: masses and columns. With boxes, a node is in 2ᴰ clusters.
         Need { bytes: 150.0 * counts.nodes, couplings: 0.0 }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
@@ -154,7 +154,7 @@ impl<const D: usize> Potential<D> for Matching<D> {
             ..Properties::new(SPEC.kind, views)
         }
     }
-    /// Visits the clusters; none if one of them is the whole body.
+    /// Visits the nodes of every cluster; does nothing if a cluster is the whole body.
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         let stride = self.clusters.layout.stride() as u32;
         for cluster in (0..self.clusters.len()).filter(|_| !self.clusters.is_whole) {

@@ -7,10 +7,10 @@
 //! nodes ──moments──▶ pieces ──sums──▶ clusters: R, T ──maps t + H Q──▶ pieces, summed ──▶ nodes
 //! ```
 //!
-//! So a node is read and written once, however many clusters it is in. u = x − x₀ and Q = X − X₀ are relative to one node in the
-//! middle of the body for all clusters, so that their sums can be shared. This loses digits: the rounding error grows by the
-//! square of the size of the body over that of its smallest cluster. Beyond [`MOST_DIGITS_LOST`] the clusters are evaluated slot
-//! by slot.
+//! So a node is read and written once, however many clusters it is in. u = x − x₀ and Q = X − X₀ are relative to one node in
+//! the middle of the body for all clusters, so that their sums can be shared. This loses digits: the rounding error grows with
+//! the square of the ratio of the size of the body to that of its smallest cluster. Beyond [`MOST_DIGITS_LOST`] the clusters
+//! are evaluated slot by slot.
 
 use super::layout::Clusters;
 use opruga_core::potential::Ingredients;
@@ -75,7 +75,7 @@ fn inverse<const D: usize>(frame: &[[f64; D]; D]) -> [[f64; D]; D] {
 }
 
 impl<const D: usize> Pieces<D> {
-    /// From overlapping clusters with a linear fit; `None` if too many digits would be lost.
+    /// Makes the pieces of overlapping clusters with a linear fit; `None` if too many digits would be lost.
     pub(super) fn new(ingredients: &Ingredients<D>, clusters: &Clusters<D>) -> Option<Pieces<D>> {
         let (layout, mesh) = (ingredients.layout, ingredients.mesh);
         if clusters.is_whole || clusters.columns > D {

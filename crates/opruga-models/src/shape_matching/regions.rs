@@ -7,7 +7,7 @@ use opruga_mesh::Mesh;
 /// The largest number of boxes per node.
 const MOST_BOXES_PER_NODE: usize = 8;
 
-/// A node that is closer to the face of a box than this lies on it, in half boxes.
+/// A node lies on the face of a box if it is closer to it than this, as a fraction of half a box.
 const FACE: f64 = 1e-9;
 
 /// The nodes of every cluster, ascending.

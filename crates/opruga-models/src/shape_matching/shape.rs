@@ -2,7 +2,7 @@
 
 use opruga_math::Lane;
 
-/// The largest number of columns: 2 and 3 coordinates, 3 and 6 products of them.
+/// The largest number of columns: 3 coordinates and 6 products of them in space.
 pub(super) const MOST_COLUMNS: usize = 9;
 
 /// If the part of a column that is independent of the previous ones is below this fraction of the size of the cluster, the column
@@ -21,7 +21,7 @@ pub(super) struct Shape<const D: usize> {
 }
 
 impl<const D: usize> Shape<D> {
-    /// From nodes at rest positions with their masses in the cluster [kg].
+    /// Makes the shape from the rest positions of nodes and their masses in the cluster [kg].
     pub(super) fn new(positions: &[[f64; D]], masses: &[f64], quadratic: bool) -> Shape<D> {
         let mass: f64 = masses.iter().sum();
         let centered = |mut column: Vec<f64>| {
@@ -29,7 +29,7 @@ impl<const D: usize> Shape<D> {
             column.iter_mut().for_each(|x| *x -= mean);
             column
         };
-        // q = X − X̄: first as differences from one of the nodes, so that a body far from the origin keeps its digits.
+        // q = X − X̄. It is computed from differences to one of the nodes, so that no digits are lost far from the origin.
         let from = positions[0];
         let linear: Vec<Vec<f64>> =
             (0..D).map(|d| centered(positions.iter().map(|x| x[d] - from[d]).collect())).collect();

@@ -12,7 +12,7 @@ pub struct Reached {
     pub iterations: u32,
     /// The remaining residual, in the norm of the preconditioner.
     pub size: f64,
-    /// Whether a direction without positive curvature ended it; the solution is then the one so far.
+    /// Whether it ended at a direction without positive curvature; the solution is then incomplete.
     pub indefinite: bool,
 }
 
@@ -197,7 +197,7 @@ impl<const D: usize> Packed<D> {
     /// [`Indefinite`] if b is not finite or the first direction has no positive curvature.
     ///
     /// # Source
-    /// Hestenes and Stiefel 1952; ended at a direction of negative curvature: Steihaug 1983.
+    /// Source: Hestenes and Stiefel 1952; Steihaug 1983 for the end at a direction of negative curvature.
     pub fn solve(
         &mut self,
         simd: Simd,

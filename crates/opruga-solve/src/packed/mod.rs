@@ -21,7 +21,7 @@ pub use gradients::Reached;
 /// The number of packs of rows in a piece.
 const PACKS: usize = 32;
 
-/// The number of rows that are sorted by length among themselves.
+/// The number of rows in a window that is sorted by length.
 const WINDOW: usize = 512;
 
 /// Marks lanes of a pack without a block.
@@ -29,8 +29,8 @@ const NONE: u32 = u32::MAX;
 
 /// A matrix in packs, and conjugate gradients on it with the inverses of the diagonal blocks.
 ///
-/// Its entries are rounded to single precision (rank-one terms and sums are not), because it is meant for corrections whose
-/// balance is checked afterwards.
+/// Its entries are rounded to single precision (rank-one terms and sums are not), because it is used to compute corrections,
+/// after which the balance of forces is checked.
 #[derive(Debug, Default)]
 pub struct Packed<const D: usize> {
     generation: u64,
@@ -65,7 +65,8 @@ struct Piece<const D: usize> {
     column: Vec<u32>,
     /// Their indices in the matrix.
     source: Vec<u32>,
-    /// In single precision: only half the memory has to be read, and [`Packed`] solves for corrections.
+    /// They are in single precision, so that only half of the memory has to be read; this is enough because [`Packed`] solves
+    /// for corrections.
     values: Vec<f32>,
     /// The approximate inverse of the diagonal blocks: D² packs each, without the held directions.
     inverse: Column,

@@ -175,8 +175,8 @@ impl Scenery {
         self.y_down
     }
 
-    /// Captures the present picture of a world. With arrows, it also includes pulls and, at the nodes, the pressure on bodies with gas [Pa] or the
-    /// force on other bodies [N].
+    /// Captures the present picture of a world. If `arrows` is set, it also contains the pulls and, at the nodes, the pressure on bodies with gas
+    /// [Pa] or the force on other bodies [N].
     pub fn capture(&self, world: &mut dyn AnyWorld, arrows: bool) -> Moment {
         self.capture_quantity(world, arrows, self.quantity)
     }
@@ -317,7 +317,7 @@ fn skinned(skin: &Skin, positions: &[[f64; 3]], scalar: &[f64], label: &str) -> 
     }
 }
 
-/// The areas of a drawing that a flat body carries: coloured areas if the colours of the body show nothing, otherwise its silhouette.
+/// The areas of a drawing that a flat body carries: its coloured areas if the body has no colours of its own, otherwise its silhouette.
 fn areas(skin: &Skin, positions: &[[f64; 3]], quantity: Quantity) -> Vec<AreaPicture> {
     let painted = quantity == Quantity::Plain && skin.areas.iter().any(|area| area.colour.is_some());
     let seen = skin.areas.iter().filter(|area| area.colour.is_some() == painted);

@@ -8,20 +8,20 @@ use std::collections::BTreeMap;
 /// An edge is drawn if the angle between its two facets exceeds this, given as a cosine.
 const SHARP: f64 = 0.8;
 
-/// Whether pictures of a body show its initial position: it is a pinned body that owns its cells, and therefore bends about that position; in
-/// statics, any body.
+/// Whether pictures of a body show its initial position: they do for every body in statics, and otherwise for pinned bodies that own their cells,
+/// because these bend about that position.
 pub(super) fn is_shown(body: &dyn AnyBody, of_scene: &Values) -> bool {
     let integrator = body.integrator().unwrap_or(of_scene).spec();
     let pinned_solid = body.is_pinned_at_rest() && body.has_role(Role::OwnsCells);
     body.skin().is_none() && (integrator.has_role(Role::Statics) || pinned_solid)
 }
 
-/// A body as it is in a picture, as lines: its outline, or the sharp edges of its surface.
+/// Returns a body of a picture as lines: its outline, or the sharp edges of its surface.
 pub fn rest_of(body: &BodyPicture) -> RestPicture {
     rest_lines(&body.facets, body.positions.clone())
 }
 
-/// Does the same for facets and nodes.
+/// Returns the outline or the sharp edges of facets whose nodes have these positions.
 pub(super) fn rest_lines(facets: &Facets, positions: Vec<[f64; 3]>) -> RestPicture {
     let segments = match facets {
         Facets::Edges(edges) => edges.clone(),

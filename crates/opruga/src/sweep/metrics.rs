@@ -32,7 +32,7 @@ pub struct Metric {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Quantity {
-    /// For a body; none: the first one.
+    /// For a body, or for the first one if none is named.
     BounceHeight(Option<String>),
     SettlingTime,
     EquilibriumRadius(Option<String>),
@@ -300,7 +300,7 @@ impl Meter {
         }
     }
 
-    /// The results in the order of the metrics; none if the run has no such number, and for times.
+    /// The results in the order of the metrics; none for times, and for numbers that the run does not have.
     pub(crate) fn finish(self) -> Vec<Option<f64>> {
         let finite = |x: f64| Some(x).filter(|x| x.is_finite());
         self.gauges

@@ -180,7 +180,8 @@ impl Failed {
     }
 }
 
-/// One sentence, as for errors of worlds: a row of a table has no lines for what is allowed and what helps.
+/// Keeps only the sentence that says what is wrong, as for errors of worlds. A row of a table has no room for allowed values
+/// and hints.
 impl From<SceneError> for Failed {
     fn from(error: SceneError) -> Failed {
         let mut message = error.message;
@@ -237,8 +238,8 @@ impl Run<'_> {
         Ok(world.frame()?)
     }
 
-    /// Processor time of a substep [ns] in the fastest of as many runs as fit into a tenth of a second, but at least one. These are separate runs
-    /// without other measurements.
+    /// The processor time of a substep [ns] in the fastest of several runs: as many as fit into a tenth of a second, but at least one. These runs are
+    /// separate and measure nothing else.
     fn speed(&self, blueprint: &AnyBlueprint, frames: u64) -> Result<Option<f64>, Failed> {
         let steps = frames as f64 * f64::from(blueprint.scene().time().substeps);
         let (mut fastest, mut spent) = (f64::INFINITY, 0.0);

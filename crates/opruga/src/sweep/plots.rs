@@ -6,8 +6,9 @@ use opruga_draw::{Chart, DrawError, HeatMap, HeatPanel, Line, Marker, Nothing, P
 
 /// The names and texts (SVG) of all plots.
 ///
-/// With one parameter, or one after the other: each metric over it. With two parameters of a grid: a map for each metric, with marks where a run has
-/// failed. With more, or a sample: each metric over each parameter, as points. Each plot has the credit below it.
+/// If one parameter varies, or several one after the other, each plot shows a metric over a parameter. For a grid of two parameters, each plot is a
+/// map of a metric, with marks where runs have failed. For more parameters, or a sample, each plot shows a metric over a parameter as points. The
+/// credit is below each plot.
 ///
 /// # Errors
 /// [`DrawError`] if nothing can be drawn.

@@ -15,7 +15,7 @@ pub struct Question {
     pub schema: u32,
     /// The name of the scene.
     pub name: String,
-    /// The origin of the scene; the same text from elsewhere is the same question.
+    /// The origin of the scene. It does not matter when two questions are compared.
     pub file: String,
     /// The parameters that vary or are changed for all points, as `PATH=VALUES`.
     pub set: Vec<String>,
@@ -23,7 +23,7 @@ pub struct Question {
     pub metrics: Vec<String>,
     /// Whether one parameter varies after the other.
     pub each: bool,
-    /// The number of random points; none: a grid.
+    /// The number of random points; none if points are not random.
     pub sample: Option<usize>,
     /// Whether random points are independent.
     pub independent: bool,
@@ -115,7 +115,7 @@ impl Question {
         *self == Question { file: self.file.clone(), ..other.clone() }
     }
 
-    /// The difference of an earlier question.
+    /// How an earlier question differs from this one.
     pub fn difference(&self, before: &Question) -> QuestionDifference {
         let listed = |list: &[String]| visible(&list.join(" "));
         if self.scene != before.scene {

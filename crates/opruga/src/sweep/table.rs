@@ -1,8 +1,8 @@
 //! The table of a sweep: one row for each point, written when the point is done and read again when the sweep is resumed.
 //!
 //! Each row ends with a checksum of its cells. A resumed sweep uses existing rows as its own results. A row that was changed in the meantime, by hand
-//! or by a program that reformatted its numbers, is refused with its line. It is not computed again automatically, because that would replace what
-//! somebody has written there; a user who wants that deletes the line.
+//! or by a program that reformatted its numbers, is refused, and the error names its line. The point is not computed again automatically, because
+//! that would overwrite what somebody has written; to have it computed again, delete the line.
 
 use super::Sweep;
 use super::errors::{RowFault, SweepError};
@@ -31,7 +31,7 @@ pub struct Row {
 pub enum Status {
     /// It ran to its end.
     Done,
-    /// It was refused or diverged: the code of the error.
+    /// It was refused or diverged; the text is the code of the error.
     Failed(String),
 }
 

@@ -1,4 +1,5 @@
-//! Second derivatives of quadrilaterals and hexahedra: from those by F and β to those by the columns of F and g.
+//! Second derivatives of quadrilaterals and hexahedra: converts derivatives by F and β to derivatives by the columns of F and
+//! g.
 
 use super::super::elements::Shape;
 use super::hourglass::{MOST_MODES, MOST_STRESSES, modes};
@@ -53,7 +54,7 @@ impl<R: Lane, const D: usize, const N: usize> ByColumns<R, D, N> {
         }
     }
 
-    /// Adds the derivatives by F, and those by F and g that arise because q changes with F.
+    /// Adds the derivatives by F, and the derivatives by F and g that exist because q depends on F.
     #[inline(always)]
     fn add_by_gradient(
         &mut self,

@@ -4,7 +4,8 @@
 //! N = 4:  1  ξ  η  ξη          N = 8:  1  ξ  η  ζ  ηζ  ζξ  ξη  ξηζ
 //! ```
 //!
-//! Sums with all of these signs are computed from sums and differences of pairs, with 24 instead of 56 additions in space.
+//! The sums with the signs of all these functions are computed from sums and differences of pairs, with 24 instead of 56
+//! additions in space.
 
 use opruga_math::Lane;
 

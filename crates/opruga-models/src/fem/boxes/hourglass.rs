@@ -17,7 +17,7 @@ use super::corners::sums;
 /// The number of hourglass modes of a hexahedron.
 pub(super) const MOST_MODES: usize = 4;
 
-/// The number of assumed stresses of a hexahedron, which is that of amplitudes: modes times axes.
+/// The number of assumed stresses of a hexahedron, which equals the number of amplitudes: modes times axes.
 pub(super) const MOST_STRESSES: usize = 12;
 
 /// The number of functions of the assumed stresses of a hexahedron.
@@ -39,8 +39,8 @@ pub(super) const fn term<const D: usize>(stress: usize) -> (usize, usize) {
     if D == 2 { (1 - stress, stress) } else { of_space[stress] }
 }
 
-/// The first stress of a function, and its axes. If there are two different axes, the stresses are those along the first, along
-/// the second, and of both.
+/// The first stress of a function, and its axes. If there are two different axes, the stresses are those along the first axis,
+/// along the second axis, and of both.
 pub(super) const fn axes_of_field<const D: usize>(field: usize) -> (usize, [usize; 2]) {
     match (D, field) {
         (2, _) => (field, [1 - field; 2]),
@@ -64,8 +64,8 @@ pub(super) const fn pairs<const D: usize>() -> usize {
     if D == 2 { 2 } else { PAIRS }
 }
 
-/// The number of geometric data of a cell: the shares of the functions row by row, the measures of its points, the means of the
-/// functions of the stresses, its axes.
+/// The number of geometric data of a cell: the shares of the functions (row by row), the measures of its points, the means of
+/// the functions of the stresses, and its axes.
 pub(super) const fn stored<const D: usize, const N: usize>() -> usize {
     measures_at::<N>() + N + fields::<D>() + D * D
 }
@@ -75,8 +75,8 @@ pub(super) const fn measures_at<const N: usize>() -> usize {
     (N - 1) * (N - 1)
 }
 
-/// Values smaller than the largest of their kind by this factor are rounding errors, for example of the corners of equal cells of
-/// a grid.
+/// Values below this fraction of the largest of their kind are rounding errors, such as differences between equal cells of a
+/// grid.
 pub(super) const ROUNDING: f64 = 1.0 / (1u64 << 42) as f64;
 
 /// The number of material data of a cell: X row by row, c, λ − λ′, and kₐ.
@@ -143,7 +143,7 @@ pub(super) struct Rest<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Rest<D, N> {
-    /// From the corners of a cell whose determinants at the Gauss points and at the centre are positive.
+    /// Computes the data from the corners of a cell whose determinants at the Gauss points and at the centre are positive.
     pub(super) fn new<E: Shape<D, N>>(corners: &[[f64; D]; N], thickness: f64) -> Self {
         let modes = modes::<D, N>();
         // ∂Nₐ/∂X and the measures at the Gauss points.
@@ -348,7 +348,8 @@ mod tests {
         }
     }
 
-    /// In space, a box that bends along x alone has E/(1 − ν²); if it may also curve across, E.
+    /// In space, a box that bends along x alone has the stiffness E/(1 − ν²); if it may also curve in the other direction, it
+    /// has E.
     #[test]
     fn a_block_bends_as_a_plate_and_as_a_beam() {
         let (sides, mu, ratio) = ([0.7, 0.4, 0.2], 3.0, 0.4999);
@@ -367,8 +368,8 @@ mod tests {
         assert!((beam / (young * inertia) - 1.0).abs() < 1e-10, "{beam}");
     }
 
-    /// Hourglass vectors vanish on affine fields, amplitudes are those of the functions, and every mode has stiffness, in skewed
-    /// and tapered cells too.
+    /// Hourglass vectors vanish on affine fields, they have the amplitudes of the hourglass functions, and every mode has
+    /// stiffness, also in skewed and tapered cells.
     #[test]
     fn no_cell_is_without_stiffness() {
         let mut random = 5u64;

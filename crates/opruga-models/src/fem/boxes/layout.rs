@@ -1,7 +1,7 @@
 //! The constant data of the boxes of a section, laid out in packs.
 //!
 //! If the cells of a section are equal except for rounding, as in a grid, they are treated as equal, and the data of one pack
-//! hold for all. This saves reading 1.8 kilobytes for every hexahedron in every pass.
+//! serve for all packs. This saves reading 1.8 kilobytes for every hexahedron in every pass.
 
 use super::super::elements::{Cell, Shape};
 use super::super::numbers::{NUMBERS, beyond};
@@ -17,10 +17,10 @@ pub(in super::super) struct Boxes {
     pub(super) geometry: Column,
     /// The data that [`stiffness_numbers`] counts, likewise.
     pub(super) stiffness: Column,
-    /// Whether one pack holds for all packs.
+    /// Whether the data of one pack serve for all packs.
     pub(in super::super) one_geometry: bool,
     pub(super) one_stiffness: bool,
-    /// Which shares of the functions in F and g are not zero; rows are functions.
+    /// The pattern of the nonzero shares of the functions in F and g; rows are functions.
     pub(super) shares: Pattern,
     /// Which entries of X are not zero.
     pub(super) response: Pattern,
@@ -133,7 +133,7 @@ fn alike<const D: usize, const N: usize>(first: &[[f64; D]; N], other: &[[f64; D
     most <= ROUNDING * size
 }
 
-/// If all packs are equal in their used lanes, reduces the column to a full pack and the last one.
+/// Reduces the column to a full pack and the last one if all packs are equal in the lanes that are used.
 fn one(column: Column, size: usize, lanes: usize, present: usize) -> (Column, bool) {
     let packs = column.len() / size;
     let (whole, last) = (&column[..size], &column[(packs - 1) * size..]);
@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn equal_cells_share_their_numbers_and_have_few() {
-        // Far from the origin, where the rounding of corners is larger.
+        // The mesh is far from the origin, where the rounding of corners is larger.
         let mesh = Mesh::<3>::grid([3.0, -7.0, 0.1], [1.0, 2.0, 3.0], [5, 3, 7]).unwrap();
         let own = boxes::<Hexahedron, 3, 8>(&mesh.positions, &mesh.cells.hexahedra, |_| 2.0);
         assert!(own.one_geometry && own.one_stiffness && !own.uneven);

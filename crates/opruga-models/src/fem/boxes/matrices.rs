@@ -36,7 +36,7 @@ pub(in super::super) struct Contract<'a, E, const D: usize, const N: usize> {
     pub(in super::super) of: Of,
     /// As [`super::Deform`] leaves it.
     pub(in super::super) kept: &'a [f64],
-    /// At the points; read only if the energy is differentiated exactly.
+    /// The stress at the points; read only if the energy is differentiated exactly.
     pub(in super::super) stress: &'a [f64],
     /// D⁴ packs for every pack of points.
     pub(in super::super) tangent: &'a [f64],
@@ -175,7 +175,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
         }
     }
 
-    /// Adds the contribution of the stresses because their strains rotate with F.
+    /// Adds the contribution of the stresses that exists because their strains rotate with F.
     #[inline(always)]
     fn add_turned_stresses<R: Register>(
         &self,
@@ -225,7 +225,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Contract<'_, E, D,
             let second = self.by_columns(&rest, &kept, &sums);
             for i in 0..D {
                 for m in i..D {
-                    // From columns to corners, on both sides.
+                    // Converts from columns to corners, on both sides.
                     let mut by_corner = [[P::Part::zero(); N]; N];
                     for d in 0..N - 1 {
                         let column = core::array::from_fn(|c| [second.0[i][m][c][d]]);

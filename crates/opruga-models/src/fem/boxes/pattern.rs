@@ -1,7 +1,7 @@
 //! The nonzero entries of the small matrices of boxes.
 //!
-//! In a hexahedron with right angles 7 of 49 and 21 of 144 entries are nonzero; in other cells all are. Leaving out the zeros
-//! changes neither the sums nor the order of their terms.
+//! In a hexahedron with right angles, 7 of 49 and 21 of 144 entries are nonzero; in other cells all of them are. Leaving out
+//! the zeros changes neither the sums nor the order of their terms.
 
 /// The entries of a matrix that may be nonzero, by rows and by columns.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,7 +35,7 @@ impl Lists {
 }
 
 impl Pattern {
-    /// Of a square matrix with `size` rows.
+    /// The pattern of a square matrix with `size` rows.
     pub(super) fn new(size: usize, is: impl Fn(usize, usize) -> bool) -> Self {
         Pattern { rows: Lists::new(size, &is), columns: Lists::new(size, |column, row| is(row, column)) }
     }

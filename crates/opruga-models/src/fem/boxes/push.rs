@@ -13,7 +13,7 @@ use opruga_math::{Lane, Pack, Register, WIDTH, Work};
 
 /// Rates of a state, for damping.
 pub(in super::super) struct Rates<'a> {
-    /// As [`super::DeformRates`] leaves them.
+    /// The data that [`super::DeformRates`] has written.
     pub(in super::super) kept: &'a [f64],
     /// Retardation times of the points.
     pub(in super::super) times: &'a [f64],
@@ -117,7 +117,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Push<'_, E, D, N> 
                         lost += rest.measures[q] * P::Part::load(&rates.power[from..]);
                     }
                 }
-                // Σ V f p of the pressure that is excluded from the law at the points, and included at the mean.
+                // Σ V f p of the pressure that the law includes at the mean instead of at the points.
                 let mut pressures = [P::Part::zero(); FIELDS];
                 if points > N {
                     let swells = rest.at_points(P::Part::zero(), &strained.traces(&beta));

@@ -1,4 +1,4 @@
-//! Cells at rest as the lanes read them, and the strains of their assumed stresses.
+//! The data of cells at rest, in the layout that the lanes read, and the strains of their assumed stresses.
 
 use super::super::group::Group;
 use super::hourglass::{
@@ -211,7 +211,7 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         corners::values(&c)
     }
 
-    /// The same for matrices, written entry by entry.
+    /// Does the same for matrices, and writes them entry by entry.
     #[inline(always)]
     pub(super) fn matrices_at_points(
         &self,
@@ -274,7 +274,7 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
     }
 }
 
-/// Which function is the product of two functions, in the order of [`corners`].
+/// The function that is the product of two functions, in the order of [`corners`].
 struct Products<const N: usize>;
 impl<const N: usize> Products<N> {
     const OF: [[usize; 8]; 8] = {
@@ -377,7 +377,7 @@ impl<R: Lane, const D: usize> Strained<R, D> {
         out
     }
 
-    /// Forces on β and B, from forces P on B Σ β D and p on tr Σ β D for every function.
+    /// Computes the forces on β and B, given the forces P on B Σ β D and p on tr Σ β D for every function.
     #[inline(always)]
     pub(super) fn pulls(
         &self,
