@@ -1,7 +1,7 @@
 //! The rotation nearest to a matrix.
 //!
-//! The nearest rotation of a matrix. In space it needs no singular values. With the sum f = σ₁ + σ₂ + σ₃ (the last with the
-//! sign of det F) and the invariants I = tr C, J = det F of F, C = FᵀF, f is the largest root of
+//! In space, no singular values are needed. With the sum f = σ₁ + σ₂ + σ₃ (the last with the sign of det F) and the invariants
+//! I = tr C, J = det F of F, C = FᵀF, f is the largest root of
 //!
 //! f⁴ − 2 I f² − 8 J f + 2 tr C² − I² = 0,
 //!

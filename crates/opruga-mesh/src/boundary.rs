@@ -213,8 +213,8 @@ impl<const D: usize> Mesh<D> {
     }
 }
 
-/// Six tetrahedra from the node with the lowest number to the faces that do not contain it, each of which is cut from its own lowest node. Neighbours
-/// therefore cut their common face in the same way, however their corners are numbered.
+/// Six tetrahedra from the node with the lowest number to the faces that do not contain it, each of which is cut from its own lowest node. So
+/// neighbours cut their common face in the same way, however their corners are numbered.
 fn from_the_least(cell: &[u32; 8]) -> impl Iterator<Item = [u32; 4]> {
     let least = cell.iter().copied().fold(u32::MAX, u32::min);
     HEXAHEDRON_FACES

@@ -89,7 +89,7 @@ impl<const D: usize> Mesh<D> {
                     own[..8].copy_from_slice(&of_hexahedron(&[a, b, c, d, e, f, g, h]));
                 }
                 Element::Tetrahedron => own[..4].fill(0.25 * self.size_of(nodes, element)),
-                // Cells in the plane are sides of space that lie in the plane.
+                // Cells in the plane are treated as sides in space that lie in the plane.
                 _ => {
                     for point in side_points(3, nodes.len()) {
                         let area = side_vector(&point, &x[..nodes.len()])[2];
@@ -135,7 +135,7 @@ mod tests {
         let (mut volume, mut moment) = (0.0, [0.0; D]);
         for side in mesh.boundary_sides(&all) {
             let x: Vec<[f64; D]> = side.iter().map(|&node| mesh.positions[node as usize]).collect();
-            // Many points, because ½ x² n has a higher degree than the integration of sides is made for.
+            // Many points are used, because the degree of ½ x² n is higher than that for which sides are integrated exactly.
             for (weight, at, n) in fine(&x) {
                 for d in 0..D {
                     volume += weight * at[d] * n[d] / D as f64;

@@ -14,7 +14,8 @@ pub struct Component {
     pub signed_volume: f64,
 }
 
-/// The place where facets meet: a node in the plane, an edge in space. `forward` distinguishes the two directions.
+/// The use of a ridge, at which facets meet, by one facet. A ridge is a node in the plane and an edge in space. `forward`
+/// distinguishes the two directions.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Use {
     ridge: [u32; 2],
@@ -34,7 +35,7 @@ pub(crate) struct Survey {
     open: Vec<u32>,
 }
 
-/// The D ridges of each facet, sorted. The same code serves both dimensions: end points of edges, sides of triangles.
+/// The D ridges of each facet, sorted: end points of edges in the plane, sides of triangles in space.
 fn ridges<const D: usize>(facets: &[[u32; D]]) -> Vec<Use> {
     let mut uses = Vec::with_capacity(D * facets.len());
     for (index, facet) in facets.iter().enumerate() {
@@ -224,7 +225,7 @@ impl<const D: usize> Mesh<D> {
     /// positive component whose winding number about a node of the hole is 1. An outward component inside another is a chamber of its own.
     ///
     /// # Errors
-    /// Those of [`Mesh::components`], and [`MeshError::InsideOut`] for a hole without an enclosing component.
+    /// The errors of [`Mesh::components`], and [`MeshError::InsideOut`] for a hole without an enclosing component.
     pub fn chambers(&self) -> Result<Vec<Vec<u32>>, MeshError> {
         let components = self.components()?;
         let (outer, holes): (Vec<&Component>, Vec<&Component>) =
@@ -232,7 +233,7 @@ impl<const D: usize> Mesh<D> {
         let skins: Vec<Vec<[u32; D]>> = outer.iter().map(|component| self.gather(&component.facets)).collect();
         let mut chambers: Vec<Vec<u32>> = outer.iter().map(|component| component.facets.clone()).collect();
 
-        // Each hole belongs to the smallest enclosing skin; only skins whose box contains it are candidates.
+        // Each hole belongs to the smallest skin that encloses it; only skins whose box contains it are candidates.
         let tree = (!holes.is_empty()).then(|| Tree::of(skins.iter().map(|skin| self.box_of(skin))));
         for hole in holes {
             let point = self.positions[self.facets[hole.facets[0] as usize][0] as usize];
@@ -257,7 +258,8 @@ impl<const D: usize> Mesh<D> {
 
     /// Orients facets so that neighbours agree and the total signed volume is positive; returns the number of reversed facets.
     ///
-    /// In each component the majority decides. Holes stay holes: if the total is negative, every facet is reversed.
+    /// In each component, facets follow the orientation of the majority. Holes remain holes. If the total is negative, every
+    /// facet is reversed.
     ///
     /// # Errors
     /// Those of [`Mesh::validate`]; [`MeshError::NonManifoldNodes`], [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`],

@@ -10,7 +10,7 @@ pub const SHORT_EDGE: f64 = 1e-12;
 /// An element whose area is below this fraction of its longest edge squared (volume: cubed) counts as degenerate [−].
 pub const THIN_ELEMENT: f64 = 1e-10;
 
-/// A body whose extent in one direction is below this fraction of its largest extent counts as flat [−].
+/// A body counts as flat if its extent in one direction is below this fraction of its largest extent [−].
 const FLAT_BODY: f64 = 1e-9;
 
 /// Something that looks wrong with a mesh.
@@ -156,7 +156,7 @@ fn spread(points: &[Point]) -> [f64; 3] {
         return extents;
     };
 
-    // Greedy: the farthest point gives a direction, whose component is then removed from all points.
+    // This is a greedy search: the farthest point gives a direction, whose component is then removed from all points.
     let mut directions: [Point; 3] = [[0.0; 3]; 3];
     for rank in 0..3 {
         let mut farthest = [0.0; 3];

@@ -1,4 +1,4 @@
-//! Edges in the plane that meet where they are not neighbours.
+//! Edges in the plane that meet although they are not neighbours.
 
 use crate::crossings::{Crossings, MOST_LISTED};
 use robust::{Coord, orient2d};

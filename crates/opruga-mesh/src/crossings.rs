@@ -1,4 +1,4 @@
-//! Facets of a surface that meet where they are not neighbours.
+//! Facets of a surface that meet although they are not neighbours.
 //!
 //! A tree of boxes over the facets, in the order of a space-filling curve, gives the candidates. The signs of determinants, exact for the given
 //! coordinates, decide whether two facets meet.
@@ -75,7 +75,7 @@ fn small([low, high]: &Bounds) -> Small {
     [low.map(down), high.map(up)]
 }
 
-/// Whether two boxes overlap; without branches, because the result is unpredictable.
+/// Whether two boxes overlap. The code has no branches, because the result is unpredictable.
 fn overlap(a: &Small, b: &Small) -> bool {
     (0..3).fold(true, |so_far, d| so_far & (a[0][d] <= b[1][d]) & (b[0][d] <= a[1][d]))
 }
@@ -133,7 +133,7 @@ impl Sorted {
         &self.facets[self.begins[leaf] as usize..self.begins[leaf + 1] as usize]
     }
 
-    /// Compares the facets of two leaves, or those of one leaf with one another.
+    /// Compares the facets of two leaves, or the facets of one leaf with one another.
     fn compare(&self, [leaf, other]: [usize; 2], pairs: &mut Vec<[u32; 2]>) {
         let others = self.facets_of(other);
         for (index, a) in self.facets_of(leaf).iter().enumerate() {
@@ -220,7 +220,8 @@ fn reaches(segment: &[[f64; 3]; 2], triangle: &[[f64; 3]; 3]) -> bool {
     around.iter().all(|x| *x >= 0.0) || around.iter().all(|x| *x <= 0.0)
 }
 
-/// The same for a segment in the plane of the triangle, projected along the axis from which the triangle looks largest.
+/// Does the same for a segment in the plane of the triangle. Both are projected along the axis for which the projection of the
+/// triangle is largest.
 fn reaches_in_plane(segment: &[[f64; 3]; 2], triangle: &[[f64; 3]; 3]) -> bool {
     let axis = widest(triangle);
     let flat = |p: &[f64; 3]| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] };
@@ -248,7 +249,7 @@ fn widest([a, b, c]: &[[f64; 3]; 3]) -> usize {
     better(better(0, 1), 2)
 }
 
-/// Whether the triangle of an edge (the first two corners) and another point overlaps the triangle itself.
+/// Whether the triangle between an edge (the first two corners) and another point overlaps the given triangle.
 fn folded(triangle: &[[f64; 3]; 3], other: &[f64; 3]) -> bool {
     let [a, b, c] = triangle;
     if side(a, b, c, other) != 0.0 {

@@ -10,8 +10,9 @@ use crate::quadratic::{tetrahedron_parts, triangle_parts};
 pub enum EdgeSet {
     /// Edges of the boundary facets.
     Boundary,
-    /// Edges of facets, wires, sheets and cells, without the diagonals that only cut the boundary faces of hexahedra into triangles: these would
-    /// stiffen one diagonal of the skin and not the other. Quadratic cells have the edges of the triangles through the nodes of their faces.
+    /// Edges of facets, wires, sheets and cells. This excludes the diagonals that only cut the boundary faces of hexahedra into triangles, because
+    /// they would stiffen one diagonal of the skin and not the other. Quadratic cells have the edges of the triangles through the nodes of their
+    /// faces.
     All,
     /// `All`, with both diagonals of every quadrilateral and of every face of a hexahedron (not the diagonals through its interior).
     AllWithShear,
@@ -44,7 +45,8 @@ pub fn edge_runs(edges: &[[u32; 2]]) -> Vec<EdgeRun> {
     runs
 }
 
-/// The largest difference |b − a| of the indices of the ends of an edge, which is the distance of neighbours in memory. Zero without edges.
+/// The largest difference |b − a| between the indices of the ends of an edge, which is the distance between neighbours in memory. It is zero if there
+/// are no edges.
 pub fn bandwidth(edges: &[[u32; 2]]) -> u32 {
     edges.iter().map(|&[a, b]| a.abs_diff(b)).max().unwrap_or(0)
 }
@@ -103,7 +105,7 @@ impl<const D: usize> Mesh<D> {
             }
         }
 
-        // One sort gives both uniqueness and runs.
+        // One sort makes edges unique and gives the runs.
         edges.sort_unstable_by_key(|&[a, b]| (b - a, a));
         edges.dedup();
         edges
@@ -167,7 +169,7 @@ impl<const D: usize> Mesh<D> {
             }
         };
 
-        // Triangles as a whole, without the sheet triangles that make up quadrilaterals, which follow below.
+        // All triangles except the sheet triangles that make up quadrilaterals, which follow below.
         let loose = self.sheets.get(2 * self.sheet_quadrilaterals.len()..).unwrap_or_default();
         for &triangle in self.facet_triangles().iter().chain(loose).chain(&self.cells.triangles) {
             add(triangle, 1.0);

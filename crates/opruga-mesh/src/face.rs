@@ -6,11 +6,11 @@ use crate::outline::{Ring, triangles_between};
 /// A corner is straight if its triangle with its neighbours has less than this fraction of the area of the face.
 const STRAIGHT: f64 = 1e-12;
 
-/// A face is folded too far if its corners are farther from its plane than this fraction of its size: this is the value of a square folded along its
-/// diagonal by a right angle.
+/// A face is folded too far if its corners are farther from its plane than this fraction of its size. This is the value for a square that is folded
+/// along its diagonal by a right angle.
 const FOLDED: f64 = 0.25;
 
-/// If the lengths of diagonals differ by less than this fraction, the first is taken, so that rounding does not decide.
+/// If the lengths of the diagonals differ by less than this fraction, the first one is used, so that rounding does not decide.
 const AS_LONG: f64 = 1e-9;
 
 /// Reasons why a face cannot be cut into triangles.
@@ -36,8 +36,8 @@ pub struct CutFace {
 /// Cuts a face with at least three corners along diagonals inside it.
 ///
 /// Its plane is normal to the area vector ½Σ xᵢ×xⱼ and passes through the mean of the corners; it determines what is inside. A face of four corners
-/// is cut along the diagonal inside it; if both are inside, along the shorter one. Larger faces get the constrained Delaunay triangulation of their
-/// corners, which maximises the smallest angle.
+/// is cut along the diagonal that is inside it, or along the shorter one if both are inside. Larger faces get the constrained Delaunay triangulation
+/// of their corners, which maximises the smallest angle.
 ///
 /// # Errors
 /// [`FaceError::Crossing`], [`FaceError::Folded`].

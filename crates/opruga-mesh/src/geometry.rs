@@ -74,12 +74,12 @@ pub(crate) fn quadrilateral_area(corners: &[Point; 4]) -> f64 {
 
 /// The signed volume that closed facets enclose: area ½Σ(xᵢyⱼ − xⱼyᵢ) [m²] in the plane, volume ⅙ΣXₐ·(X_b×X_c) [m³] in space.
 ///
-/// Positive for counter-clockwise outlines and outward triangles. It is computed relative to the first node of the first facet, which keeps the
-/// digits of a small body far from the origin. For facets that are not closed the value has no meaning. Zero without facets. Shapes: `facets` F×D,
-/// `positions` N×D.
+/// The volume is positive for counter-clockwise outlines and outward triangles. It is computed relative to the first node of the first facet, so that
+/// a small body far from the origin keeps its digits. It has no meaning if facets are not closed, and is zero if there are none. Shapes: `facets`
+/// F×D, `positions` N×D.
 ///
 /// # Panics
-/// If a facet names a node beyond `positions`; [`crate::Mesh::validate`] finds these.
+/// If a facet names a node beyond `positions`; [`crate::Mesh::validate`] finds such facets.
 pub fn signed_volume<const D: usize>(facets: &[[u32; D]], positions: &[[f64; D]]) -> f64 {
     let Some(first) = facets.first() else {
         return 0.0;

@@ -11,9 +11,9 @@
 //! | hexahedron | 2 along each axis | 27 |
 //!
 //! its values are between the smallest and the largest coefficient, and the values at the vertices are coefficients. If all coefficients are
-//! positive, the cell is therefore nowhere inverted; a negative value proves that it is inverted somewhere. Otherwise the cell is bisected (de
-//! Casteljau), which brings the coefficients closer to the values: the gap falls with the square of the size. A piece without negative coefficients
-//! needs no further bisection. After [`MOST_PIECES`] the minimum of J is known to be between two bounds.
+//! positive, the cell is nowhere inverted. A negative value proves that it is inverted somewhere. Otherwise the cell is bisected (de Casteljau),
+//! which brings the coefficients closer to the values: the gap falls with the square of the size. A piece without negative coefficients needs no
+//! further bisection. After [`MOST_PIECES`] the minimum of J is known to be between two bounds.
 //!
 //! # Source
 //! A. Johnen, J.-F. Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements", Journal of Computational Physics 233 (2013).
@@ -21,11 +21,11 @@
 use crate::quadratic::{TETRAHEDRON_EDGES, TRIANGLE_SIDES};
 use std::collections::VecDeque;
 
-/// The maximum number of pieces of a cell that are examined. A quadratic cell with one tenth at a corner nearly flat takes about ten. If a cell takes
-/// more than this, its minimum of J is within about a thousandth of zero, relative to its maximum.
+/// The maximum number of pieces of a cell that are examined. A quadratic cell that is nearly degenerate in a tenth of its size at one corner takes
+/// about ten. If a cell takes more than this, its minimum of J is within about a thousandth of zero, relative to its maximum.
 const MOST_PIECES: usize = 512;
 
-/// The error of a coefficient in roundings of a position, in units of its derivative by the position: a sum of about ten products.
+/// The error of a coefficient, in units of the rounding error of a position times the derivative by that position: it is a sum of about ten products.
 const ROUNDINGS: f64 = 16.0;
 
 /// The minimum of det ∂x/∂ξ over a cell [m², m³]. This is twice the area of a straight triangle, six times the volume of a straight tetrahedron, or
@@ -38,7 +38,8 @@ pub struct LeastJacobian {
     pub found: f64,
     /// The position of that value: barycentric coordinates for triangles and tetrahedra, coordinates from 0 to 1 along the axes for boxes.
     pub at: [f64; 4],
-    /// The error by rounding of the positions. At a corner whose neighbours all lie on one obstacle, the value is only rounding.
+    /// The error due to rounding of the positions. At a corner whose neighbours all lie on one obstacle, the value consists of
+    /// rounding errors.
     pub rounding: f64,
 }
 
@@ -47,7 +48,7 @@ impl LeastJacobian {
     pub fn is_positive(&self) -> bool {
         self.bound > self.rounding
     }
-    /// Whether the cell is certainly nowhere inverted; it may be flat at a point.
+    /// Whether the cell is certainly nowhere inverted; it may be degenerate at a point.
     pub fn is_upright(&self) -> bool {
         self.bound >= -self.rounding
     }
@@ -125,14 +126,15 @@ impl LeastJacobian {
 struct Net {
     basis: Basis,
     coefficients: Vec<f64>,
-    /// The corners of the piece in coordinates of the cell: all of a simplex, the lowest and the highest of a box.
+    /// The corners of the piece in coordinates of the cell: all corners of a simplex, or the lowest and the highest corner of a
+    /// box.
     corners: Vec<[f64; 4]>,
 }
 
 /// The coefficients and their order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Basis {
-    /// For a simplex: indices by corner that add up to the degree, in the order of [`indices`].
+    /// For a simplex: the indices, one for each corner, which add up to the degree, in the order of [`indices`].
     Simplex { corners: usize, degree: usize },
     /// For a box: the first axis varies fastest.
     Box { axes: usize, degree: usize },
@@ -317,7 +319,7 @@ impl Net {
         }
     }
 
-    /// The value at a point of the whole cell; only for the net of a whole cell.
+    /// The value at a point of the cell. The net must be that of a whole cell.
     fn value(&self, at: [f64; 4]) -> f64 {
         match self.basis {
             Basis::Simplex { corners, degree } => {

@@ -1,7 +1,7 @@
 //! The body-centred cubic lattice: corners and centres of cubes, and the congruent tetrahedra between them.
 //!
-//! Its tetrahedra have two long edges of length a (between centres of neighbouring cubes, and along cubes), opposite each other, and four short edges
-//! of √3/2·a between centres and corners.
+//! Each tetrahedron has two long edges of length a, opposite each other, and four short edges of length √3/2·a. One long edge joins the centres of
+//! neighbouring cubes, and the other is an edge of both cubes. Short edges join centres and corners.
 
 use crate::geometry::tetrahedron_volume;
 use crate::{MAXIMUM_NODES, Mesh, MeshError, Quantity};
@@ -12,7 +12,7 @@ pub(crate) type Key = [i32; 3];
 /// The maximum number of cubes in the box of a surface, each of which is examined.
 const MOST_CUBES: f64 = 8_388_608.0;
 
-/// Cubes around the box of a surface, centred, with at least one cube beyond it on every side.
+/// Cubes around the box of a surface, centred on it, with at least one cube beyond it on every side.
 pub(crate) struct Lattice {
     /// Cubes along each axis.
     pub(crate) counts: [i32; 3],

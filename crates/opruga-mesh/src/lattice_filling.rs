@@ -21,10 +21,10 @@ impl Mesh<3> {
 
     /// The inside of this closed surface as a body of equal tetrahedra, which carries the surface as its [`Skin`].
     ///
-    /// The nodes are the body-centred cubic lattice of cubes of side `spacing` [m]: corners and centres. Its tetrahedra are congruent; they have two
-    /// edges of length a (between centres, and along cubes) and four of √3/2·a. A tetrahedron is kept if its centre is inside the surface or if it
-    /// contains a node of the surface. Tetrahedra around edges at which the body would otherwise only touch itself are kept too. The body therefore
-    /// extends slightly beyond the surface; the skin shows the surface itself.
+    /// The nodes are the body-centred cubic lattice of cubes of side `spacing` [m]: corners and centres. Its tetrahedra are congruent; each has two
+    /// edges of length a (one between centres, and one along cubes) and four of √3/2·a. A tetrahedron is kept if its centre is inside the surface or
+    /// if it contains a node of the surface. Tetrahedra around edges at which the body would otherwise only touch itself are kept too. The body
+    /// therefore extends slightly beyond the surface; the skin shows the surface itself.
     ///
     /// # Errors
     /// Those of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`], also for a surface whose
@@ -58,7 +58,7 @@ impl Mesh<3> {
         }
         let (keys, mut mesh) = loop {
             let (keys, mesh) = body(&kept, &lattice)?;
-            // If steps of the lattice touch along an edge, the tetrahedra around it close the gap.
+            // If steps of the lattice touch only along an edge, the tetrahedra around that edge close the gap.
             let crowded = crowded_edges(&mesh.facets);
             if crowded.is_empty() {
                 break (keys, mesh);
@@ -126,7 +126,7 @@ fn crowded_edges(facets: &[[u32; 3]]) -> Vec<[u32; 2]> {
 /// All tetrahedra of the lattice that contain both ends of an edge.
 fn around_edge(edge: [Key; 2], lattice: &Lattice) -> Vec<[Key; 4]> {
     let mut found = Vec::new();
-    // Centres of cubes are odd; the relevant ones are at most two steps away.
+    // Coordinates of centres are odd; the relevant centres are at most two steps away.
     let centers_around = |x: i32| (x - 3..=x + 3).filter(|c| c.rem_euclid(2) == 1);
     for z in centers_around(edge[0][2]) {
         for y in centers_around(edge[0][1]) {
@@ -143,7 +143,8 @@ fn around_edge(edge: [Key; 2], lattice: &Lattice) -> Vec<[Key; 4]> {
     found
 }
 
-/// The tetrahedron of the body that contains a point; if there is none, the one around it that the point is least outside of.
+/// The tetrahedron of the body that contains a point; if there is none, the nearby tetrahedron that the point is least outside
+/// of.
 fn kept_holder(point: [f64; 3], kept: &BTreeMap<[Key; 4], ()>, lattice: &Lattice) -> [Key; 4] {
     let ideal = holder(point, lattice);
     if kept.contains_key(&ideal) {

@@ -19,7 +19,7 @@
 //! Orientation: a plane outline runs counter-clockwise (interior to its left); the facets of a closed surface are counter-clockwise as seen from
 //! outside. Both make [`signed_volume`] positive. Holes have the opposite orientation.
 //!
-//! Results have the same bits on every platform: sines come from `libm`, and every order is sorted.
+//! Results have the same bits on every platform: sines come from `libm`, and all orders result from sorting.
 
 // Units are in brackets, [m], which rustdoc interprets as links.
 #![allow(rustdoc::broken_intra_doc_links)]

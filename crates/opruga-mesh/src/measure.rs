@@ -39,7 +39,7 @@ pub enum Share {
 impl<const D: usize> Mesh<D> {
     /// Length, area or volume of the body: that of its cells if it is filled, otherwise that of its facets and sheets, otherwise that of its wires.
     ///
-    /// In the plane facets and wires have lengths, which add up. Facets that bound cells do not count. An empty mesh has length 0.
+    /// In the plane, facets and wires have lengths, which are added. Facets that bound cells do not count. An empty mesh has length 0.
     ///
     /// # Errors
     /// Those of [`Mesh::validate`]; [`MeshError::MixedMeasures`] if elements of different dimensions share the mesh.
@@ -49,7 +49,8 @@ impl<const D: usize> Mesh<D> {
         Ok(kind(total))
     }
 
-    /// Each node's share of the measure [m, m² or m³], one value per node; times the density it is the lumped mass. The shares add up to the total.
+    /// Each node's share of the measure [m, m² or m³], one value per node. Multiplied by the density, it is the lumped mass. The shares add up to the
+    /// total.
     ///
     /// # Errors
     /// Those of [`Mesh::measure`].
@@ -104,7 +105,8 @@ impl<const D: usize> Mesh<D> {
     fn visit_measures(&self, mut visit: impl FnMut(Element, &[u32], f64)) -> Result<fn(f64) -> Measure, MeshError> {
         self.validate()?;
 
-        // The elements of highest dimension have the mass; those of lower dimension are a boundary, or are not allowed.
+        // The elements of the highest dimension have the mass. Elements of a lower dimension are a boundary, or are not
+        // allowed.
         let rank = |element: Element| match element {
             Element::Facet if self.cells.is_empty() => Some(D - 1),
             Element::Facet | Element::SheetQuadrilateral | Element::Edge | Element::Group => None,

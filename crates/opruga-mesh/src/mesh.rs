@@ -217,7 +217,8 @@ impl<const D: usize> Mesh<D> {
         Ok(())
     }
 
-    /// Vertices − edges + facets of the boundary: 2 for each sphere, 0 for each torus; for outlines vertices − edges, 0 for each closed loop.
+    /// The number of vertices − edges + facets of the boundary, which is 2 for each sphere and 0 for each torus; for outlines, the number of vertices
+    /// − edges, which is 0 for each closed loop.
     ///
     /// Only nodes of facets are counted.
     pub fn euler_characteristic(&self) -> i64 {

@@ -45,7 +45,7 @@ impl Nearest {
     }
 }
 
-/// The point of a triangle nearest to a point, found by the regions of its plane, corners and sides first.
+/// The point of a triangle nearest to a point, found by testing the regions of its corners and sides before its interior.
 ///
 /// Source: C. Ericson, Real-Time Collision Detection (2005), section 5.1.5.
 fn nearest_on(&[a, b, c]: &[[f64; 3]; 3], p: [f64; 3]) -> [f64; 3] {

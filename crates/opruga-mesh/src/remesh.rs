@@ -50,14 +50,14 @@ struct Work {
     fans: Vec<Vec<u32>>,
     /// Edges that are kept; their ends stay on them.
     sharp: BTreeMap<Edge, ()>,
-    /// Nodes that are neither moved, added nor removed for now, ascending, because the surface crossed itself there.
+    /// Nodes that are temporarily neither moved, added nor removed, because the surface crossed itself there; ascending.
     locked: Vec<u32>,
 }
 
 impl Mesh<3> {
-    /// This closed surface with edges of about the given length [m]: between 0.6 and 1.45 of it for nearly all, if the shape permits. Edges between
-    /// triangles that meet at more than 40° are kept, and their corners stay in place. A surface that does not cross itself stays so: where it would,
-    /// its triangles stay smaller.
+    /// This closed surface with edges of about the given length [m]; if the shape permits, nearly all of them have 0.6 to 1.45 times this length.
+    /// Edges between triangles that meet at more than 40° are kept, and their corners do not move. A surface that does not cross itself does not
+    /// cross itself afterwards either; its triangles remain smaller at points where it otherwise would.
     ///
     /// Nodes are renumbered. A group keeps its old nodes; a new node belongs to it if both ends of the edge that it divides do.
     ///
@@ -308,7 +308,8 @@ impl Work {
         if around.iter().chain(&other).filter(|node| **node != kept && **node != gone).any(far) {
             return false;
         }
-        // A crease must not bend: its node may be removed if the others are on its line.
+        // A crease must not change its shape: a node of it may be removed only if the neighbours on the crease are on one line
+        // with it.
         if self.sharpness(gone) == 2 {
             let along: Vec<u32> =
                 other.iter().copied().filter(|node| self.sharp.contains_key(&edge(gone, *node))).collect();
@@ -372,7 +373,7 @@ impl Work {
             let ([Some(n), Some(m)], [Some(p), Some(q)]) = (normals(old), normals(new)) else { continue };
             let least =
                 [dot(p, n), dot(p, m), dot(q, n), dot(q, m)].into_iter().fold(1.0, |l, x| if x < l { x } else { l });
-            // The normals of thin triangles change by rounding, and such triangles are no improvement.
+            // The normals of thin triangles are dominated by rounding, and such triangles are no improvement.
             if least < SHARP || self.smallest_height(new) < 0.5 * self.smallest_height(old) {
                 continue;
             }
@@ -382,7 +383,7 @@ impl Work {
         }
     }
 
-    /// The smaller ratio of twice the area of two triangles to their longest side squared.
+    /// The smaller value, for two triangles, of the ratio of twice the area to the square of the longest side.
     fn smallest_height(&self, triangles: [[u32; 3]; 2]) -> f64 {
         let quality = |corners: [u32; 3]| {
             let [a, b, c] = corners;

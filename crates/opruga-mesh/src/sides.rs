@@ -140,7 +140,7 @@ impl<const D: usize> Mesh<D> {
     /// the mesh select nothing.
     pub fn boundary_sides(&self, selected: &[u32]) -> Vec<Vec<u32>> {
         let chosen: BTreeSet<u32> = selected.iter().copied().collect();
-        // The facets of which a side consists: from ascending nodes to numbers.
+        // The facets of which a side consists: a map from ascending nodes to numbers.
         let mut left = BTreeMap::new();
         for (number, facet) in self.facets.iter().enumerate() {
             if facet.iter().all(|node| chosen.contains(node)) {
@@ -186,8 +186,8 @@ impl<const D: usize> Mesh<D> {
     /// The shares ∫ Nₐ dA of nodes in the sides whose nodes are all selected, at rest: lengths [m] in the plane, areas [m²] in space; Nₐ are the
     /// shape functions of the cells.
     ///
-    /// A uniform traction times the shares does the same work on every displacement of the cells as on the body, as long as sides are flat. Nodes
-    /// without a share are omitted. Nodes beyond the mesh select nothing.
+    /// A uniform traction multiplied by the shares does the same work as the traction on the sides, for every displacement of the cells, if sides are
+    /// flat. Nodes without a share are omitted. Nodes beyond the mesh select nothing.
     pub fn boundary_shares(&self, selected: &[u32]) -> BTreeMap<u32, f64> {
         let mut shares = BTreeMap::new();
         for side in self.boundary_sides(selected) {

@@ -108,7 +108,7 @@ fn pieces([a, b, c]: [u32; 3], middle: &impl Fn(u32, u32) -> Option<u32>) -> Vec
         (Some(m), None, None) => vec![[a, m, c], [m, b, c]],
         (Some(m), Some(n), None) => vec![[m, b, n], [a, m, n], [a, n, c]],
         (Some(m), Some(n), Some(o)) => vec![[a, m, o], [m, b, n], [o, n, c], [m, n, o]],
-        // The same, starting from another corner.
+        // The same case, starting from another corner.
         (None, ..) | (Some(_), None, Some(_)) => pieces([b, c, a], middle),
     }
 }
@@ -168,7 +168,7 @@ impl<'m> Inside<'m> {
             let mut within = false;
             for (p, q) in [(a, b), (b, c), (c, a)] {
                 if (p[1] > point[1]) != (q[1] > point[1]) {
-                    // The same direction for both triangles at an edge, so that they agree to the last bit.
+                    // The edge has the same direction for both of its triangles, so that they agree to the last bit.
                     let (p, q) = if p[1] < q[1] { (p, q) } else { (q, p) };
                     let x = p[0] + (point[1] - p[1]) / (q[1] - p[1]) * (q[0] - p[0]);
                     within ^= x > point[0];

@@ -49,7 +49,7 @@ impl Rows {
         } else if row <= 2 * n {
             self.first(n) + 5 * n * (row - n)
         } else {
-            // From the far end: the pole and 5·1 + … + 5(3n − row).
+            // Counted from the far end: the pole and 5·1 + … + 5(3n − row).
             let left = 3 * n - row;
             10 * n * n + 1 - 5 * left * (left + 1) / 2
         }

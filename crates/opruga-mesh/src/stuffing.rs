@@ -12,14 +12,14 @@ pub const SMALLEST_DIHEDRAL_ANGLE: f64 = 10.7;
 /// The largest angle between two faces of the tetrahedra of [`Mesh::tetrahedra_filling`] [°].
 pub const LARGEST_DIHEDRAL_ANGLE: f64 = 164.8;
 
-/// A lattice point moves to the point at which the surface cuts one of its edges, if this is closer than this fraction of a long edge, or of a short
-/// one.
+/// A lattice point moves to the point at which the surface cuts one of its edges, if that point is closer than this fraction of a long edge, or of a
+/// short edge.
 ///
 /// Of the pairs on a grid of 0.003 and 0.005, this one gives the largest minimum angle, 10.76°, with a maximum angle of 164.38°. The test below
 /// measures both over all stencils, with cuts at and around these limits.
 const WARP_LIMITS: [f64; 2] = [0.284, 0.400];
 
-/// The number of halvings that locate the intersection of an edge and the surface: to 10⁻¹² of the edge.
+/// The number of halvings that locate the intersection of an edge and the surface, to 10⁻¹² of the edge.
 const HALVINGS: u32 = 40;
 
 /// The side of the surface on which a lattice point is.
@@ -30,8 +30,8 @@ enum Side {
     Inside,
 }
 
-/// A corner of a tetrahedron: a lattice point, or a point at which the surface cuts an edge. It is given by the sum of both ends of the edge, which
-/// is unique.
+/// A corner of a tetrahedron: a lattice point, or a point at which the surface cuts an edge. It is identified by the sum of both ends of the edge,
+/// which is unique.
 type Corner = [i32; 3];
 
 impl Mesh<3> {
@@ -390,7 +390,7 @@ fn prism(ends: [[Corner; 3]; 2], forward: [bool; 3], out: &mut Vec<[Corner; 4]>)
             let touches_next = forward[k] == (end == 0);
             let touches_last = forward[(k + 2) % 3] != (end == 0);
             if touches_next && touches_last {
-                // This corner with the other end, and with both halves of the opposite side.
+                // Tetrahedra of this corner with the other end, and with both halves of the opposite side.
                 let (next, last) = ((k + 1) % 3, (k + 2) % 3);
                 out.push([own[k], other[0], other[1], other[2]]);
                 if forward[next] == (end == 0) {

@@ -29,7 +29,7 @@ pub struct TouchingSurface<const D: usize> {
     pub nodes: Vec<u32>,
     /// The number of nodes that only carry points.
     pub carrying: usize,
-    /// Points whose positions follow from nodes, which are given by their numbers as points.
+    /// Points whose positions follow from those of nodes. The nodes are given by their numbers as points.
     pub carried: Vec<Carrier>,
     /// The corners of every facet, as points: first of closed boundaries, then of open surfaces and, in the plane, of wires.
     pub facets: Vec<[u32; D]>,
@@ -88,7 +88,7 @@ impl<const D: usize> TouchingSurface<D> {
 impl<const D: usize> Mesh<D> {
     /// The surface with which this body touches others: boundary, open surfaces and wires; without any of these, its nodes as points.
     ///
-    /// With `skin`, a body that carries a skin touches with that instead.
+    /// If `skin` is set, a body that carries a skin touches with that skin instead.
     pub fn touching_surface(&self, skin: bool) -> TouchingSurface<D> {
         let first = self.positions.len() as u32;
         let mut out = TouchingSurface::default();
@@ -132,7 +132,7 @@ impl<const D: usize> TouchingSurface<D> {
     /// Adds the facets of a body, with those of hexahedra as four triangles each.
     fn take_boundary(&mut self, mesh: &Mesh<D>, first: u32) {
         let quadrilaterals = if D == 3 { mesh.outer_quadrilaterals() } else { Vec::new() };
-        // The quadrilateral of any three of its corners.
+        // A map from any three corners to the quadrilateral.
         let mut corners: Vec<([u32; 3], u32)> = Vec::with_capacity(4 * quadrilaterals.len());
         for (number, [a, b, c, d]) in quadrilaterals.iter().copied().enumerate() {
             for mut three in [[a, b, c], [a, b, d], [a, c, d], [b, c, d]] {

@@ -82,7 +82,7 @@ impl<const D: usize> Mesh<D> {
 }
 
 impl Cells {
-    /// Reverses a cell: two corners change places, and with them the nodes between.
+    /// Reverses a cell: swaps two corners, and the nodes between corners accordingly.
     pub(crate) fn turn(&mut self, element: Element, index: usize) {
         match element {
             Element::Triangle => self.triangles[index].swap(0, 1),

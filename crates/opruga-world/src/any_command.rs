@@ -1,4 +1,5 @@
-//! Commands without a dimension in their type. They are written as in space; a world in the plane ignores the third numbers.
+//! Commands without a dimension in their type. They have the form of commands in space; a world in the plane ignores the third
+//! numbers.
 
 use crate::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use crate::bytes::{Reader, Writer};

@@ -131,7 +131,7 @@ pub trait AnyBody: core::fmt::Debug {
     fn facets(&self) -> &[u32];
     /// The triangles of an open surface.
     fn sheets(&self) -> &[[u32; 3]];
-    /// The lines that are drawn for a body with a surface.
+    /// The wires of the body. They are drawn as lines even if the body has a surface.
     fn wires(&self) -> &[[u32; 2]];
     /// The filled interior.
     fn cells(&self) -> &Cells;

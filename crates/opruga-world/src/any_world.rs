@@ -67,7 +67,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// # Errors
     /// As [`World::act`]; also if the command adds a body.
     fn act(&mut self, command: &CommandBlueprint<3>) -> Result<usize, WorldError>;
-    /// Gives the last command of a scene that adds a body and has begun by now; returns its number.
+    /// Gives the last command of a scene that adds a body and has already begun; returns its number.
     ///
     /// # Errors
     /// As [`World::act`]; also if the scene has no such command or has another dimension.
@@ -179,7 +179,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn modes(&self, body: usize, count: usize) -> Result<Vec<Mode<3>>, WorldError>;
     /// Warnings so far, with counts.
     fn warnings(&self) -> Vec<Warning>;
-    /// Warnings so far, and warnings about the shapes of bodies in the present state.
+    /// The warnings so far, and warnings about the shapes of bodies in the present state.
     fn warnings_at_the_end(&self) -> Vec<Warning>;
     /// The kinds of integrators in use.
     fn integrators(&self) -> Vec<&'static str>;

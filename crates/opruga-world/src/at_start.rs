@@ -1,4 +1,4 @@
-//! The parts of a scene that have changed since the start, as they were then.
+//! The parts of a scene that have changed since the start, with their values at the start.
 
 use crate::blueprint::{Surroundings, Time};
 use opruga_core::spec::Values;

@@ -196,7 +196,8 @@ impl<const D: usize> Search<'_, '_, D> {
             system.pushes = Some(pushes);
             step.close(system, iterations, converged)?;
             refuse_inverted_cells(system)?;
-            // Obstacles put nodes onto their surface after the search; bodies may not pass through one another there either.
+            // After the search, obstacles move nodes to their surface; bodies must not pass through one another in this move
+            // either.
             for (p, of_point) in coordinates.iter().enumerate() {
                 if let Some((_, at)) = of_point.filter(|(of, _)| *of == body) {
                     touching.after[0][p] = system.state.x.at((at - first) / D);

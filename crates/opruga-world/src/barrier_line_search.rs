@@ -6,8 +6,8 @@ use crate::barrier_search::{Opened, Refused, Search};
 use opruga_collide::{Touching, Trouble};
 use opruga_math::Lane;
 
-/// The largest fraction of the slope that may remain after a correction. Without this limit corrections alternate around the end of sticking, because
-/// the energies differ there by less than their rounding errors (`what_sticks_on_a_body_does_not_creep`).
+/// The largest fraction of the slope that may remain after a correction. Without this limit, corrections alternate between sticking and sliding,
+/// because the energies differ by less than their rounding errors (`what_sticks_on_a_body_does_not_creep`).
 const SLOPE_LEFT: f64 = 0.8;
 
 /// If the slope at the end of a correction is more than this fraction of the slope at its beginning, the next correction may be twice as long, up to
@@ -80,7 +80,7 @@ impl<const D: usize> Search<'_, '_, D> {
                 let gradient = self.gradient();
                 now = self.slope(&gradient);
             }
-            // If the step is small, the difference of the energies is lost in rounding.
+            // If the step is small, the difference between the energies is lost in rounding.
             let risen = match (before, self.energy().filter(|_| allowed)) {
                 (Some([before, size]), Some([after, other])) => {
                     let rounding = ROUNDING * (size + other + (part * given).abs()) + rounding;
@@ -142,7 +142,7 @@ impl<const D: usize> Search<'_, '_, D> {
         for _ in 0..MOST_HALVINGS {
             match self.barrier.look(surface, laws, [&self.x, &end], *most) {
                 Ok(()) => return Ok(part * self.barrier.free_part(surface, laws, [&self.x, &end])),
-                // Paths across many bodies have more pairs than the limit allows; half of the paths may stay below it.
+                // Paths across many bodies have more pairs than the limit allows; half the paths may have few enough.
                 Err(Trouble::TooMany { .. }) => part *= 0.5,
                 Err(trouble) => return Err(trouble.into()),
             }

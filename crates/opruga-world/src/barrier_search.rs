@@ -28,10 +28,10 @@ const LEFT: f64 = 1e-2;
 /// The smallest tolerance. Below it the residuals of stiff bodies (1e7 Pa) are rounding errors, and directions computed from them are useless.
 const LEAST_LEFT: f64 = 1e-9;
 
-/// The maximum number of products of conjugate gradients: every pair under a large force takes about one.
+/// The maximum number of products of conjugate gradients. Every pair under a large force takes about one.
 const MOST_PRODUCTS: u32 = 2000;
 
-/// The maximum number of iterations of a search with a budget, including those that do not count against the budget: as many as exact steps have
+/// The maximum number of iterations of a search with a budget, including those that do not count against the budget. It is that of exact steps
 /// without friction.
 const MOST_IN_BUDGET: u32 = 100;
 
@@ -136,7 +136,7 @@ struct Residual {
 /// The points of a pair and their weights.
 type Weighted<'a> = (&'a [u32; 4], &'a [f64; 4]);
 
-/// The factors of all bodies, one beside the other.
+/// The factors of all bodies, side by side.
 struct Factors<'a, const D: usize>(&'a [Opened<D>]);
 
 impl<const D: usize> Preconditioner for Factors<'_, D> {
@@ -288,7 +288,7 @@ impl<const D: usize> Search<'_, '_, D> {
             // the latter at once.
             let mut direction = None;
             for exact in [true, false].into_iter().skip(usize::from(self.has_budget)) {
-                // The compliance of the points was computed from the matrices at the start, so these are already known.
+                // The matrices at the start are already known, because the compliance of the points was computed from them.
                 if !self.has_budget || self.iterations > 1 || changed {
                     self.factor(exact)?;
                 }
@@ -462,7 +462,8 @@ impl<const D: usize> Search<'_, '_, D> {
         let by = Factors(&self.opened);
         let ended = conjugate_gradients(multiply, &by, right, &mut out, tolerance, MOST_PRODUCTS, &mut directions);
         self.directions = directions;
-        // Near the solution the directions are rounding errors, but the result so far may still be a direction of descent.
+        // Near the solution the directions consist of rounding errors, but the result so far may still be a direction of
+        // descent.
         let leads_down = ended.is_ok() || dot(right, &out) > 0.0;
         (leads_down && out.iter().all(|x| x.is_finite())).then_some(out)
     }

@@ -378,7 +378,7 @@ pub struct ProbeBlueprint<const D: usize> {
     pub name: String,
     /// The body.
     pub body: usize,
-    /// Which nodes. The columns contain the mean over them (the sum, for reactions).
+    /// Selects the nodes. The columns contain the mean over them (for reactions, the sum).
     pub select: Selector<D>,
     /// The recorded quantities: `position`, `velocity`, `reaction`, `contact`, `stress`, `volume_ratio`.
     pub record: Vec<Recorded>,
@@ -425,7 +425,7 @@ impl Recorded {
         }
     }
 
-    /// Whether it exists only for cells with a stress.
+    /// Whether this quantity exists only if cells have a stress.
     pub fn is_of_cells(self) -> bool {
         matches!(self, Recorded::Stress | Recorded::VolumeRatio)
     }

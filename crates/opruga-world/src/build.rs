@@ -444,7 +444,7 @@ pub(crate) fn build_colliders<const D: usize>(
     Ok(Some(Arc::new(Colliders::<D>::build(&values).map_err(refuse)?)))
 }
 
-/// An integrator from its parameters; `part` says whose it is.
+/// Builds an integrator from its parameters; `part` says to which part of the scene it belongs.
 pub(crate) fn build_integrator<const D: usize>(
     registry: &Registry<D>,
     values: &Values,

@@ -103,7 +103,7 @@ impl Writer<'_> {
             }
         }
     }
-    /// The vectors of the nodes of one body. Memory is reserved once, because this is most of a snapshot.
+    /// The vectors of the nodes of one body. Memory is reserved once, because they make up most of a snapshot.
     pub(crate) fn columns<const D: usize>(&mut self, columns: &Columns<D>, system: &System<D>, lane: usize) {
         self.count(system.nodes as u64);
         let from = self.0.len();
@@ -203,7 +203,8 @@ impl Reader<'_> {
         }
         Ok(history)
     }
-    /// The history in a snapshot of version 8 if its integrator kept nothing. Other histories contained numbers without names.
+    /// Reads the history in a snapshot of version 8, if the integrator kept nothing. Other histories of that version contained
+    /// numbers without names.
     pub(crate) fn empty_history<const D: usize>(&mut self) -> Result<Option<BodyHistory<D>>, WorldError> {
         let owner = self.text()?;
         let (columns, numbers) = (self.count()?, self.count()?);

@@ -1,4 +1,4 @@
-//! The parts of the state of a body that are kept when its island is rebuilt.
+//! The part of the state of a body that is kept when its island is rebuilt.
 
 use opruga_core::history::Content;
 use opruga_core::system::System;

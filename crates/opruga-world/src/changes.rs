@@ -1,6 +1,6 @@
 //! Parameters of a scene that change during a run. Their values at the start are kept. A snapshot contains the differences from these values, so a
-//! snapshot of a changed scene can be restored in a world of the original scene, and an earlier snapshot in a changed world. The memory for this is
-//! at most that of the parameters of the scene, however often they are set.
+//! snapshot of a changed scene can be restored in a world of the original scene, and an earlier snapshot in a changed world. This takes at most as
+//! much memory as the parameters of the scene, however often they are set.
 
 use crate::at_start::AtStart;
 use crate::blueprint::{Surroundings, Time};
@@ -199,7 +199,7 @@ impl<const D: usize> World<D> {
         let contact = self.blueprint.contact.as_mut().ok_or_else(|| setting.refuse(PathFault::NoContact {}))?;
         let before = contact.values.clone();
         setting.write::<D>(&mut contact.values, CONTACT.spec)?;
-        // They are rebuilt with the new laws.
+        // The clusters are rebuilt with the new laws.
         self.clusters = None;
         Ok((Before::Contact(before), Touched::Bodies(Vec::new())))
     }
@@ -301,7 +301,7 @@ impl<const D: usize> World<D> {
             Before::Time(time) => self.blueprint.time = time,
             Before::Collider(number, values) => {
                 self.blueprint.colliders[number].values = values;
-                // They were built from the same values before, so this succeeds.
+                // The colliders were built from the same values before, so this succeeds.
                 if let Ok(colliders) = build_colliders(&self.blueprint) {
                     self.colliders = colliders;
                 }

@@ -38,7 +38,7 @@ pub(crate) enum Progress {
     Waiting,
     /// Stepped; its islands hold the outcome.
     Done,
-    /// Stopped by an error, in the numbers of the scene, at a time [s].
+    /// Stopped by an error at a time [s]; bodies have the numbers of the scene.
     Stuck(Trouble, f64),
 }
 
@@ -92,8 +92,8 @@ impl<const D: usize> Clusters<D> {
         self.groups.iter_mut().for_each(|group| group.progress = Progress::Waiting);
     }
 
-    /// Checks where the bodies have moved. If bodies have come close to bodies of other groups, these groups are merged and still have to be stepped
-    /// through the frame. Returns whether there are any.
+    /// Checks where the bodies have moved. If bodies have come close to bodies of other groups, these groups are merged and have to be stepped
+    /// through the frame again. Returns whether there are any.
     pub(crate) fn merge(&mut self, blueprint: &Blueprint<D>, islands: &[Island<D>], plan: &FramePlan<'_, D>) -> bool {
         let Clusters { scene, partition, boxes, order, .. } = self;
         for (number, (island, lane)) in scene.seats.iter().enumerate() {

@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, PoisonError};
 
-/// The default largest force of a pull is that of a spring stretched by this many sizes of the body.
+/// The default largest force of a pull is that of the spring when it is stretched by this multiple of the size of the body.
 const FARTHEST_PULL: f64 = 10.0;
 
 impl<const D: usize> Action<D> {
@@ -96,7 +96,7 @@ impl<const D: usize> World<D> {
         crate::validity::given(&command)?;
         self.begin_what_is_due()?;
         self.write_down(|| Input::Act);
-        // The position in which a scene file would have it: in order of time, after the commands that begin at the same time.
+        // The position that it would have in a scene file: in order of time, after the commands that begin at the same time.
         let number = self.running.iter().rposition(|r| !r.given && r.command.at <= at).map_or(0, |last| last + 1);
         let generation = self.slots.next_of_act();
         self.running.insert(number, Running { acted: true, generation, ..Running::waiting(command) });
@@ -149,8 +149,8 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Begins and ends the commands that are due now, without waiting for the coming frame, which does not repeat them. This shows the state at a
-    /// moment to which the world was rewound.
+    /// Begins and ends the commands that are due now, without waiting for the coming frame, which does not repeat them. Call it to see the effect of
+    /// commands at a moment to which the world was rewound.
     ///
     /// # Errors
     /// [`WorldError`] of the first command that is refused; the others begin nevertheless.

@@ -10,7 +10,8 @@ use crate::island::Island;
 use crate::meeting::Meeting;
 use crate::path_faults::SnapshotFault;
 
-/// The impulses of a pair along its normal and across it [N s]; with a barrier, the friction force of its multiplier [N].
+/// The impulses of a pair along its normal and perpendicular to it [N s]; with a barrier, the friction force of its multiplier
+/// [N].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Kept<const D: usize> {
     pub(crate) pair: PairKey,
@@ -177,7 +178,7 @@ impl<const D: usize> Meeting<D> {
             let id = self.touching.id_of([kind, number(first[0])?, first[1], other, second[1]])?;
             Some((id, kept.along, kept.across))
         };
-        // In the order of the pairs, which is the order of their numbers.
+        // The impulses are stored in the order of the pairs, which is that of their numbers.
         let firsts = self.bodies.iter().map(|body| *body as u32);
         let firsts = firsts.chain(self.cluster.outlines.iter().map(|outline| OBSTACLE | outline));
         let of_body = |kind: u32, body: u32| {

@@ -24,8 +24,8 @@ pub struct Contact<const D: usize> {
     pub position: [f64; D],
     /// The mean of its normals, from the second body to the first, of length 1; zero if they cancel. For a contact that ended, its last normal.
     pub normal: [f64; D],
-    /// The impulse on the first body in the frame [N s]; divided by the length of the frame it is the mean force. Zero for a contact that ended, and
-    /// for a body with itself, where the impulses cancel.
+    /// The impulse on the first body in the frame [N s]; divided by the length of the frame, it is the mean force. Zero for a contact that ended, and
+    /// for a body with itself, because the impulses cancel.
     pub impulse: [f64; D],
     /// Σ λₙ over all its points and substeps [N s]: how hard the surfaces were pressed together. Zero for a contact that ended.
     pub pressed: f64,

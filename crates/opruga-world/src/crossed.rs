@@ -11,17 +11,17 @@ use opruga_mesh::{Crossings, Mesh, crossing_edges, winding_number};
 pub struct Crossed {
     /// The bodies, by their index in the scene.
     pub bodies: [usize; 2],
-    /// A facet of each, in the order of the surface that touches: boundary or skin, open surfaces, wires. None if one body lies inside the other
-    /// without crossing it.
+    /// A facet of each surface, numbered in this order: boundary or skin, open surfaces, wires. None if one body lies inside the other without
+    /// crossing it.
     pub facets: Option<[u32; 2]>,
 }
 
 /// A body with points inside another body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
-    /// The body whose points they are, and the body that contains them, by their index in the scene.
+    /// The body to which the points belong, and the body that contains them, by their index in the scene.
     pub bodies: [usize; 2],
-    /// The fraction of the points of its surface.
+    /// The fraction of the points of its surface that are inside.
     pub share: f64,
 }
 

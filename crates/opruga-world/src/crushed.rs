@@ -9,11 +9,11 @@ use opruga_mesh::Measure;
 /// The code of the warning.
 const CODE: &str = "contact.no_room";
 
-/// The smallest depth of a node inside an obstacle, in sizes of its body, at which the obstacle no longer holds it: implicit integrators allow a
-/// small penetration.
+/// The depth of a node inside an obstacle, relative to the size of its body, from which on the obstacle no longer holds it. Implicit integrators
+/// allow a small penetration.
 const DEEP: f64 = 1e-3;
 
-/// Obstacles whose outer normals are opposite to within this leave no space between them where they touch: −cos of the angle.
+/// Two obstacles that touch leave no space between them if −cos of the angle between their outer normals is above this.
 const OPPOSITE: f64 = 0.999;
 
 /// A step so short that obstacles hardly move in it [s].

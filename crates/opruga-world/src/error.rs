@@ -80,9 +80,9 @@ messages! {
         #[allowed("h <= {} s (its fastest motion: {} rad/s{})", number(*limit), number(*omega), damped(*damping))]
         #[hint("{}", remedy(*substeps))]
         UnstableStep { integrator: &'static str, body: String, h: f64, limit: f64, omega: f64, damping: f64, substeps: u32 },
-        /// The motion left the finite numbers or the range in which positions keep their digits. Contains the time at the start of the substep \[s\],
-        /// the time of the last good frame \[s\], and, if the node left that range, the distance from the origin up to which positions keep their
-        /// digits \[m\].
+        /// A number of the motion is not finite, or a position is outside the range in which positions keep their digits. Contains the time at the
+        /// start of the substep \[s\], the time of the last good frame \[s\], and, if the node left that range, the distance from the origin up to
+        /// which positions keep their digits \[m\].
         "run.diverged"
         #[error("body `{body}` diverged: node {node} left {} in the substep from t = {} s; the world is at its last good frame, t = {} s", what_was_left(*range), number(*time), number(*last))]
         #[hint("more substeps may help{}", falls(*range))]
@@ -95,7 +95,7 @@ messages! {
         "run.not_converged" #[error("body `{body}`: {cause}; the world is at its last good frame")]
         #[allowed("{}", cause.allowed().unwrap_or_default())] #[hint("{}", cause.hint().unwrap_or_default())]
         NotConverged { body: String, cause: Box<StepError> },
-        /// The sums over all bodies left the finite numbers in the frame after the last good one. Contains the time of the last good frame \[s\].
+        /// The sums over all bodies are not finite in the frame after the last good one. Contains the time of the last good frame \[s\].
         "run.overflow"
         #[error("the energy or the momentum of all bodies together left the range of finite numbers in the frame from t = {} s; the world is at its last good frame", number(*last))]
         #[hint("are masses, stiffnesses and speeds in consistent units (metres, kilograms, seconds)?")]

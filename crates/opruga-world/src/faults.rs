@@ -11,7 +11,7 @@ fn first_in(line: &Option<usize>) -> String {
     line.map_or_else(String::new, |line| format!(", first in line {line}"))
 }
 
-/// The characters that the other name does not contain.
+/// The characters that distinguish a name from another one.
 fn points(points: &Option<String>) -> &str {
     points.as_deref().unwrap_or("nothing")
 }

@@ -93,7 +93,7 @@ impl<const D: usize> Work for OfBodies<'_, D> {
             }
             Layout::Batch => {
                 let mut out = [system.nodes as u64; WIDTH];
-                // Row by row, because the sums of all rows would not fit into registers.
+                // This is done row by row, because the sums of all rows would not fit into registers.
                 for row in 0..WIDTH {
                     let mut sums = Sums { first: [START[row]; WIDTH], second: [0; WIDTH] };
                     for columns in [&positions, &velocities] {

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// Bodies with more nodes than this fill the vector lanes on their own.
 const LARGEST_IN_BATCH: usize = 1024;
-/// A batch of fewer bodies than this costs more than stepping them one by one.
+/// Stepping fewer bodies than this in a batch costs more than stepping them one by one.
 const SMALLEST_BATCH: usize = 3;
 
 /// Whether bodies may lie side by side: they have the same rest shape and integrator, and models that differ only in numbers.

@@ -12,7 +12,7 @@ use opruga_mesh::{jacobian_at, least_jacobian};
 
 /// The result for a cell.
 enum Found {
-    /// Inverted; J has this value where the cell is inverted.
+    /// The cell is inverted; J has this value at the point at which it is inverted.
     Inverted(f64),
     /// Degenerate somewhere, or nearly so: J is as small as this, and may be negative.
     Nearly(f64),
@@ -45,7 +45,7 @@ impl<const D: usize> World<D> {
                 };
                 let certain = matches!(found, Found::Inverted(_));
                 (count, uncertain) = if certain { (count + 1, uncertain) } else { (count, uncertain + 1) };
-                // Certain cases are named before uncertain ones.
+                // A cell that is certainly inverted is reported rather than an uncertain one.
                 if first.as_ref().is_none_or(|(.., known)| certain && matches!(known, Found::Nearly(_))) {
                     first = Some((body, cell.cell, found));
                 }

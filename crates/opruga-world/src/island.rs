@@ -157,8 +157,8 @@ impl<const D: usize> Island<D> {
         island
     }
 
-    /// Whether this many threads work on this island together. It must be large, and its integrator must support this, or a model if there are fewer
-    /// islands than threads; in an explicit step only a part of the work is shared.
+    /// Whether this many threads work on this island together. The island must be large, and its integrator must support this. If there are fewer
+    /// islands than threads, it is enough that a model supports it, although in an explicit step only a part of the work is shared.
     pub(crate) fn is_shared_by(&self, threads: usize, islands: usize) -> bool {
         let models = || self.system.members.iter().any(|member| member.potential.properties().shares_threads);
         let known = || self.integrator.shares_threads() || islands < threads && models();
@@ -435,7 +435,7 @@ impl<const D: usize> Island<D> {
     /// The boxes that its bodies sweep within the frame, lane by lane; [`Island::swept_bounds`] returns the box of all together.
     pub(crate) fn swept_by_bodies(&self, plan: &FramePlan<D>, mut visit: impl FnMut(usize, Bounds<D>)) {
         if self.integrator.is_static() {
-            // It may move to any position of equilibrium.
+            // In statics, a body may move to any position of equilibrium.
             let everywhere = [[f64::NEG_INFINITY; D], [f64::INFINITY; D]];
             (0..self.bodies.len()).for_each(|lane| visit(lane, everywhere));
             return;

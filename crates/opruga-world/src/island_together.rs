@@ -12,7 +12,7 @@ impl<const D: usize> Island<D> {
         self.save(plan.start);
         self.potential_before = self.potential();
         self.system.work = Work8::default();
-        // It is not known what it will meet, so obstacles are always checked.
+        // It is not known what the island will meet, so obstacles are always checked.
         self.system.contacts = plan.colliders.map(|colliders| Arc::clone(colliders).into_contacts());
         self.outcome = Ok(());
         self.begin_path(plan);

@@ -1,11 +1,11 @@
-//! The energy ledger: the energies, works and losses of a world.
+//! The energy ledger: the energies, the work and the losses of a world.
 
 use opruga_core::potential::Account;
 use opruga_core::state::{Layout, View};
 use opruga_core::system::{SolverWork, System, Work8};
 use opruga_math::{Lane, Pack, Strip, WIDTH, Work, lanes, sum_in_fixed_order};
 
-/// The energies of the world, and the works and losses since the start [J]. Every channel is measured separately.
+/// The energies of the world, and the work and the losses since the start [J]. Every channel is measured separately.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// Kinetic energy ½ v·M v, with lumped masses ½ Σ m v².
@@ -238,7 +238,7 @@ impl<const D: usize> Work for Look<'_, D> {
             let mut position: [P; D] = lanes!(P, d => x.load(d, k));
             let mut velocity: [P; D] = lanes!(P, d => v.load(d, k));
             if k + WIDTH > end {
-                // After the last node: no mass, and the position of the first node of the pack.
+                // Entries after the last node have no mass, and the position of the first node of the pack.
                 let real = P::first(end - k);
                 mass = P::select(real, mass, P::zero());
                 weighs = P::select(real, weighs, P::zero());
@@ -301,12 +301,13 @@ pub(crate) const LARGEST_DAMPING: f64 = 0.05;
 /// The relative error of a number after many roundings.
 const ROUNDING: f64 = 1e-13;
 
-/// Ten times the error of a difference of numbers by rounding, relative to the numbers: a few roundings of 1e-16 each, all in one direction, still
-/// leave the ledger closed.
+/// Ten times the rounding error of a difference of numbers, relative to the numbers. So the ledger still closes if a few rounding errors of 1e-16 all
+/// have the same sign.
 const CANCELLATION: f64 = 1e-14;
 
 impl<const D: usize> Survey<D> {
-    /// The energy of motions that are only rounding [J]: in a step of h [s] every node has an error of one rounding of the largest coordinate.
+    /// The energy of motions that consist of rounding errors [J]: in a step of h [s], every node has an error of one rounding of the largest
+    /// coordinate.
     fn of_rounding(&self, h: f64) -> f64 {
         let ends = self.position.iter().flatten();
         let farthest = ends.fold(0.0, |most: f64, x| most.larger(x.abs()));
@@ -315,7 +316,7 @@ impl<const D: usize> Survey<D> {
     }
 }
 
-/// Works and losses, summed over all frames since the start.
+/// Work and losses, summed over all frames since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Flows {
     pub(crate) user: f64,
@@ -346,7 +347,8 @@ pub(crate) struct Flows {
 }
 
 impl Flows {
-    /// Adds the works and losses of an island since the start of the last frame, and the numerical loss of its integrator [J].
+    /// Adds the work and the losses of an island since the start of the last frame, and the numerical loss of its integrator
+    /// [J].
     pub(crate) fn add<const D: usize>(&mut self, system: &System<D>, numerical_loss: f64, work: &Work8) {
         self.numerical += numerical_loss;
         self.user += total_of(system, &work.user);
@@ -400,7 +402,7 @@ impl Flows {
         energy.loss_integrator = given - taken - energy.total();
         let moved = energy.kinetic + energy.elastic.abs() + (energy.gas + energy.gravity - self.start).abs();
         self.largest = self.largest.larger(moved);
-        // If nothing moves, the remainder is only rounding and is relative to nothing.
+        // If nothing moves, the remainder consists of rounding errors, and there is no motion to which it could be compared.
         rounding += ROUNDING * (energy.gas.abs() + energy.gravity.abs() + self.start.abs());
         energy.in_motion = self.largest.larger(rounding);
         energy.closure = energy.part_in_motion(energy.loss_integrator);

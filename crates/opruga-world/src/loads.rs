@@ -177,7 +177,8 @@ impl<const D: usize> Potential<D> for FollowerPressure<D> {
 
 impl<const D: usize> Observe<D> for FollowerPressure<D> {}
 
-/// The symmetric part of −∂F/∂x of a pressure on sides. It is exact for a closed surface, whose pressure has a potential.
+/// The symmetric part of −∂F/∂x of a pressure on sides. It is exact for a closed surface, because a pressure on it has a
+/// potential.
 impl<const D: usize> FollowerPressure<D> {
     fn add_hessian(&self, view: &View<D>, sink: &mut dyn Sink<D>) {
         let strength = 0.5 * self.pressure * factor(&self.curve, view.time);
@@ -223,7 +224,7 @@ pub(crate) struct Pull<const D: usize> {
     pub(crate) damping: f64,
     /// The largest force [N].
     pub(crate) largest_force: f64,
-    /// The number of times it was reached.
+    /// The number of times that the limit was reached.
     pub(crate) limited: Arc<AtomicU64>,
 }
 

@@ -13,7 +13,7 @@ impl<const D: usize> World<D> {
 
     /// Shows the world at each state that was kept within the last frame, one after another; then restores it.
     ///
-    /// Positions, velocities, time, energy, momentum, readings and probes are shown as at that state.
+    /// Positions, velocities, time, energy, momentum, readings and probes are those of that state.
     pub fn look_within(&mut self, mut look: impl FnMut(&mut World<D>)) {
         let every = self.looks.every;
         if every == 0 || !self.looks.fresh {
@@ -26,7 +26,7 @@ impl<const D: usize> World<D> {
             let mut flows = self.looks.flows;
             let mut complete = true;
             for island in &mut self.islands {
-                // Islands built since then have no kept states.
+                // Islands that were built since then have no kept states.
                 let work = island.swap_look(number as usize);
                 island.refresh();
                 match work {

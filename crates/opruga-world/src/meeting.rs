@@ -18,7 +18,7 @@ pub(crate) struct Meeting<const D: usize> {
     pub(crate) cluster: Cluster,
     numbers: Vec<u32>,
     colliders: Option<Arc<Colliders<D>>>,
-    /// The obstacles without their faces, for nodes of bodies that touch these faces by contact of surfaces.
+    /// The obstacles without their faces, for nodes of bodies whose surfaces are in contact with these faces.
     pub(crate) without_faces: Option<Arc<dyn Contacts<D>>>,
     /// For every island of the group, body by body: the first point of the body, and the indices of its nodes in the columns of the island.
     columns: Vec<Vec<(u32, Vec<u32>)>>,
@@ -86,7 +86,7 @@ impl<const D: usize> Substep<'_, D> {
 }
 
 impl<const D: usize> Meeting<D> {
-    /// The surfaces of a cluster whose bodies are in some islands of the scene.
+    /// The surfaces of a cluster, whose bodies are in the given islands of the scene.
     pub(crate) fn of(
         blueprint: &Blueprint<D>,
         scene: &SceneContact<D>,
@@ -145,8 +145,8 @@ impl<const D: usize> Meeting<D> {
             touching.come_to_rest();
         }
         touching.has_budget = pushed.iter().all(|pushed| all[islands[pushed.island]].integrator.has_budget());
-        // An obstacle that holds a node does not let contact lift it off within the step. Beside an edge, contacts and held nodes would contradict
-        // each other, so bodies with implicit steps touch the faces of obstacles like the faces of bodies.
+        // Contact cannot lift a node off an obstacle that holds it within the step. Near an edge, contacts and held nodes would therefore contradict
+        // each other. So bodies with implicit steps touch the faces of obstacles like the faces of bodies.
         let mut without_faces = None;
         if let Some(colliders) = scene.colliders().filter(|_| (!at_rest || scene.reach.is_some()) && !pushed.is_empty())
         {
@@ -186,7 +186,7 @@ impl<const D: usize> Meeting<D> {
         self.is_one() && self.pushed.iter().any(|pushed| pushed.island == island)
     }
 
-    /// The same trouble with the numbers that bodies and obstacles have in the scene.
+    /// Converts trouble to the numbers that bodies and obstacles have in the scene.
     pub(crate) fn in_scene(&self, trouble: Trouble) -> Trouble {
         let all = |bodies: [u32; 2]| bodies.map(|body| self.numbers[body as usize]);
         match trouble {
@@ -261,7 +261,8 @@ impl<const D: usize> Meeting<D> {
         Ok(())
     }
 
-    /// The same for bodies that respond as a whole, with all changes that follow in them. If one of them fails, its outcome contains the error.
+    /// Solves the contact of bodies that respond as a whole, including the changes of these bodies that result from it. If one of them fails, its
+    /// outcome contains the error.
     pub(crate) fn solve_in_turn(
         &mut self,
         islands: &mut [&mut Island<D>],
@@ -300,7 +301,7 @@ impl<const D: usize> Meeting<D> {
         });
     }
 
-    /// Writes the results of contact into the islands of the bodies, and records the works.
+    /// Writes the results of contact into the islands of the bodies, and records the work.
     pub(crate) fn write_back(&mut self, islands: &mut [&mut Island<D>]) {
         self.note_mixed();
         let Touching { changed, losses, after: [x, v], .. } = &self.touching;

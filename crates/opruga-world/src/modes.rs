@@ -2,7 +2,7 @@
 //!
 //! M q″ + K q = 0 with K = ∂²U/∂x∂x of all present models and loads, and the masses of the nodes, lumped or consistent depending on the models: q = φ
 //! cos ωt with K φ = ω² M φ. Damping is ignored. The state should be an equilibrium; in any other state the frequencies are those of the stiffness of
-//! springs and gas there. A negative ω² is reported as it is: the state is unstable, for example that of a body about to buckle.
+//! springs and gas in that state. A negative ω² is reported as it is: the state is unstable, for example that of a body about to buckle.
 
 use crate::any_scene::three;
 use crate::error::{Part, WorldError};
@@ -67,7 +67,7 @@ impl<const D: usize> World<D> {
         let name = self.blueprint.bodies[body].name.clone();
         let refuse =
             |refusal: Refusal| WorldError::Build { part: Part::body(&name), source: BuildError::of("modes", refusal) };
-        // The body alone: the other bodies of its batch do not matter.
+        // Only this body is needed, and not the other bodies of its batch.
         let mut system = self.island_of(&[body], &BTreeMap::new(), &self.integrator)?.system;
         let has_modes = |views: Views| views.hessian && views.symmetric;
         if let Some(member) = system.members.iter().find(|member| !has_modes(member.potential.properties().views)) {
@@ -130,7 +130,7 @@ impl<const D: usize> SmallMotions<D> {
             let (bytes, most) = (format!("{bytes:.0}"), format!("{MOST_BYTES:.0}"));
             return Err(Refusal::ModesMemory { count: count.min(axes), axes, bytes, most });
         }
-        // Pinned axes: no row and no column.
+        // Pinned axes have no row and no column.
         let free: Vec<bool> = (0..system.nodes).map(|node| !pinned[node * D..(node + 1) * D].contains(&true)).collect();
         let projectors: Vec<[[f64; D]; D]> = (0..system.nodes)
             .map(|node| {

@@ -44,7 +44,7 @@ impl<'w> Vectors<'w> {
     pub fn len(self) -> usize {
         self.columns[0].len()
     }
-    /// Whether there is no node, for example because there is no such body.
+    /// Whether there are no nodes, for example because there is no such body.
     pub fn is_empty(self) -> bool {
         self.columns[0].is_empty()
     }

@@ -34,12 +34,12 @@ impl<const D: usize> World<D> {
         let pinned: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.index).collect();
         (0..system.nodes as u32).filter(|node| pinned.contains(&system.layout.index(*node as usize, lane))).collect()
     }
-    /// The contact forces on the nodes of a body [N]. Those of obstacles are for the coming substep, f = m (v' − v*)/h. Those of bodies, and of
-    /// corners and edges of obstacles, are for the last one, impulse over h.
+    /// The contact forces on the nodes of a body [N]. Forces of obstacles are for the coming substep, f = m (v' − v*)/h. Forces of bodies, and of
+    /// corners and edges of obstacles, are for the last substep, and are the impulse over h.
     ///
-    /// v* is the velocity that the present forces would give a node within h without obstacles, v' the velocity with obstacles. The force consists of
-    /// normal force and friction, and in an impact of the impulse over h. Pinned nodes have no contact force; the pin takes it. Empty if there is no
-    /// such body, if nothing can touch it, or if a model refuses the state.
+    /// v* is the velocity that the present forces would give a node within h without obstacles, and v' is the velocity with obstacles. The force
+    /// consists of the normal force and friction; in an impact, it is the impulse over h. Pinned nodes have no contact force; the pin takes it. Empty
+    /// if there is no such body, if nothing can touch it, or if a model refuses the state.
     pub fn contact_forces(&mut self, body: usize) -> Vec<[f64; D]> {
         let mut forces = self.obstacle_forces(body);
         if let Some(clusters) = self.clusters.as_ref().filter(|_| self.handle(body).is_some()) {

@@ -1,17 +1,17 @@
-//! Bodies of finite elements that end in another equilibrium than that of their own shape.
+//! Bodies of finite elements that end in an equilibrium other than that of their own shape.
 //!
 //! A body may come to rest folded, inverted, contracted to a point or snapped through, although no present force would take it there. The cells do
 //! not show this: an arch that has snapped through consists of good cells. The energy shows it. Let fᵢ = ∂U/∂xᵢ be the forces that hold the shape
 //! against its cells, and yᵢ the rest shape, moved as a rigid body to its best fit. A convex energy satisfies U ≤ Σ fᵢ·(xᵢ − yᵢ) ≤ Σ |fᵢ| |xᵢ − yᵢ|.
 //! The energy of solids that rotate is not convex, but bodies that are bent or stretched from outside have large displacements and satisfy the bound:
-//! at small strain U is at most half of it, and in bending with large rotations a small part. A folded body keeps its energy without support, with
-//! forces that are small or that act where its own shape would also be.
+//! U is at most half of it at small strain, and a small part of it in bending with large rotations. A folded body, in contrast, keeps its energy
+//! although the forces on it are small, or act at nodes that have hardly moved.
 //!
 //! The best fit is the least-squares fit with the weights |fᵢ|: it places the rest shape where something holds the body.
 //!
 //! Pins that move nodes do work along their whole path, whatever the distance between its ends. A bar that was twisted by three full turns contains
-//! the work of its pins, although its ends are where those of the bar at rest are. A node that pins have moved therefore counts with the length sᵢ of
-//! its path, minus a rigid motion of all pins, if that is longer: U ≤ Σ |fᵢ| sᵢ if the forces grew along the path.
+//! the work of its pins, although its ends are at the same positions as those of the bar at rest. A node that pins have moved therefore counts with
+//! the length sᵢ of its path, minus a rigid motion of all pins, if that is longer: U ≤ Σ |fᵢ| sᵢ if the forces grew along the path.
 
 use crate::pin_travel::travel_lengths;
 use crate::warnings::{Warning, WorldWarning};
@@ -34,8 +34,8 @@ const STRAINED: f64 = 1e-3;
 /// The weight of all masses together in the fit, relative to a weight of 1 for all forces. It makes the fit unique if the forces do not.
 const LITTLE: f64 = 1e-6;
 
-/// The largest ratio of the mean force along the path of a pinned node to the force at its end: the force may fall for laws that soften and for
-/// bodies that buckle.
+/// The largest ratio of the mean force along the path of a pinned node to the force at its end. The force may decrease along the path if a law
+/// softens or a body buckles.
 const FALLEN: f64 = 2.0;
 
 /// A vector; in the plane the last number is zero.
@@ -61,8 +61,8 @@ struct Node {
 }
 
 impl<const D: usize> World<D> {
-    /// Warnings so far, plus warnings about the shapes in the present state: [`World::inverted_cells`] and [`World::other_balances`]. Meant for the
-    /// end of a run, because every call examines the shapes again.
+    /// The warnings so far, and warnings about the shapes in the present state: [`World::inverted_cells`] and [`World::other_balances`]. This is
+    /// meant for the end of a run, because every call examines the shapes again.
     pub fn warnings_at_the_end(&self) -> Vec<Warning> {
         let shapes = self.inverted_cells().into_iter().chain(self.other_balances());
         self.warnings().into_iter().chain(self.shape_warnings()).chain(shapes).collect()
@@ -290,7 +290,7 @@ fn beyond_whole(nodes: &[Node], dimension: usize) -> f64 {
         }
     }
     let (values, vectors) = symmetric_eigen(&inertia, 3);
-    // A body on a line has no moment of inertia about it.
+    // A body whose nodes are on a line has no moment of inertia about that line.
     let least = 1e-9 * values.last().copied().unwrap_or(0.0);
     let mut spin = [0.0; 3];
     for (value, vector) in values.iter().zip(&vectors).filter(|(value, _)| **value > least) {

@@ -8,7 +8,7 @@
 
 use opruga_collide::{Pressed, Rubbing, Surface};
 
-/// All pairs whose matrix is not zero.
+/// The matrices of all pairs, without those that are zero.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairStiffness<const D: usize> {
     pairs: Vec<Pair<D>>,

@@ -75,7 +75,7 @@ impl<const D: usize> Work for Include<'_, D> {
             for d in 0..D {
                 let mut x: P = vectors.load(d, k);
                 if k + WIDTH > self.end {
-                    // After the last node: the first one of the pack.
+                    // Entries after the last node repeat the first node of the pack.
                     x = P::select(P::first(self.end - k), x, P::splat(x.to_array()[0]));
                 }
                 // Zero times a finite number is zero; zero times infinity or NaN is not.

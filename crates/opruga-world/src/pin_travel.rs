@@ -28,7 +28,7 @@ pub(crate) fn travel_lengths<const D: usize>(pins: &[&Pin<D>], time: f64) -> Vec
             .zip(before.iter().zip(&after))
             .map(|(pin, (from, to))| along_pinned_axes(pin, core::array::from_fn(|d| to[d] - from[d])))
             .collect();
-        // A chord of a rotation is perpendicular to the radius to its middle.
+        // A chord of a rotation is perpendicular to the radius at the middle of the chord.
         let middles: Vec<[f64; D]> =
             before.iter().zip(&after).map(|(from, to)| core::array::from_fn(|d| 0.5 * (from[d] + to[d]))).collect();
         let whole = nearest_rigid(&middles, &steps);

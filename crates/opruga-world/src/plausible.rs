@@ -21,13 +21,13 @@ pub(crate) const SAG: &str = "units.sag";
 /// per metre that was meant per millimetre.
 ///
 /// In a chain of springs k between nodes of mass m the fastest oscillation is ω = 2 √(k/m), so k ≈ m ω²/4 represents the springs of one node,
-/// whatever the models are. The springs that carry the weight M g of a body of N nodes are as many side by side as in a row if it is a surface, and
-/// N^⅓ times as many side by side if it is a solid: sag ≈ M g / k or M g / (k N^⅓). An outline sags more, but gas usually supports it, so it is
-/// treated as a surface.
+/// whatever the models are. The weight M g of a body of N nodes is carried by rows of springs. In a surface, there are as many rows side by side as
+/// springs in a row; in a solid, there are N^⅓ times as many. So sag ≈ M g / k or M g / (k N^⅓). An outline sags more, but gas usually supports it,
+/// so it is treated as a surface.
 ///
-/// For the boundary of a solid, the stiffness grows in proportion to the wave number, μ per metre of it, and not to its square. The fastest motion of
-/// a node is therefore that of one spring to its surroundings, k ≈ m ω². A cube of n × n × n springs has N = 6 n² nodes on its boundary: sag ≈ M g /
-/// (k √(N/6)) in space.
+/// If only the boundary of a solid has nodes, the stiffness grows in proportion to the wave number, and not to its square. So the fastest motion of a
+/// node is that of one spring to its surroundings, k ≈ m ω². A cube of n × n × n springs has N = 6 n² nodes on its boundary: sag ≈ M g / (k √(N/6))
+/// in space.
 pub(crate) fn sag<const D: usize>(body: &BodyBlueprint<D>, gravity: &[f64; D], spectrum: &Spectrum) -> Option<Warning> {
     let masses = node_masses(body);
     let (nodes, mass) = (masses.len() as f64, masses.iter().sum::<f64>());
@@ -155,8 +155,8 @@ impl<const D: usize> World<D> {
 const SHALLOW: f64 = 1e-6;
 
 impl<const D: usize> World<D> {
-    /// Warns about bodies whose free nodes start inside an obstacle: the first step puts them on its surface, which may fold the body or throw it
-    /// away. Copies in the same obstacle get one warning, with the deepest of them.
+    /// Warns about bodies whose free nodes start inside an obstacle. The first step puts these nodes on its surface, which may fold the body or throw
+    /// it away. Copies in the same obstacle get one warning, which names the deepest of them.
     pub(crate) fn warn_of_buried_bodies(&mut self) {
         let Some(colliders) = self.colliders.clone() else { return };
         let mut found: Vec<(String, f64, Warning, usize)> = Vec::new();
@@ -202,7 +202,7 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// A displacement for the user to type: rounded up rather than down, to five digits.
+/// A displacement that the user can type, rounded up to five digits.
 fn out_of<const D: usize>(shift: &[f64; D], slack: f64) -> String {
     let typed = |x: f64| match x {
         x if x.abs() <= slack => "0".into(),

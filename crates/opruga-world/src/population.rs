@@ -15,7 +15,8 @@ use opruga_core::spec::Values;
 use opruga_math::Lane;
 use std::collections::BTreeMap;
 
-/// The maximum number of warnings that name a body whose commands ended with it; the commands of all other bodies are counted together.
+/// The maximum number of warnings about commands that ended because their body was removed, one for each body; the commands of all other bodies are
+/// counted together.
 const MOST_NAMED: usize = 16;
 
 impl<const D: usize> World<D> {
@@ -121,7 +122,7 @@ impl<const D: usize> World<D> {
     }
 
     /// Gives a body other models or another integrator. Positions and velocities stay the same. The memory of a model is kept by the first model of
-    /// the same kind; a kind that the body did not have starts as at the start of a scene.
+    /// the same kind; a kind that the body did not have before starts as at the start of a scene.
     pub(crate) fn become_other(
         &mut self,
         body: usize,
@@ -205,7 +206,7 @@ impl<const D: usize> World<D> {
         let square = |x: [f64; D]| x.iter().map(|c| c * c).sum::<f64>();
         let mut gone = Vec::new();
         for island in &self.islands {
-            // The corner of the box that is farthest from the origin; usually it is near.
+            // The corner of the box that is farthest from the origin. Usually even this corner is near.
             let [low, high] = island.survey.position;
             let corner = core::array::from_fn(|d| low[d].abs().larger(high[d].abs()));
             if square(corner) <= limit * limit {

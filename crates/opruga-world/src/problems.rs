@@ -7,7 +7,7 @@ use crate::world::{Options, World};
 use opruga_core::spec::Values;
 use std::sync::Arc;
 
-/// The maximum number of problems: a longer list helps nobody.
+/// The maximum number of problems, because a longer list would not help anyone.
 const MOST_PROBLEMS: usize = 200;
 
 impl<const D: usize> World<D> {
@@ -56,14 +56,14 @@ impl<const D: usize> World<D> {
             // Obstacles are included because they may hold it.
             let Some(first) = refused(part(vec![body.clone()], obstacles.clone(), loads)) else { continue };
             if !all_obstacles && first.code().starts_with("static.") {
-                // A refused obstacle might have held it, which is not known.
+                // A refused obstacle might have held the body, which is not known.
                 continue;
             }
             // Building stops at the first model that refuses; each of the other models is tested alone.
             let start = problems.len();
             for model in &body.models {
                 let alone = BodyBlueprint { models: vec![model.clone()], pins: Vec::new(), ..body.clone() };
-                // Cells that it leaves to the other models are not its error.
+                // It is not an error of this model that it leaves cells to the other models.
                 let own = |error: &WorldError| {
                     matches!(error, WorldError::Build { source, .. } if source.kind == model.kind())
                         && error.code() != "model.uncovered_cells"

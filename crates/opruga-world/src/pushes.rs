@@ -6,8 +6,8 @@
 //! contact   p from the gaps, the free motion x₁(f) − A⁻¹ f/θ and the answer
 //! ```
 //!
-//! Steps and contact are solved in turn until they agree on the end of the step; this is Newton's method for f. The forces of the previous substep
-//! are the initial values, so bodies at rest on one another need one step.
+//! Steps and contact are solved in turn until they agree on the end of the step; this is Newton's method for f. The initial values are the forces of
+//! the previous substep, so bodies that rest on one another need only one step.
 //!
 //! Source: M. Otaduy, R. Tamstorf, D. Steinemann, M. Gross, Implicit contact handling for deformable objects, Computer Graphics Forum 28 (2009)
 //! 559–568.
@@ -18,12 +18,13 @@ use opruga_collide::{Obstacles, Respond, Touching, Trouble};
 use opruga_core::system::Workspace;
 use opruga_math::{Lane, WIDTH};
 
-/// Steps and contact agree if no point ends farther than this from the position that the impulses should give it, relative to the thickness of
-/// surfaces, in rounds before the given one. Exact steps reach the first tolerance in two or three rounds, steps with a budget the second. If
-/// contacts, or the nodes that obstacles hold, change in every round, the last tolerance is sufficient; surfaces begin to overlap at this size.
+/// Pairs of a round and a tolerance, which applies before that round. Steps and contact agree if no point ends farther than the tolerance, relative
+/// to the thickness of surfaces, from the position that the impulses should give it. Exact steps reach the first tolerance in two or three rounds,
+/// and steps with a budget the second one. If contacts, or the nodes that obstacles hold, change in every round, the last tolerance is sufficient;
+/// surfaces begin to overlap at this size.
 const AGREED: [(usize, f64); 3] = [(3, 1e-7), (6, 1e-4), (MOST_ROUNDS, 1e-2)];
 
-/// The same if all bodies have a budget: surfaces with a thickness keep half of it between them.
+/// These pairs if all bodies have a budget: surfaces with a thickness keep half of it between them.
 const AGREED_IN_BUDGET: [(usize, f64); 1] = [(MOST_ROUNDS, 0.5)];
 
 /// The maximum number of rounds.

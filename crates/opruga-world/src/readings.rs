@@ -236,7 +236,7 @@ impl<const D: usize> World<D> {
         add(WorldWarning::Unexplained { energy, difference, help }, self.flows.open_frames);
         let solver = &self.flows.solver;
         add(WorldWarning::Accepted {}, solver.accepted);
-        // No step is halved more often than an integrator allows.
+        // A step is not halved more often than an integrator allows, so this does not overflow.
         let parts = 1u64 << solver.deepest.min(63);
         add(WorldWarning::Halved { h: self.h(), shortest: self.h() / parts as f64, parts }, solver.halved);
         add(WorldWarning::CutOff { left: solver.left }, solver.cut_off);

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Newton's method for the equilibrium of all bodies at once. Positions and contact forces are unknowns of the same linear problem, so a body that
-//! only lies on others is supported by them in every correction. If the bodies instead received given forces and each found its own end, errors of
-//! the forces would move them as far as σ permits.
+//! only lies on others is supported by them in every correction. If each body found its own end under given forces instead, errors of these forces
+//! would move it as far as σ permits.
 //!
 //! σ ([`Staying`]) falls as the forces at the end of corrections approach the predicted ones. Friction opposes the sliding of each correction.
 //!
@@ -32,11 +32,11 @@ const WELL_FORESEEN: f64 = 0.1;
 const HARDER: f64 = 16.0;
 const MOST: f64 = 1e6;
 
-/// The maximum number of corrections, including refused ones. Stacks of five bodies need fewer than forty; a body that slides without end would use
-/// all.
+/// The maximum number of corrections, including refused ones. Stacks of five bodies need fewer than forty; a body that slides for ever would use all
+/// of them.
 const MOST_CORRECTIONS: usize = 200;
 
-/// The longest correction, in extents of the body.
+/// The longest correction, as a fraction of the extent of the body.
 const LONGEST: f64 = 0.5;
 
 /// The largest last correction, relative to the thickness of surfaces.
@@ -358,7 +358,7 @@ impl<const D: usize> Search<'_, '_, D> {
                 (0..D).for_each(|d| touching.before[0][p][d] += displacement[at + d]);
             }
             let first = body.points.start;
-            // Both are in the order of the points.
+            // Coordinates and forces are both in the order of the points.
             let mut points = body.coordinates.iter().enumerate();
             for (node, force) in system.pushes.iter().flatten() {
                 if let Some((k, _)) = points.find(|(_, at)| *at / D == *node) {

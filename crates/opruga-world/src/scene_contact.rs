@@ -9,8 +9,8 @@ use opruga_core::spec::Values;
 use opruga_math::{Lane, Simd};
 use std::sync::Arc;
 
-/// The margin of the search for candidates, relative to the mean edge. Points may move half of it between two searches, a quarter of an edge; this is
-/// about the size of the gaps that are considered at all.
+/// The margin of the search for candidates, relative to the mean edge. Between two searches, points may move by half of it, which is a quarter of an
+/// edge and about the size of the gaps that are considered at all.
 const MARGIN_OF_EDGE: f64 = 0.5;
 
 /// The bodies of a scene that may touch, and their contact laws.
@@ -38,10 +38,10 @@ pub(crate) struct SceneContact<const D: usize> {
     distance: f64,
 }
 
-/// The state of the scene that it was made for; it is rebuilt if this changes.
+/// The state of the scene for which it was made; it is rebuilt if this state changes.
 #[derive(Clone, Debug)]
 pub(crate) struct MadeFor<const D: usize> {
-    /// The number of islands built by then.
+    /// The number of islands that had been built by then.
     pub(crate) built: u64,
     /// The number of islands.
     pub(crate) islands: usize,
@@ -196,7 +196,7 @@ impl Partition {
     ) -> bool {
         let mut any = false;
         let wide = |number: u32| wider(boxes[number as usize], scene.distance);
-        // Along the axis with the largest extent of the bodies, in the order of their lower ends.
+        // Bodies are compared along the axis of their largest extent, in the order of their lower ends.
         let extent = |d: usize| {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for one in boxes {

@@ -73,7 +73,7 @@ pub enum Holds {
     Words(&'static [&'static str]),
     /// One whole number from 1 for each dimension of the scene (if there are fewer, the rest are 1).
     Counts,
-    /// A value of any type; the parameter that it is for determines what is allowed.
+    /// A value of any type; the parameter to which it belongs determines what is allowed.
     AnyValue,
 }
 

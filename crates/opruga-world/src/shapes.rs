@@ -298,7 +298,7 @@ pub struct Transform<'a> {
 pub struct Made<const D: usize> {
     /// Its mesh.
     pub mesh: Mesh<D>,
-    /// Whether its points ran clockwise, so that its edges run in the opposite direction.
+    /// Whether its points run clockwise, so that its edges run in the opposite direction.
     pub flipped: bool,
     /// The volume that its filling has lost, if that is worth a report.
     pub loss: Option<Loss>,
@@ -318,7 +318,7 @@ pub fn mesh<const D: usize>(shape: &Values, transform: &Transform<'_>) -> Result
     }
 }
 
-/// The same mesh as a type whose dimension is a parameter, or the other way round.
+/// Converts a mesh to the type with another parameter for the same dimension.
 fn renamed<const A: usize, const B: usize>(mesh: Mesh<A>) -> Result<Mesh<B>, MeshError> {
     if A != B {
         return Err(MeshError::Size { what: Quantity::Dimension, value: B as f64, must: Must::TwoOrThree });
@@ -460,7 +460,7 @@ pub fn apply_transform<const D: usize>(mesh: &mut Mesh<D>, transform: &Transform
     }
 }
 
-/// Rotates a mesh whose dimension is a parameter as one whose dimension is known.
+/// Rotates a mesh whose dimension is a type parameter by the code for a known dimension.
 fn turn<const D: usize, const E: usize>(
     mesh: &mut Mesh<D>,
     rotate: impl FnOnce(&mut Mesh<E>) -> Result<(), MeshError>,

@@ -1,7 +1,7 @@
 //! Cells that are too long for the thickness of their body, and therefore too stiff in bending and torsion.
 //!
 //! A cell whose shape functions cannot represent bending has a spurious strain in proportion to its length. A body of thickness T is then too stiff
-//! in bending by a relative error of about (L/T)², however many cells there are across it. Measurements on beams and plates
+//! in bending, with a relative error of about (L/T)², however many cells there are across its thickness. Measurements on beams and plates
 //! (`tests/all/slender_cells.rs`, docs/finite-elements.md) show that the first frequencies are 45 % too high for linear cells with a longest edge of
 //! T, and 10 % too high for quadratic tetrahedra with a longest edge of 8.5 T, which only lack a part of torsion. Quadratic triangles and boxes have
 //! no limit.
@@ -15,7 +15,7 @@ use opruga_solve::dense::symmetric_eigen;
 
 /// The measured limit of a kind of cells.
 struct Limit {
-    /// The longest edge of cells, in thicknesses of their body.
+    /// The longest edge of cells, relative to the thickness of their body.
     length: f64,
     /// The relative error of the first frequencies at this length [%].
     error: f64,
@@ -96,7 +96,7 @@ fn slender<const D: usize>(body: &BodyBlueprint<D>) -> Option<Slender> {
         let Some(limit) = limit(element).filter(|limit| cell.longest > limit.length * thickness) else { continue };
         beyond += cell.whole;
         lengths += cell.whole * cell.longest;
-        // If several kinds are beyond their limits, the one with the lowest limit is named.
+        // If several kinds of cells are beyond their limits, the kind with the lowest limit is named.
         if kind.is_none_or(|(length, _)| limit.length < length) {
             kind = Some((limit.length, limit));
         }

@@ -35,7 +35,8 @@ pub(crate) enum Origin {
     Command(usize),
     /// A call of the program. Once the body is removed, nothing is kept of it, and its slot is free for another one.
     Program,
-    /// None: the slot is free. If its body was in a batch, its seat is kept for bodies of the same kind as this one.
+    /// None: the slot is free. If its last body was in a batch, its seat is reserved for bodies of the same kind as the body
+    /// with this number.
     Free(Option<usize>),
     /// None yet: the slot is reserved for a body that a command of the scene will add and that is referred to by its number.
     Reserved,

@@ -65,7 +65,7 @@ impl<const D: usize> World<D> {
         out.count(of_scene.clone().count() as u64);
         for running in of_scene {
             match &running.progress {
-                // It ended with its body before it began; this follows from the rest of the state.
+                // The command ended before it began, because its body was removed; this follows from the rest of the state.
                 Progress::Done if running.command.at > self.time() => out.count(0),
                 progress => write_progress(&mut out, progress),
             }
@@ -101,7 +101,7 @@ impl<const D: usize> World<D> {
 
     fn restored(&mut self, bytes: &[u8], other_future: bool) -> Result<(), WorldError> {
         self.forget_contacts();
-        // Commands of the program are in the snapshot.
+        // Commands of the program are taken from the snapshot.
         let commands: Vec<Running<D>> = self.running.iter().filter(|r| !r.given).map(Running::anew).collect();
         if self.go_to_alike(bytes, &commands, other_future)? {
             return Ok(());
@@ -247,7 +247,8 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// The commands with their progress in the snapshot, as far as it is known; those of the program follow those of the scene.
+    /// The commands with their progress in the snapshot, as far as it is known. Commands of the program follow those of the
+    /// scene.
     fn commands_then(&self, commands: &[Running<D>], rest: &Rest<D>) -> Vec<Running<D>> {
         let running = |(known, progress): (&Running<D>, &Progress<D>)| {
             // Bodies that will be added later do not count as gone.

@@ -93,8 +93,8 @@ impl<const D: usize> World<D> {
         match pool {
             None => islands.iter_mut().for_each(|island| island.frame(&plan, &mut lock(&workspaces[0]))),
             Some(pool) => pool.install(|| {
-                // Large bodies one after another, each on all threads; then the others, one per thread. A body that waits for its threads must not be
-                // given another body that uses the same workspace.
+                // Large bodies are stepped one after another, each on all threads; then the others, one per thread. A body that waits for its threads
+                // must not be given another body that uses the same workspace.
                 let (number, count) = (pool.current_num_threads(), islands.len());
                 for island in islands.iter_mut().filter(|island| island.is_shared_by(number, count)) {
                     island.system.threads = number;
@@ -135,7 +135,7 @@ impl<const D: usize> World<D> {
                 WorldError::NotConverged { body: body(0), cause: Box::new(cause.clone()) }
             }
             Err(cause) => WorldError::Step { body: body(0), cause: Box::new(cause.clone()) },
-            // Not reached: the island has failed.
+            // This is not reached, because the island has failed.
             Ok(()) => WorldError::Overflow { last: self.time() },
         }
     }

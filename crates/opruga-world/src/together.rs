@@ -1,4 +1,5 @@
-//! A frame of bodies that may touch: their clusters are stepped through it substep by substep, all others as if alone.
+//! A frame of bodies that may touch: their clusters are stepped through it substep by substep. All other bodies are stepped as
+//! if they were alone.
 
 use crate::blueprint::Blueprint;
 use crate::clusters::{Clusters, Group, Progress};
@@ -35,7 +36,7 @@ struct Hands<'a, const D: usize> {
     islands: usize,
 }
 
-/// Steps islands through a frame. If one fails, its outcome contains the error, and the others stay wherever they are.
+/// Steps islands through a frame. If one fails, its outcome contains the error, and the others remain in their present state.
 ///
 /// If bodies of different groups come close to one another, both groups return to the start of the frame and are stepped through it together.
 ///
@@ -67,7 +68,7 @@ pub(crate) fn frame<const D: usize>(
         Progress::Stuck(trouble, time) => Some((trouble, time)),
         _ => None,
     });
-    // The first in time; if several are equal, the first in the order of the bodies.
+    // The error that is first in time; if several are equal, the first in the order of the bodies.
     stuck.reduce(|first, other| if other.1 < first.1 { other } else { first }).map_or(Ok(()), Err)
 }
 
@@ -88,8 +89,8 @@ fn go_through<const D: usize>(
         jobs.iter_mut().for_each(|job| job.run(plan, hands));
         return;
     }
-    // Groups with large bodies, and those with more than their share of all nodes, one after another on all threads; then the others in parallel. A
-    // body that waits for its threads must not be given another body that uses the same workspace.
+    // Groups with large bodies, and groups with more than their share of all nodes, are stepped one after another on all threads; then the others in
+    // parallel. A body that waits for its threads must not be given another body that uses the same workspace.
     let number = rayon::current_num_threads();
     let all: usize = jobs.iter().map(Job::nodes).sum();
     let is_shared = |job: &Job<'_, D>| {
@@ -162,7 +163,8 @@ impl<const D: usize> Job<'_, D> {
             for meeting in meetings.iter_mut() {
                 meeting.take(islands, time);
             }
-            // A body that leaves its range ends the frame, and is refused there: contact would have to examine every pair of it.
+            // A body that leaves its range ends the frame and is refused, because contact would have to examine every pair that
+            // contains it.
             if !islands.iter().all(|island| island.is_in_range()) {
                 break;
             }

@@ -1,26 +1,26 @@
 //! Recovery of bodies that rest in a degenerate shape: flat, inverted or folded. It is active if the scene contains `[world] unfold = true`.
 //!
-//! A body that was squeezed onto a plane, a line or a point, or that was inverted, may be in equilibrium there by symmetry alone: no force leads out
-//! of the plane, although the energy falls on both sides of it. No solver can leave such a shape by itself, because solvers follow the forces. The
-//! world therefore checks the bodies from time to time. If a body is at rest with degenerate or inverted cells, or is strained although nothing acts
-//! on it, its free nodes are displaced at random, in the same way in every run: first by 10⁻⁴ of its size, then, each time after it had time to leave
-//! the shape, by a hundredth and by a tenth. Every displacement is counted. A shape that remains after the last one is counted too.
+//! A body that was squeezed onto a plane, a line or a point, or that was inverted, may be in equilibrium by symmetry alone: no force acts out of the
+//! plane, although the energy falls on both sides of it. No solver can leave such a shape by itself, because solvers follow the forces. The world
+//! therefore checks the bodies from time to time. If a body is at rest with degenerate or inverted cells, or is strained although nothing acts on it,
+//! its free nodes are displaced at random, in the same way in every run: first by 10⁻⁴ of its size, then by a hundredth and by a tenth of it. Between
+//! two displacements, the body has time to leave the shape. Every displacement is counted. A shape that remains after the last one is counted too.
 //!
 //! In statics a frame that ends like this is solved again: first from its start, with the motion of pins and the loads divided into parts, because
 //! smaller steps may avoid a fold that one large step makes; then from displaced shapes, up to three times.
 //!
-//! A body has left such a shape when it has kept another one for as long as leaving takes. A body that alternates about the limit continues with the
-//! count where it was, and eventually comes to the last displacement.
+//! A body has left such a shape when it has kept another shape for as long as leaving takes. A body that alternates around the limit keeps its count,
+//! so it eventually gets the last displacement.
 //!
-//! Strained bodies on which a pin, an obstacle or a load acts are left alone, because they may have been meant to snap through. At the end
-//! `cells.other_balance` reports that they contain more energy than what acts on them accounts for.
+//! Strained bodies on which a pin, an obstacle or a load acts are left alone, because they may have been meant to snap through. At the end,
+//! `cells.other_balance` reports that they contain more energy than the forces on them account for.
 //!
 //! A body is at rest if its kinetic energy and its unbalanced forces are small compared with the energy U of its cells, ½ Σ m v² ≪ U and Σ m |a| L ≪
 //! U, and if damping does not dissipate that energy: a body that creeps against its viscosity is still moving. The time to leave is a multiple of L
 //! √(M/U), where L is its size and M its mass.
 //!
-//! A body whose cells are all flat may move along its plane or line forever without leaving it. It is therefore displaced once it has had time to
-//! leave, whatever its motion.
+//! A body whose cells are all degenerate may move along its plane or line for ever without leaving it. It is therefore displaced once it has had time
+//! to leave, whatever its motion.
 //!
 //! Bodies of models without cells, such as springs, are left alone.
 //!
@@ -44,11 +44,11 @@ use opruga_math::{Lane, sum_in_fixed_order};
 use opruga_mesh::{Mesh, least_jacobian};
 use opruga_solve::dense::symmetric_eigen;
 
-/// The number of displacements since the body left its last degenerate shape, plus one if they were in vain.
+/// The number of displacements since the body left its last degenerate shape, plus one if they had no effect.
 const TIMES: PerBody<u64> = PerBody::new("unfold.times");
 /// The time of its last displacement [s].
 const LAST: PerBody<f64> = PerBody::new("unfold.last");
-/// The number of consecutive checks at which all of its cells were flat.
+/// The number of consecutive checks in which all of its cells were degenerate.
 const FLAT_LOOKS: PerBody<u64> = PerBody::new("unfold.flat_looks");
 /// Frames since the last check.
 const SINCE: PerBody<u64> = PerBody::new("unfold.since");
@@ -62,7 +62,8 @@ pub(crate) fn channels() -> [Channel; 6] {
     [TIMES.declared(), LAST.declared(), FLAT_LOOKS.declared(), UNTIL.declared(), SINCE.declared(), SOUND.declared()]
 }
 
-/// Frames between two checks, and between two checks of a sound body: a check costs about as much as an evaluation of the forces.
+/// The number of frames between two checks, and between two checks of a sound body. A check costs about as much as an
+/// evaluation of the forces.
 const PERIODS: [u64; 2] = [24, 96];
 
 /// The kinetic energy, and the dissipation in the time to leave, below which a body counts as being at rest, relative to the stored energy.
@@ -75,7 +76,8 @@ const BALANCED: f64 = 1e-2;
 /// The time that a displaced body has to leave, in units of L √(M/U).
 const PATIENCE: f64 = 12.0;
 
-/// The largest displacement of nodes, in sizes of the body: the cube root of its volume, or the square root of its area.
+/// The largest displacements of nodes, relative to the size of the body, which is the cube root of its volume, or the square
+/// root of its area.
 const SIZES: [f64; 3] = [1e-4, 1e-2, 0.1];
 
 /// The number of parts in which statics repeats a frame that ended folded.
@@ -159,7 +161,8 @@ impl<const D: usize> Island<D> {
         for (times, part) in SIZES.iter().enumerate() {
             let Some(size) = degenerate_size(&self.system, mesh) else { return Ok(()) };
             let found = Saved::of(&self.system, self.system.time);
-            // The shape at the end of the frame is displaced: the pins have reached their ends, and do not distort the cells on their way again.
+            // The shape at the end of the frame is displaced. The pins have reached their final positions, so they do not distort the cells on their
+            // way again.
             displace(&mut self.system, part * size, times as u64);
             let shape = self.system.state.x.clone();
             self.restore();
@@ -303,7 +306,7 @@ fn rotation<const D: usize>(
             }
         }
     }
-    // A body on a line has no moment of inertia about it.
+    // A body whose nodes are on a line has no moment of inertia about that line.
     let (values, vectors) = symmetric_eigen(&inertia, n);
     let least = 1e-9 * values.last().copied().unwrap_or(0.0);
     let mut out = [0.0; 3];
@@ -330,7 +333,7 @@ fn turned<const D: usize>(spin: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
 /// The size of a body that is degenerate, inverted, or strained without cause [m]; none if its shape is regular.
 fn degenerate_size<const D: usize>(system: &System<D>, mesh: &Mesh<D>) -> Option<f64> {
     let (alone, cells) = (nothing_acts(system), cells(system));
-    // Models without cells have no degenerate ones.
+    // Models without cells have no degenerate cells.
     let mut degenerate = !cells.is_empty() && is_folded(system, mesh);
     let mut volume = 0.0;
     for cell in cells {
@@ -359,7 +362,7 @@ fn cells<const D: usize>(system: &System<D>) -> Vec<CellState> {
     system.members.iter().flat_map(|member| member.potential.cell_states(&view, 0)).collect()
 }
 
-/// Whether all cells of a body are without volume.
+/// Whether no cell of a body has any volume.
 fn is_flat<const D: usize>(system: &System<D>) -> bool {
     cells(system)
         .iter()
@@ -387,7 +390,8 @@ fn displace<const D: usize>(system: &mut System<D>, size: f64, times: u64) {
     system.hold(Stage::Current, 0.0);
 }
 
-/// The same; the energy that this takes is work from outside. Nothing happens if a law is not defined in the displaced shape.
+/// Does the same, and enters the energy that this takes as work from outside. Does nothing if a law is not defined in the
+/// displaced shape.
 fn displace_with_work<const D: usize>(system: &mut System<D>, size: f64, times: u64) {
     let (x, before) = (system.state.x.clone(), system.stored_energy(Stage::Current, 0.0));
     displace(system, size, times);
@@ -398,7 +402,7 @@ fn displace_with_work<const D: usize>(system: &mut System<D>, size: f64, times: 
     }
     let given = system.stored_energy(Stage::Current, 0.0) - before;
     system.work.user[0] += given;
-    // The integrator did not contribute to it.
+    // The integrator did not contribute to this energy.
     system.work.numerical[0] += given;
 }
 

@@ -114,7 +114,7 @@ fn the_least_jacobian_of_any_cell_is_bounded_from_both_sides() {
 
 #[test]
 fn a_cell_folded_between_its_nodes_is_found() {
-    // Positive at all corners and midpoints of edges, negative on a face between them.
+    // The determinant is positive at all corners and midpoints of edges, but negative on a face between them.
     let mut nodes = tetrahedron();
     let mut state = 3;
     let found = (0..200_000).any(|_| {
@@ -143,7 +143,7 @@ fn straight_cells_have_one_jacobian_and_flat_ones_have_none() {
     let flat: Vec<[f64; 2]> = triangle().iter().map(|x| [x[0], 0.0]).collect();
     let flat = least_jacobian(&flat).expect("a cell");
     assert!(!flat.is_positive() && flat.is_upright() && !flat.is_inverted(), "{flat:?}");
-    // A corner in the plane of its neighbours is flat but not inverted, whatever its position.
+    // A corner in the plane of its neighbours is degenerate but not inverted, whatever its position.
     for shift in [0.0, 0.3, 1e3] {
         let mut cell = hexahedron();
         cell[6] = [2.0 / 3.0; 3];

@@ -20,8 +20,8 @@ pub struct Painted {
 
 /// Paints areas on a body, one over another. Each point belongs to the cell that contains it, or to the nearest one.
 ///
-/// The weights of points are bilinear in a square and barycentric in a triangle. A body without cells uses triangles between the nodes of its outline
-/// `rings`. A body of squares touches others with its outline `rings`, in edges of about half a cell.
+/// The weights of points are bilinear in a square and barycentric in a triangle. If a body has no cells, triangles between the nodes of its outline
+/// `rings` are used instead. A body of squares touches others with its outline `rings`, divided into edges of about half a cell.
 ///
 /// # Errors
 /// [`OutlineError::TooCoarse`] if the rings of a body without cells meet, [`OutlineError::Mesh`] for too many points.
@@ -77,7 +77,7 @@ pub fn carry(mesh: &mut Mesh<2>, rings: &[Ring], painted: &[Painted]) -> Result<
 /// ones would show details that no cell has.
 const EDGE: f64 = 0.5;
 
-/// Rings with edges of about this length [m]; if such edges would cross, the rings of the drawing, with long edges divided.
+/// Rings with edges of about this length [m]. If such edges would cross, the rings of the drawing with long edges divided.
 fn followed(rings: &[Ring], length: f64) -> Vec<Ring> {
     super::resampled(rings, length).unwrap_or_else(|_| {
         let cut = |ring: &Ring| {
@@ -140,12 +140,12 @@ impl<'m> Grid<'m> {
                 widest += (to[a] - from[a]) / (2 * cells.len()) as f64;
             }
         }
-        // About as wide as a cell, but with no more than a few bins for each.
+        // A bin is about as wide as a cell, but there are no more than a few bins for each cell.
         let least = distance(low, high) / (2.0 * (cells.len() as f64).sqrt() + 1.0);
         let side = if widest > least { widest } else { least };
         let counts = core::array::from_fn(|a| ((high[a] - low[a]) / side).floor() as i64);
         let mut grid = Grid { cells, positions, low, side, counts, bins: BTreeMap::new() };
-        // Long slanted cells overlap many bins: use fewer and wider bins then, down to one.
+        // Long slanted cells overlap many bins. In this case, use fewer and wider bins, down to one.
         while grid.covered(&boxes) > MOST_BINS * cells.len() as f64 && grid.counts != [0; 2] {
             grid.side *= 2.0;
             grid.counts = core::array::from_fn(|a| ((high[a] - low[a]) / grid.side).floor() as i64);
@@ -178,13 +178,14 @@ impl<'m> Grid<'m> {
         (along(0), along(1))
     }
 
-    /// The nodes that carry a point, and their weights: those of the nearby cell in which its smallest weight is largest.
+    /// The nodes that carry a point, and their weights. They belong to the nearby cell in which the smallest weight of the
+    /// point is largest.
     fn carrier(&self, point: [f64; 2]) -> ([u32; 4], [f64; 4]) {
         let (i, j) = self.bin(point);
         let widest = if self.counts[0] > self.counts[1] { self.counts[0] } else { self.counts[1] };
         let mut best = (f64::NEG_INFINITY, ([0; 4], [1.0, 0.0, 0.0, 0.0]));
         for reach in 0..=widest + 1 {
-            // The bins at this distance; nearer ones have been examined.
+            // The bins at this distance; nearer bins have already been examined.
             let columns = (i - reach..=i + reach).filter(|column| (0..=self.counts[0]).contains(column));
             let ring = columns.flat_map(|column| {
                 let step = if (column - i).abs() == reach { 1 } else { 2 * reach };
@@ -196,7 +197,8 @@ impl<'m> Grid<'m> {
                     best = weighed;
                 }
             }
-            // A cell that contains the point is found at once; a nearby cell within one bin more than the first.
+            // A cell that contains the point ends the search. If a nearby cell has been found, the search goes on by one more
+            // bin.
             if best.0 >= 0.0 || best.0 > f64::NEG_INFINITY && reach > 0 {
                 break;
             }

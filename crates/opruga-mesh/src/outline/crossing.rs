@@ -27,7 +27,7 @@ fn segments_meet(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
 /// An edge of a ring: (number of the ring, number of the edge); edge i runs from point i to the next.
 pub(crate) type EdgeOfRing = (usize, usize);
 
-/// The maximum number of boxes that are compared: a constant, about a second of work, plus a number for each edge. Typical drawings need about a
+/// The maximum number of boxes that are compared: a constant, which takes about a second, plus a number for each edge. Typical drawings need about a
 /// hundred per edge. Without a limit, a hundred thousand long edges that fan out from one point, whose boxes all overlap, would take minutes.
 const MOST_COMPARED: [u64; 2] = [1 << 27, 500];
 
@@ -36,8 +36,8 @@ const MARGIN: f64 = 64.0 * f64::EPSILON;
 
 /// The lowest pair of edges of closed rings that meet other than at a shared end.
 ///
-/// Only edges with overlapping boxes are compared. Boxes are aligned with the direction of most long edges, so that those of a slanted comb are thin
-/// too.
+/// Only edges with overlapping boxes are compared. Boxes are aligned with the direction of most long edges, so that the boxes of a slanted comb are
+/// thin too.
 ///
 /// # Errors
 /// [`MeshError::NotCompared`] if too many boxes overlap.
@@ -48,7 +48,7 @@ pub(crate) fn first_meeting(rings: &[&[[f64; 2]]]) -> Result<Option<[EdgeOfRing;
     search(rings, most, &mut compared).map_err(|()| MeshError::NotCompared { edges, most })
 }
 
-/// The same; counts the comparisons of boxes, and gives up if there are too many.
+/// Does the same, counts the comparisons of boxes, and gives up if there are too many.
 fn search(rings: &[&[[f64; 2]]], most: u64, compared: &mut u64) -> Result<Option<[EdgeOfRing; 2]>, ()> {
     let edges: Vec<EdgeOfRing> =
         rings.iter().enumerate().flat_map(|(ring, points)| (0..points.len()).map(move |edge| (ring, edge))).collect();
@@ -64,7 +64,8 @@ fn search(rings: &[&[[f64; 2]]], most: u64, compared: &mut u64) -> Result<Option
     let (width, height) = (extent(0), extent(1));
     let size = if width > height { width } else { height };
 
-    // The mean direction of the edges and their perpendiculars, weighted by length: four times the angle is equal for both.
+    // The mean direction of the edges and their perpendiculars, weighted by length. It uses four times the angle, which is the
+    // same for an edge and its perpendicular.
     let (mut along, mut across) = (0.0, 0.0);
     for edge in &edges {
         let (a, b) = ends(*edge);
@@ -90,7 +91,7 @@ fn search(rings: &[&[[f64; 2]]], most: u64, compared: &mut u64) -> Result<Option
     });
     let tree = Segments::of(boxes.collect());
 
-    // Edge by edge in ascending order: the first that meets a later one is part of the lowest pair.
+    // Edges are tested in ascending order: the first edge that meets a later one is part of the lowest pair.
     for number in 0..edges.len() as u32 {
         let mut lowest: Option<u32> = None;
         *compared += tree.beside(number, |other| {

@@ -7,10 +7,10 @@ use crate::{MAXIMUM_NODES, Mesh};
 use spade::{AngleLimit, Point2, RefinementParameters, Triangulation};
 use std::collections::BTreeMap;
 
-/// Circumradius over shortest edge at [`super::SMALLEST_ANGLE`]: ½ / sin 25°.
+/// The ratio of the circumradius to the shortest edge at [`super::SMALLEST_ANGLE`]: ½ / sin 25°.
 const RADIUS_TO_EDGE: f64 = 1.183_100_791_576_249_3;
 
-/// √3 / 2: height of an equilateral triangle over its side.
+/// √3 / 2, the ratio of the height of an equilateral triangle to its side.
 const HEIGHT: f64 = 0.866_025_403_784_438_6;
 
 /// The smallest distance of inner nodes from the outline, relative to the spacing.
@@ -30,8 +30,8 @@ pub fn node_estimate(rings: &[Ring], spacing: f64) -> f64 {
 ///
 /// Nodes of the rings come first and keep their order. Edges of the rings may be halved if a triangle would otherwise be too thin. Inside, the nodes
 /// form a regular triangular lattice. Between it and the outline there is a constrained Delaunay triangulation, refined until no angle is below
-/// [`super::SMALLEST_ANGLE`], except in triangles that are too small to be divided: small triangles would require short time steps. Smaller angles in
-/// the result are reported.
+/// [`super::SMALLEST_ANGLE`], except in triangles that are too small to be divided, because small triangles would require short time steps. Smaller
+/// angles in the result are reported.
 ///
 /// # Errors
 /// [`OutlineError::TooCoarse`] if edges of the rings cross, [`OutlineError::TooFine`] if the mesh would be too large.
@@ -118,7 +118,7 @@ pub(crate) fn triangles_between(rings: &[Ring]) -> Result<Vec<[u32; 3]>, Outline
 
 /// Points of a triangular lattice inside the rings and at some distance from them, row by row.
 fn lattice(rings: &[Ring], low: [f64; 2], high: [f64; 2], spacing: f64) -> Vec<[f64; 2]> {
-    // Edges by the cells of a grid that they pass through.
+    // Edges, sorted by the grid cells that they pass through.
     let cell = |x: f64| (x / spacing).floor() as i64;
     let edges: Vec<([f64; 2], [f64; 2])> = rings.iter().flat_map(Ring::edges).collect();
     let mut edges_by_cell: BTreeMap<(i64, i64), Vec<usize>> = BTreeMap::new();

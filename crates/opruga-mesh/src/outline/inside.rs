@@ -117,7 +117,7 @@ impl Inside {
         Inside { edges, tree }
     }
 
-    /// Whether a point is inside, which is so if an odd number of edges cross the ray to its right.
+    /// Whether a point is inside, that is, whether an odd number of edges cross the ray to its right.
     pub fn holds(&self, point: [f64; 2]) -> bool {
         let mut inside = false;
         self.tree.along_ray(point, |number| {
@@ -142,7 +142,7 @@ mod tests {
         Ring { points, part: 0 }
     }
 
-    /// Tests every ring with a point of every other one: the smallest ring that contains it.
+    /// Finds the smallest ring that contains each ring, by testing every ring with a point of every other one.
     fn by_all_pairs(rings: &[Ring]) -> Vec<Option<usize>> {
         let of = |number: usize| {
             let holds =

@@ -93,7 +93,8 @@ pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// Rings as the skin of a body: an edge from every point to the next. Rings that [`nest`] has oriented make chambers with holes.
+/// A body whose skin consists of the rings, with an edge from every point to the next. Rings that [`nest`] has oriented make
+/// chambers with holes.
 ///
 /// # Errors
 /// [`MeshError::TooManyNodes`].

@@ -34,7 +34,8 @@ pub fn nest(rings: &mut [Ring]) -> Result<usize, OutlineError> {
 
 /// Whether a ring is inside an odd number of others. Known results are kept.
 fn is_hole(number: usize, around: &[Option<usize>], known: &mut [Option<bool>]) -> bool {
-    // Follow the nesting outwards to a ring with a known result, and return; there may be thousands of levels.
+    // Follow the nesting outwards to a ring with a known result, and return. This is not recursive, because there may be
+    // thousands of levels.
     let (mut path, mut at) = (Vec::new(), number);
     let mut hole = loop {
         match (known[at], around[at]) {

@@ -41,13 +41,15 @@ pub fn wound(rings: &[Ring]) -> Vec<Ring> {
     }
 }
 
-/// The rings of [`joined`], which may touch; with all points on their edges, or without points on straight lines.
+/// The rings of [`joined`] before they are separated, so they may touch. They have all points on their edges, or no points on
+/// straight lines.
 fn covered(rings: &[Ring], how: Overlap, all_points: bool) -> Vec<Ring> {
     let everything: Vec<&Ring> = rings.iter().collect();
     numbered(match how {
         Overlap::EvenOdd => contours(&everything, FillRule::EvenOdd, all_points),
         Overlap::Union => {
-            // First each part separately, then all of them together: outer rings and holes then have opposite directions.
+            // First, each part is processed separately, so that outer rings and holes have opposite directions; then all of
+            // them together.
             let mut by_part = everything;
             by_part.sort_by_key(|ring| ring.part);
             let clean: Vec<Ring> = by_part

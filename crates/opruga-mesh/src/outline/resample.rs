@@ -4,8 +4,8 @@ use super::{OutlineError, Ring, distance};
 use crate::Quantity;
 use std::collections::BTreeSet;
 
-/// A turn by more than this within one edge length is a corner: cos 35°. The tip of a heart may turn by only 40°, a regular octagon turns by 45°; a
-/// circle that is cut into twelve edges or more, in which turns are measured, by at most 30°.
+/// Cosine of the angle, 35°, above which a turn within one edge length is a corner. The tip of a heart may turn by only 40°, and a regular octagon
+/// turns by 45°. A circle with twelve or more edges of the length in which turns are measured turns by at most 30°.
 const CORNER_COSINE: f64 = 0.819_152_044_288_991_8;
 
 /// Rings with points about `spacing` [m] apart. Corners are kept, the curves between them are divided into equal lengths, and detail finer than the
@@ -113,7 +113,7 @@ impl<'a> Curve<'a> {
                 candidates.push((cosine, *length));
             }
         }
-        // The sharpest first; candidates within its reach belong to it.
+        // The sharpest corner comes first; candidates within its reach belong to it.
         candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
         // Lengths are not negative, so their bits have the same order as the numbers.
         let mut corners: BTreeSet<u64> = fixed.iter().map(|point| self.from_start[*point].to_bits()).collect();
@@ -124,7 +124,7 @@ impl<'a> Curve<'a> {
                     gap > reach && self.total - gap > reach
                 })
             };
-            // The neighbours before and after, across the end of the ring.
+            // The neighbours before and after, including those across the end of the ring.
             let key = length.to_bits();
             let before = corners.range(..key).next_back().or(corners.last());
             let behind = corners.range(key..).next().or(corners.first());

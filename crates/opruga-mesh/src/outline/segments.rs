@@ -98,8 +98,8 @@ impl Segments {
         compared
     }
 
-    /// Visits edges whose box intersects the ray from a point to the right, near ones first. `visit` returns how far the ray has to be followed: to
-    /// the nearest edge found so far.
+    /// Visits edges whose box intersects the ray from a point to the right, near edges first. `visit` returns how far the ray has to be followed,
+    /// which is the distance to the nearest edge found so far.
     pub(super) fn along_ray(&self, from: [f64; 2], mut visit: impl FnMut(u32) -> f64) {
         let mut reach = f64::INFINITY;
         let met = |bounds: &Bounds, reach: f64| {

@@ -17,8 +17,8 @@ pub fn squares_estimate(rings: &[Ring], spacing: f64) -> f64 {
 /// The inside of rings that [`super::nest`] has oriented, as equal squares of side `spacing` [m], which extend slightly beyond the rings. A square is
 /// kept if a ring passes through it or if its centre is inside. If two squares would touch only at a corner, one beside them is added.
 ///
-/// Detail finer than the spacing affects the squares only by its extent: parts less than a square apart become one body. The lattice is centred in
-/// the box of the rings. Nodes are numbered row by row, from below.
+/// Detail finer than the spacing is lost: parts that are less than a square apart become one body. The lattice is centred in the box of the rings.
+/// Nodes are numbered row by row, from below.
 ///
 /// # Errors
 /// [`OutlineError::TooFine`] if the lattice would be too large, [`OutlineError::Empty`] without rings.
@@ -82,7 +82,7 @@ fn crossed(rings: &[Ring], origin: [f64; 2], spacing: f64) -> BTreeSet<Square> {
 
 /// Squares whose centre is inside by the even-odd rule, row by row.
 fn inside(rings: &[Ring], origin: [f64; 2], spacing: f64) -> Vec<Square> {
-    // Every edge adds its crossing to the rows whose middle is between its ends.
+    // Every edge adds a crossing to each row whose middle is between its ends.
     let mut rows: BTreeMap<i64, Vec<f64>> = BTreeMap::new();
     for (a, b) in rings.iter().flat_map(Ring::edges) {
         let row = |y: f64| (y - origin[1]) / spacing - 0.5;
@@ -113,7 +113,7 @@ fn close_corners(kept: &mut BTreeSet<Square>) {
         let mut missing = BTreeSet::new();
         for (i, j) in added {
             for side in [-1, 1] {
-                // The square as the lower one of two that touch, and as the upper one.
+                // The square is tested both as the lower and as the upper one of two that touch.
                 for (i, j) in [(i, j), (i - side, j - 1)] {
                     let beside = [(i + side, j), (i, j + 1)];
                     let both = kept.contains(&(i, j)) && kept.contains(&(i + side, j + 1));

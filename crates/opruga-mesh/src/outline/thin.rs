@@ -12,9 +12,9 @@ const ROUNDING: f64 = 1e-6;
 /// The cause of a thin triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
-    /// The outline itself has a corner with this inner angle [°] there.
+    /// The outline itself has a corner with this inner angle [°] at this position.
     Corner(f64),
-    /// Sides or nodes of the outline are closer to one another there than the spacing; smaller triangles would require shorter time steps.
+    /// Sides or nodes of the outline are closer to one another than the spacing at this position; smaller triangles would require shorter time steps.
     Finer,
     /// The refinement ended because it reached the maximum number of added nodes.
     Unfinished,

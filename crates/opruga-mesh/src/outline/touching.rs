@@ -17,7 +17,7 @@ pub(super) fn apart(rings: &[Ring]) -> Vec<Ring> {
     let mut next = corners.next.clone();
     let mut moved = corners.points.clone();
     for here in corners.by_position().into_values().filter(|here| here.len() > 1) {
-        // Sorted by direction; of equal ones the first comes last, where the search finds it.
+        // Sorted by direction; of equal ones the first comes last, so that the search finds it.
         let mut leaving: Vec<(f64, usize)> =
             here.iter().map(|corner| (corners.direction(*corner, corners.next[*corner]), *corner)).collect();
         leaving.sort_by(|p, q| p.0.total_cmp(&q.0).then(q.1.cmp(&p.1)));
@@ -55,7 +55,7 @@ pub(super) fn touching(rings: &[Ring]) -> Vec<Vec<usize>> {
     let Some((low, high)) = bounds(rings) else { return found };
     // Slightly more than the largest distance of two corners that have been separated.
     let tolerance = 4.0 * distance(low, high) * APART;
-    // Two close points share a column of one of two gratings, and are consecutive in it.
+    // Two close points are in the same column of at least one of two gratings, and are consecutive in it.
     for shift in [0.0, tolerance] {
         let mut order: Vec<(f64, f64, usize, usize)> = Vec::new();
         for (number, ring) in rings.iter().enumerate() {
@@ -120,7 +120,7 @@ impl Corners {
     }
 }
 
-/// The angle from one direction clockwise to another [rad]: above 0, at most a full turn.
+/// The clockwise angle from one direction to another [rad]: above 0, and at most a full turn.
 fn clockwise(from: f64, to: f64) -> f64 {
     let angle = from - to;
     if angle > 0.0 { angle } else { angle + core::f64::consts::TAU }

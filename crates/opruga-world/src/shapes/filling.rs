@@ -37,7 +37,7 @@ impl Filling {
     /// The errors of [`Mesh::lattice_filling`] and [`Mesh::tetrahedra_filling`]; [`MeshError::Lost`] for tetrahedra that lose more than a quarter.
     pub fn of(self, surface: &Mesh<3>) -> Result<(Mesh<3>, Option<Loss>), MeshError> {
         let spacing = match self {
-            // It extends beyond the surface, and carries the surface unchanged.
+            // This filling extends beyond the surface, and carries the surface unchanged.
             Filling::Lattice(spacing) => return Ok((surface.lattice_filling(spacing)?, None)),
             Filling::Tetrahedra(spacing) => spacing,
         };

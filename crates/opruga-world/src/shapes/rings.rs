@@ -99,7 +99,7 @@ fn check(circles: &[Circle<'_>]) -> Result<(), MeshError> {
         });
         high - low
     };
-    // Sort along the axis with the larger extent; compare each ring with those that overlap it there.
+    // Sort along the axis with the larger extent; compare each ring with those that overlap it along that axis.
     let axis = usize::from(spread(1) > spread(0));
     let ends = |k: usize| {
         let size = circles[k].size() * (1.0 + TOUCHING);
