@@ -26,7 +26,7 @@ fn font() -> &'static FontRef<'static> {
     READ.get_or_init(|| FontRef::try_from_slice(FONT).expect("the font of the crate is a font"))
 }
 
-/// The advance of a character. All digits have the same, so that changing numbers do not jump.
+/// The advance of a character. All digits have the same advance, so that changing numbers do not jump.
 fn advance(sign: char, size: f32) -> f32 {
     let font = font().as_scaled(size * font_scale());
     let wide = if sign.is_ascii_digit() { '0' } else { sign };

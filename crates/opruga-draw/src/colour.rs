@@ -6,7 +6,7 @@ pub enum ColourMap {
     /// From dark violet to yellow, with evenly increasing lightness: for quantities from low to high.
     #[default]
     Viridis,
-    /// From dark blue to yellow: the same for people who cannot distinguish red from green.
+    /// From dark blue to yellow: for quantities from low to high, and for people who cannot distinguish red from green.
     Cividis,
     /// From dark to light grey, for people who see no colours, and for print.
     Grey,

@@ -6,7 +6,7 @@ use crate::picture::Picture;
 use crate::solid::camera::{Camera, along, axes, dot};
 use crate::view::View;
 
-/// A camera that looks at a point from a direction; it shows a ball around that point.
+/// A camera that looks at a point from a direction, and shows a ball around that point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eye {
     /// The point it looks at [m].

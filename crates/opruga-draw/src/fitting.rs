@@ -197,7 +197,7 @@ impl Fitting {
         }
     }
 
-    /// The same without the region that the pictures request: everything seen.
+    /// Ignores the region that the pictures request, so that everything is shown.
     pub fn everything(mut self) -> Fitting {
         self.sight.iter_mut().for_each(|sight| sight.region = None);
         self
@@ -222,7 +222,7 @@ impl Fitting {
         }
         let sight = self.sight.unwrap_or_default();
         if let Some([low, high]) = sight.region {
-            // The border around the visible part is subtracted, so that a flat region is shown exactly.
+            // The border around the visible part is subtracted, so that a flat region is shown exactly as requested.
             let border = if low[2] == high[2] { BORDER / (1.0 + 2.0 * BORDER) } else { 0.0 };
             let side = border * Bounds { low, high }.side();
             self.bounds = Bounds { low, high };
@@ -265,7 +265,7 @@ impl Fitting {
     }
 }
 
-/// The value that a fraction of the values does not exceed; 0 without values.
+/// The value that a given fraction of the values does not exceed; 0 if there are no values.
 fn quantile(values: &mut [f64], share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let index = (share * values.len().saturating_sub(1) as f64).round() as usize;

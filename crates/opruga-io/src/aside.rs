@@ -1,4 +1,5 @@
-//! Files that are written under a temporary name before they get their own: who holds them, and which of them were abandoned.
+//! Files that are written under a temporary name before they get their own: which of them are held by a process, and which were
+//! abandoned.
 //!
 //! A file is locked while its bytes are written. The system frees the lock when the process ends, however it ends. A file of this kind that can be
 //! locked was therefore left by a killed process, and is removed. Process numbers would not identify it: they are reused, and several machines may
@@ -36,7 +37,7 @@ pub(crate) fn is_aside(name: &str) -> bool {
     name_within(name).is_some()
 }
 
-/// Creates a temporary file in a folder for a file of this name. It is locked while it is open.
+/// Creates a temporary file in a folder for a file with this name. It is locked while it is open.
 pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, File)> {
     let mut writer = u64::from(std::process::id());
     loop {
@@ -50,12 +51,12 @@ pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, Fi
                     }
                     _ => {}
                 }
-                // Between its creation and its lock, another process may have taken the file for an abandoned one.
+                // Between its creation and its lock, another process may have considered the file abandoned.
                 if is_the_file(&file, &aside) {
                     return Ok((aside, file));
                 }
             }
-            // Another writer has the same number: another thread, or a process in another container.
+            // Another writer has the same number, such as another thread, or a process in another container.
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists && !remove_if_dead(&aside) => writer += 1,
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
             Err(e) => return Err(e),
@@ -63,7 +64,7 @@ pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, Fi
     }
 }
 
-/// Removes the temporary files that killed processes left for a file of this name in a folder; without a name, those for all files.
+/// Removes the temporary files that killed processes left in a folder for a file with this name; without a name, those for all files.
 pub(crate) fn remove_the_dead(folder: &Path, name: Option<&OsStr>) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for found in entries.filter_map(|entry| entry.file_name().into_string().ok()) {
@@ -74,12 +75,12 @@ pub(crate) fn remove_the_dead(folder: &Path, name: Option<&OsStr>) {
     }
 }
 
-/// Removes a file that nobody holds, and returns whether it is gone. If the file system has no locks, nobody can know whether the file is held, and
-/// it stays.
+/// Removes a file that no process holds, and returns whether it is gone. If the file system has no locks, it is unknown whether the file is held, so
+/// it is kept.
 fn remove_if_dead(aside: &Path) -> bool {
     match File::open(aside) {
         Ok(file) => match file.try_lock() {
-            // While it is locked: afterwards its name may mean another file.
+            // It is removed while it is locked, because afterwards its name may mean another file.
             Ok(()) => is_the_file(&file, aside) && fs::remove_file(aside).is_ok(),
             Err(TryLockError::WouldBlock | TryLockError::Error(_)) => false,
         },

@@ -1,4 +1,4 @@
-//! Brackets of a scene that are never closed: one such slip causes the many errors that a parser then reports.
+//! Brackets of a scene that are never closed. One such slip causes a parser to report many errors.
 
 use crate::source::end_of_string;
 

@@ -1,9 +1,9 @@
 //! Limits of the work that a file may ask for, in cases where a small file can ask for a lot.
 //!
-//! The time and memory for a file that is read as it is are proportional to its bytes, which are limited themselves. The items listed here can grow
-//! faster: points of curves, elements and triangles that are named repeatedly, texts that stand for longer ones, compressed data. Each limit is far
-//! above what people draw, and small enough that a file at the limit is read within seconds. A file above a limit is refused with the count before
-//! memory is allocated for it.
+//! The time and memory for most files are proportional to their size in bytes, which is itself limited. The items listed here can grow faster: points
+//! of curves, elements and triangles that are named repeatedly, short texts that expand to long ones, and compressed data. Each limit is far above
+//! what people draw, and small enough that a file at the limit is read within seconds. A file above a limit is refused with the count before memory
+//! is allocated for it.
 
 use crate::problem::SceneError;
 use opruga_math::{messages, terms};
@@ -57,8 +57,8 @@ pub(crate) struct Limit {
 /// Closed curves of a drawing, a map, a text or a picture, each of which is a part of a body. A chessboard of pixels, or noise, has a million.
 pub(crate) const OUTLINES: Limit = Limit { code: "limit.outlines", most: 1 << 16, what: Counted::Outlines };
 
-/// Points of these curves. Points that `use`, arcs of a topology or letters repeat count every time; a curve counts as the points that it is divided
-/// into.
+/// Points of these curves. If points are repeated by `use`, by arcs of a topology or by letters, they count every time. A curve counts as the points
+/// into which it is divided.
 pub(crate) const POINTS: Limit = Limit { code: "limit.points", most: 1 << 21, what: Counted::Points };
 
 /// Pixels of a picture. They are read row by row; only contours are kept.
@@ -67,7 +67,7 @@ pub(crate) const PIXELS: Limit = Limit { code: "limit.pixels", most: 1 << 26, wh
 /// Elements of a drawing, counted as often as `use` draws them: elements that each use another one twice could draw nothing 2⁶⁰ times.
 pub(crate) const ELEMENTS: Limit = Limit { code: "limit.elements", most: 1 << 19, what: Counted::Elements };
 
-/// Bytes that the entities of an XML file, or the parts of composite letters, stand for.
+/// Bytes to which the entities of an XML file, or the parts of composite letters, expand.
 pub(crate) const EXPANSION: Limit = Limit { code: "limit.expansion", most: 1 << 24, what: Counted::Text };
 
 /// Comparisons of style sheet rules with elements.
@@ -80,11 +80,11 @@ pub(crate) const INSTANCES: Limit = Limit { code: "limit.instances", most: 1 << 
 /// Numbers in the arrays of a compressed file, besides [`NUMBERS_PER_BYTE`] for each of its bytes.
 pub(crate) const NUMBERS: Limit = Limit { code: "limit.numbers", most: 1 << 20, what: Counted::Numbers };
 
-/// A compressed mesh has about one byte for one or two of its numbers; zeros have one byte for a thousand.
+/// A compressed mesh takes about one byte for one or two numbers, or one byte for a thousand numbers that are zero.
 pub(crate) const NUMBERS_PER_BYTE: u64 = 8;
 
-/// Values of cells, numbers of nodes, and cells in groups: the number of names times the number of cells, whether a file gives all values or omits
-/// most of them.
+/// Values of cells, numbers of nodes, and cells in groups. The count is the number of names times the number of cells, even if a file omits most
+/// values.
 pub(crate) const VALUES: Limit = Limit { code: "limit.values", most: 1 << 25, what: Counted::Values };
 
 /// The largest number of omitted things that are listed; the rest are counted.

@@ -42,7 +42,7 @@ pub(crate) fn fields(kind: &[&'static Spec]) -> Vec<(&'static Field, Vec<&'stati
             match fields.iter_mut().find(|(known, _)| **known == *field) {
                 Some((_, of)) => of.push(spec),
                 None => {
-                    // Next to the field of the same name, if another dimension has one.
+                    // Placed next to the field of the same name, if another dimension has one.
                     let index = fields.iter().rposition(|(known, _)| known.name == field.name);
                     fields.insert(index.map_or(fields.len(), |index| index + 1), (field, vec![spec]));
                 }

@@ -9,7 +9,7 @@
 //! 32     the scene, then CRC-32 of it
 //!        the payload in pieces of 1 MiB, each followed by its CRC-32
 //! ```
-//! The file ends there: anything more or less is refused.
+//! The file ends after the last checksum: anything more or less is refused.
 
 use crate::problem::SceneError;
 use opruga_math::messages;
@@ -24,7 +24,7 @@ const HEAD: usize = 32;
 /// The contents of a checkpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checkpoint {
-    /// The text of the scene as it was read: the checkpoint needs no other file. Overrides belong in the payload.
+    /// The text of the scene as it was read, so that the checkpoint needs no other file. Overrides belong in the payload.
     pub scene: String,
     /// The state, in the form of the world that wrote it.
     pub payload: Vec<u8>,

@@ -107,7 +107,7 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     let count = problems.len();
     for problem in problems.into_iter().take(MOST_SHOWN) {
         let span = problem.span().unwrap_or(0..0);
-        // Everything that is read as part of an unclosed list makes no sense, but is only one slip.
+        // Everything that is read as part of an unclosed list is wrong, but this is only one mistake.
         if let Some(open) = open.filter(|open| span.start >= open.open) {
             if !std::mem::replace(&mut reported, true) {
                 let (line, until) = (source.position(open.open).0, source.position(open.until).0);
@@ -156,7 +156,7 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     (if broken { None } else { Some(root) }, errors)
 }
 
-/// Errors of the parser about lines that make no sense because the previous line made none.
+/// Errors of the parser that only follow from an error in the previous line.
 const FOLLOW: [&str; 3] = ["invalid key-value pair", "missing table open", "key with no value"];
 
 /// A hint if the value is a number followed by a unit.

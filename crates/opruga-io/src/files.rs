@@ -1,4 +1,4 @@
-//! The files that a scene names: they are next to it, or in memory.
+//! The files that a scene names, which are next to the scene or in memory.
 
 use crate::problem::{SceneError, visible};
 use crate::text_errors::{FileError, Measured};
@@ -91,7 +91,7 @@ impl Files {
             .map_err(|error| if path.exists() { error.value(visible(name)) } else { self.missing(folder, name) })
     }
 
-    /// Refuses names that lead out of the folder by their words or by links.
+    /// Refuses names that lead out of the folder, by `..` or by links.
     fn check_location(&self, folder: &Path, path: &Path, name: &str) -> Result<(), SceneError> {
         if self.outside {
             return Ok(());

@@ -82,7 +82,7 @@ impl OutputFolder {
         let mut lock = open().map_err(|e| cannot(Doing::Written, &e))?;
         let mut locked = lock.try_lock();
         while locked.is_ok() && !is_the_file(&lock, &path.join(LOCK)) {
-            // Its last owner has just removed it: nobody else would find the lock that is taken here.
+            // The last owner of the lock has just removed its file, so no one else would find the lock that is taken here.
             lock = open().map_err(|e| cannot(Doing::Written, &e))?;
             locked = lock.try_lock();
         }
@@ -110,7 +110,7 @@ impl OutputFolder {
                 .collect();
             names.sort();
             if let Some(first) = names.first() {
-                // None of our files stays in a folder that belongs to somebody else, nor does the lock of a process that was killed here.
+                // No file of this process may remain in a folder that belongs to someone else, nor may the lock of a process that was killed.
                 let _ = fs::remove_file(path.join(LOCK));
                 let file = crate::problem::visible(first);
                 return Err(WriteError::of(

@@ -1,7 +1,7 @@
 //! Outputs that would destroy an input or each other: they are found before anything is computed, and refused even with `--force`.
 //!
-//! `--force` lets a call replace the output of an earlier one. It does not allow it to replace an input: the lost file may be a drawing or a scene
-//! that cannot be computed again.
+//! `--force` lets a call replace the output of an earlier one. It does not let a call replace an input, because the lost file may be a drawing or a
+//! scene that cannot be computed again.
 
 use crate::aside::is_aside;
 use crate::safe_write::WriteError;
@@ -137,7 +137,7 @@ impl Found {
     }
 
     /// Whether two names mean the same file, or will once they are written. On many systems, names that do not exist yet and differ only by case or
-    /// by the Unicode form of their letters are the same file. Whether this is such a system shows only when it is too late.
+    /// by the Unicode form of their letters are the same file. Whether a system is of this kind shows only when it is too late.
     fn would_be(&self, other: &Found) -> bool {
         let form = |found: &Found| crate::canonical::decomposed(&found.real.to_string_lossy().to_lowercase());
         self.is(other) || self.number.is_none() && other.number.is_none() && form(self) == form(other)
@@ -163,7 +163,7 @@ fn real(path: &Path, links: &mut u32) -> PathBuf {
                 let here = out.join(name);
                 out = match (here.canonicalize(), fs::read_link(&here)) {
                     (Ok(there), _) => there,
-                    // A link to a file that does not exist yet: writing the link writes that file.
+                    // A link to a file that does not exist yet; writing to the link creates that file.
                     (Err(_), Ok(goal)) if *links < MOST_LINKS => {
                         *links += 1;
                         real(&out.join(goal), links)

@@ -1,4 +1,5 @@
-//! Errors and notices: what is wrong, where, and what would be right. They are written for people and, as JSON, for programs.
+//! Errors and notices, which say what is wrong, where, and what would be right. They are written for people and, as JSON, for
+//! programs.
 
 use crate::scene::errors::FieldError;
 use core::fmt;
@@ -199,7 +200,7 @@ impl SceneError {
     pub fn text(&self, translation: Option<&Translation>) -> String {
         describe(self, Label::Error, translation)
     }
-    /// The same error with the names that replace the settings of a scene elsewhere.
+    /// The same error with the names that are used instead of the settings of a scene outside of scenes.
     #[must_use]
     pub fn replaced(mut self, settings: &Replacing<'_>) -> SceneError {
         for message in [&mut self.about, &mut self.advice, &mut self.allowance].into_iter().flatten() {
@@ -238,7 +239,7 @@ impl SceneError {
 /// The code of the error that represents those that are not shown.
 const MORE: &str = "scene.more";
 
-/// The largest number of errors that are shown for a file: after fixing fifty, the user runs the check again.
+/// The largest number of errors that are shown for a file. After fixing fifty, the user runs the check again.
 pub const MOST_SHOWN: usize = 50;
 
 /// The first errors of a list, followed by one that gives the number of the others.
@@ -268,12 +269,12 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// Notices about things that the scene itself asks for, or that are not unusual (a flat face with all of its corners). They are worth knowing, but
-/// are not errors if warnings are errors.
+/// Notices about things that the scene itself asks for, or that are usual (such as a flat face with all of its corners). They are worth knowing, but
+/// are not errors when warnings are treated as errors.
 const ASKED_FOR: [&str; 3] = ["shape.overlap", "shape.dropped", "mesh.concave_face"];
 
 impl Notice {
-    /// Whether a notice with this code only reports what the scene asked for, or what is so in the file.
+    /// Whether a notice with this code only reports what the scene asked for, or a property of the file.
     pub fn is_asked_for(code: &str) -> bool {
         ASKED_FOR.contains(&code)
     }
@@ -344,8 +345,8 @@ fn describe(error: &SceneError, severity: Label, translation: Option<&Translatio
     out
 }
 
-/// Makes a text from outside fit to be printed: control characters, marks that change the direction of writing and invisible characters are escaped,
-/// and texts of more than 120 characters are cut.
+/// Makes a text from outside safe to print: control characters, marks that change the direction of writing and invisible characters are escaped, and
+/// texts of more than 120 characters are cut.
 pub fn visible(text: &str) -> String {
     let mut out = String::new();
     for (n, c) in text.chars().enumerate() {

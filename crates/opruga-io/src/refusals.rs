@@ -45,7 +45,7 @@ messages! {
 pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[RefusalHint::VARIANTS, CommandRefusal::VARIANTS];
 
 impl From<&WorldError> for SceneError {
-    /// Converts the error to one in the terms of a scene: what is wrong, what is allowed, what would help. The location is that of the path;
+    /// Converts the error to the terms of a scene: what is wrong, what is allowed, and what would help. The location is given by the path;
     /// [`in_scene`] finds its line.
     fn from(error: &WorldError) -> SceneError {
         let scene_error = SceneError { code: error.code(), ..SceneError::of(error.clone()) }.path(path_of(error));
@@ -165,7 +165,7 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
     }
 }
 
-/// Converts the error with which a running command of a scene was refused: adds the location of the command and what would help there.
+/// Converts the error with which a running command of a scene was refused: adds the location of the command and a hint for that command.
 #[must_use]
 pub fn of_command(
     error: &WorldError,

@@ -70,7 +70,7 @@ impl Stored {
         if self.apart > 0.0 && self.apart.is_finite() { self.rounding / self.apart } else { 0.0 }
     }
 
-    /// Returns the one of two parts of a file that has lost more.
+    /// Returns the part that has lost more, of two parts of a file.
     pub(crate) fn worse(self, other: Stored) -> Stored {
         if other.part() > self.part() { other } else { self }
     }

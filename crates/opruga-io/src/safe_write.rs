@@ -117,7 +117,7 @@ pub trait Target: Write {
     /// Returns when everything written so far would survive a power failure.
     ///
     /// # Errors
-    /// Those of the system: network drives often report only here that they are gone.
+    /// The errors of the system: network drives often report only here that they are gone.
     fn sync(&self) -> io::Result<()>;
 }
 
@@ -133,7 +133,7 @@ impl Target for File {
     }
 }
 
-/// [`safe_write`] with a writer made by the caller, for tests in which the disk fails.
+/// Does the same as [`safe_write`] with a writer made by the caller, for tests in which the disk fails.
 ///
 /// # Errors
 /// Those of [`safe_write`].
@@ -164,7 +164,7 @@ impl Aside {
     /// Writes and syncs a file next to its final path.
     ///
     /// # Errors
-    /// Those of [`safe_write`]; nothing is left behind then.
+    /// The errors of [`safe_write`]; in this case no file is left behind.
     pub(crate) fn write<'a>(path: &Path, force: bool, wrap: Wrap<'a>, fill: Fill<'a>) -> Result<Aside, WriteError> {
         if path.is_dir() {
             return Err(WriteError::of(path, WriteFault::IsFolder {}));
@@ -195,7 +195,7 @@ impl Aside {
     /// Gives the file its name, replacing the file that had it; returns its size [bytes].
     ///
     /// # Errors
-    /// Those of [`safe_write`]; nothing is left behind then.
+    /// The errors of [`safe_write`]; in this case no file is left behind.
     pub(crate) fn name(self, force: bool) -> Result<u64, WriteError> {
         let Aside { path, bytes, .. } = &self;
         if !force && path.exists() {

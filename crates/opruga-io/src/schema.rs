@@ -60,8 +60,8 @@ fn describe(spec: &Spec) -> String {
     }
 }
 
-/// Tables of which `kind` selects one. Each kind occurs once, because a table that matches two entries of `oneOf` is invalid. If a field differs
-/// between the dimensions, the values of both are allowed.
+/// Tables, one of which is selected by `kind`. Each kind occurs once, because a table that matches two entries of `oneOf` is invalid. If a field
+/// differs between the dimensions, the values of both are allowed.
 fn kinds(specs: &[&'static Spec], catalogue: &Catalogue) -> Value {
     let table = |kind: Vec<&'static Spec>| {
         let mut schema = section(&Section { spec: kind[0], children: &[] }, Some("kind"), catalogue);

@@ -277,7 +277,7 @@ mod tests {
         assert!(vtk.contains("LOOKUP_TABLE default\n0\n0\n0\n1\nPOINT_DATA 5\n"), "{vtk}");
     }
 
-    /// A solid is exported to VTK with its interior, to the others by its surface.
+    /// A solid is exported to VTK with its interior, and to the other formats by its surface.
     #[test]
     fn solids_have_cells_in_vtk_and_surfaces_elsewhere() {
         let mut mesh = Mesh::<3> {

@@ -41,7 +41,7 @@ impl<'a> Source<'a> {
         }
         let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
         if bytes.starts_with(MARK) {
-            // The parser would skip a second one. It occurs if two programs took the file for one without a mark.
+            // The parser would skip a second mark. It occurs if two programs added a mark to the file.
             return Err(Source { file, text: "" }.mark(error(TextError::TwoMarks {}), 0, 0));
         }
         let text = match core::str::from_utf8(bytes) {

@@ -184,7 +184,7 @@ pub struct CellSummary {
     pub longest_edge: f64,
 }
 
-/// Energies at the end, works and losses since the beginning [J].
+/// Energies at the end, and work and losses since the beginning [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the words are the documentation")]
 pub struct EnergySummary {
@@ -220,7 +220,7 @@ pub struct SolverSummary {
     pub halved: u64,
     /// Number of real-time steps that may be less accurate than that setting promises.
     pub cut_off: u64,
-    /// The largest residual of such a step, as the displacement that it would cause if each node stood alone [m].
+    /// The largest residual of such a step, as the displacement that it would cause if only one node could move [m].
     pub largest_left: f64,
     /// How often a body at rest in a degenerate shape was displaced at random (`[world] unfold = true`).
     pub disturbed: u64,

@@ -142,7 +142,7 @@ impl Binary {
 /// Writes bodies as binary glTF 2.0 (`.glb`). Each is a mesh whose frames are morph targets, played one after the other by an animation.
 ///
 /// # Errors
-/// Those of the writer; `InvalidInput` if the file would exceed 4 GiB, the limit of the format.
+/// The errors of the writer; `InvalidInput` if the file would exceed 4 GiB, the limit of the format.
 ///
 /// # Source
 /// Khronos Group, glTF 2.0 specification, sections 3.7.2.2 (morph targets), 3.11 (animations), 4.4 (binary).

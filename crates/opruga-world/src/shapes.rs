@@ -318,7 +318,7 @@ pub fn mesh<const D: usize>(shape: &Values, transform: &Transform<'_>) -> Result
     }
 }
 
-/// Converts a mesh to the type with another parameter for the same dimension.
+/// Converts a mesh between two type parameters that stand for the same dimension; refuses other dimensions.
 fn renamed<const A: usize, const B: usize>(mesh: Mesh<A>) -> Result<Mesh<B>, MeshError> {
     if A != B {
         return Err(MeshError::Size { what: Quantity::Dimension, value: B as f64, must: Must::TwoOrThree });

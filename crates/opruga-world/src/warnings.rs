@@ -70,7 +70,7 @@ terms! {
 }
 
 terms! {
-    /// Measures against the error of an integrator.
+    /// What reduces the error of an integrator.
     pub enum ErrorHint = "part.error_hint" {
         Implicit = "with implicit integrators it comes from the residual of their equations: a smaller `tolerance`, or `accuracy = \"exact\"`",
         Contact = "bodies met obstacles, where it is proportional to the step with every integrator: more substeps",
@@ -122,7 +122,7 @@ messages! {
         Between {},
     }
 
-    /// Measures that free a body that starts inside an obstacle.
+    /// What frees a body that starts inside an obstacle.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Remedy {
         "part.remedy" #[error("a shift by ({shift}) m would free it")]

@@ -80,7 +80,7 @@ pub struct World<const D: usize> {
     pub(crate) locations: Vec<(usize, usize)>,
     /// The slots of the list of bodies.
     pub(crate) slots: Slots,
-    /// Commands of the scene, including those that act as if it had contained them; after them, unfinished commands of the program.
+    /// Commands of the scene, including commands that act as if the scene had contained them; then unfinished commands of the program.
     pub(crate) running: Vec<Running<D>>,
     /// The first command that could not begin in the last frame.
     pub(crate) refused: Option<Box<CommandBlueprint<D>>>,
@@ -96,7 +96,7 @@ pub struct World<const D: usize> {
     pub(crate) looks: Looks,
     pub(crate) stability: Vec<(String, Stability)>,
     pub(crate) warnings: Vec<Warning>,
-    /// The parts of the blueprint that have changed since the start, as they were.
+    /// The parts of the blueprint that have changed since the start, with their values at the start.
     pub(crate) at_start: AtStart<D>,
     /// The cosine of the largest rotation of a cell under the law `linear` that was reported.
     pub(crate) farthest_turn: f64,

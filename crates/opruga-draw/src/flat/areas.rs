@@ -72,7 +72,7 @@ pub(super) fn draw(canvas: &mut Canvas, areas: &[AreaPicture], projection: &Proj
         if let Some([red, green, blue, opacity]) = area.colour {
             let paint = paint([red, green, blue], f64::from(opacity) / 255.0);
             fill(canvas, area, projection, &paint);
-            // An area that is squeezed to nothing is still visible: a thin line connects its ends.
+            // A thin line keeps an area visible even if it is squeezed to nothing.
             if let (255, Some(lines)) = (opacity, path(area, projection)) {
                 canvas.stroke(&lines, HAIRLINE, &paint);
             }

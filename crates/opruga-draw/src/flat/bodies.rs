@@ -123,7 +123,7 @@ impl Drawing<'_> {
         if coloured && !cells.is_empty() && self.size > 4.0 {
             self.fill_cells(canvas, cells, outline.as_ref());
         } else if coloured && outline.is_some() {
-            // The inside of one line without its holes has its own colour, because each chamber has its own pressure.
+            // The inside of each line, without its holes, has its own colour, because each chamber has its own pressure.
             for part in parts(&loops, &body.positions) {
                 let Some(path) = self.outline(part.iter().copied()) else { continue };
                 let nodes = part.iter().flat_map(|chain| chain.nodes.iter().copied());
@@ -202,7 +202,7 @@ impl Drawing<'_> {
 
     /// Fills cells with the colours of their nodes, clipped at the outline of small bodies.
     fn fill_cells(&self, canvas: &mut Canvas, cells: &[[u32; 3]], outline: Option<&Path>) {
-        // On large bodies the line is thick enough to hide the hard edges of cells; without clipping, folds do not look like holes there.
+        // On large bodies the line is thick enough to hide the hard edges of cells, so cells are not clipped and folds do not look like holes.
         self.fill_within(canvas, cells, outline.filter(|_| self.size < 48.0));
     }
 
@@ -304,7 +304,7 @@ impl Drawing<'_> {
         if self.size > 30.0 {
             canvas.stroke(path, width + 1.4 * self.unit, &paint(INK, 0.85));
         }
-        // Neighbours with nearly the same colour form one line; on small bodies fewer colours can be distinguished.
+        // Neighbours with nearly the same colour form one line. Fewer colours can be distinguished on small bodies.
         let shades = if self.size > 60.0 { 64.0 } else { 24.0 };
         let mut points: Vec<[f32; 2]> = Vec::new();
         for chain in loops {

@@ -9,7 +9,7 @@ use opruga_math::message::{AnyMessage, Setting};
 use opruga_mesh::{Mesh, THIN_ELEMENT};
 use std::collections::BTreeMap;
 
-/// What may be repaired in a file that is not sound.
+/// The repairs that may be made in a file with errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mending {
     /// Flips inverted cells, and counts them.

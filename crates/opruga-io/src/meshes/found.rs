@@ -87,7 +87,7 @@ pub(crate) struct Found {
     pub(crate) positions: Vec<[f64; 3]>,
     /// The byte at which each node begins; empty if the format does not list single nodes.
     pub(crate) node_offsets: Vec<usize>,
-    /// The number that the file gives each node.
+    /// The number of each node in the file.
     pub(crate) node_numbers: Vec<u64>,
     pub(crate) items: Vec<Item>,
     /// Named sets of items.
@@ -194,7 +194,7 @@ impl Found {
         VALUES.check(self.given)
     }
 
-    /// Reports a part of the file that a body at rest has no use for.
+    /// Reports a part of the file that a body at rest does not use.
     pub(super) fn left_out(&mut self, what: MeshFileNotice) {
         if self.notices.len() < NOTICES {
             self.notices.push(SceneError::of(what));

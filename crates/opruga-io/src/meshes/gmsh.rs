@@ -64,7 +64,7 @@ pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
         };
         let (section, _) = (section.to_string(), scanner.line());
         match section.as_str() {
-            // After the elements, these sections would have no effect on them.
+            // If these sections came after the elements, they would have no effect on them.
             "PhysicalNames" | "Entities" if elements && (modern || section == "PhysicalNames") => {
                 return Err(scanner.error(GmshError::BehindElements { section }, from));
             }

@@ -22,7 +22,7 @@ const SIZE: &str = "medit.size";
 pub(super) fn read(scanner: &mut Scanner<'_>) -> Result<Found, SceneError> {
     scanner.expect(SYNTAX, "MeshVersionFormatted")?;
     let (version, from) = scanner.whole::<u32>(SYNTAX, Expected::Version)?;
-    // Versions 1 and 2 are single and double precision, 3 and 4 are larger files. As text they look the same.
+    // Versions 1 and 2 have single and double precision, and versions 3 and 4 are for larger files. As text they look the same.
     if !(1..=4).contains(&version) {
         return Err(scanner.error(MeditError::Version { version }, from));
     }

@@ -81,7 +81,7 @@ pub struct MeshFile<'a> {
     beside: Option<Beside>,
 }
 
-/// The second file of TetGen, for positions in it.
+/// The second file of TetGen, to which positions may refer.
 #[derive(Debug)]
 struct Beside {
     name: String,

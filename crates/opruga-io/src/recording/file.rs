@@ -1,4 +1,4 @@
-//! The file of a recording, written by the run itself: data that were given to the system outlive the process.
+//! The file of a recording, which the run itself writes. Data that were given to the system survive the end of the process.
 
 use super::format::Header;
 use super::writer::Writer;
@@ -12,12 +12,12 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// The time that a power failure may cost.
+/// The length of the part of a run that a power failure may lose.
 const SYNCED: Duration = Duration::from_secs(5);
 
 /// A recording that is being written. Each chunk goes to the system before the next one begins. A chunk is a frame whose state is kept, an action of
 /// a program, or the frames without states up to a call of the owner. A process that is killed loses at most the last chunk, which was incomplete or
-/// was just being passed on. A power failure costs the last five seconds.
+/// was just being passed on. A power failure loses the last five seconds.
 pub struct RecordingFile {
     path: PathBuf,
     folder: PathBuf,
@@ -45,7 +45,7 @@ impl RecordingFile {
         RecordingFile::create_through(path, force, header, |file| file)
     }
 
-    /// [`RecordingFile::create`] with a target made by the caller, for tests in which the disk fails.
+    /// Does the same as [`RecordingFile::create`] with a target made by the caller, for tests in which the disk fails.
     ///
     /// # Errors
     /// Those of [`RecordingFile::create`].
@@ -56,7 +56,7 @@ impl RecordingFile {
         wrap: impl FnOnce(File) -> W,
     ) -> Result<RecordingFile, WriteError> {
         let failed = |e: io::Error| WriteError::failed(path, 0, &e);
-        // Held until the new file has the name.
+        // The lock on the earlier file is held until the new file has its name.
         let earlier = earlier(path, force)?;
         let replaces = earlier.is_some();
         let name = path.file_name().ok_or_else(|| WriteError::of(path, WriteFault::NoFileName {}))?;
@@ -104,7 +104,7 @@ impl RecordingFile {
         self.write(|file| file.writer.push(frame, hash))
     }
 
-    /// Gives all frames so far to the system. From then on they outlive the process.
+    /// Gives all frames so far to the system, so that they survive the end of the process.
     ///
     /// # Errors
     /// [`WriteError`] if the file could not be written, now or earlier.
@@ -148,7 +148,7 @@ impl RecordingFile {
         self.end()
     }
 
-    /// Does a piece of work unless an earlier one has failed: anything after a gap would be read as damage.
+    /// Does a piece of work unless an earlier one has failed, because anything after a gap would be read as damage.
     fn write(&mut self, work: impl FnOnce(&mut RecordingFile) -> io::Result<()>) -> Result<(), WriteError> {
         if self.ended {
             return Err(WriteError::of(&self.path, WriteFault::RecordingEnded {}));

@@ -26,8 +26,8 @@ pub struct Header {
     pub scene: Vec<u8>,
     /// The length of a frame [s].
     pub frame: f64,
-    /// The number of frames from one kept state to the next; the frames between are computed again. The states of the first and the last frame are
-    /// always kept. At least 1: every frame.
+    /// The number of frames from one kept state to the next; the frames between them are computed again. It is at least 1, which keeps every state.
+    /// The states of the first and the last frame are always kept.
     pub every: u64,
     /// The overrides of the call, each a path and a value.
     pub overrides: Vec<(String, String)>,
@@ -148,7 +148,7 @@ pub(super) fn header_bytes(head: &[u8], file: u64) -> Result<u64, RecordingError
     if crc32fast::hash(&head[..20]) != u32_at(head, 20) {
         return Err(RecordingError::Damaged { from: 0, to: HEAD as u64 });
     }
-    // After the checksum: a flipped byte is damage, not another version.
+    // The version is checked after the checksum, because a flipped byte is damage and not another version.
     match u32_at(head, 8) {
         VERSION | BEFORE => {}
         found => return Err(RecordingError::Version { found }),

@@ -29,8 +29,8 @@
 //! ```
 //! All offsets have 64 bits. The file of a killed run, which has no end, is read chunk by chunk, and the index is made again. A chunk that was not
 //! written completely is omitted and reported. Every chunk goes to the system as soon as it is complete, before the next one begins, so a process
-//! that is killed loses at most the last chunk. The bytes of a state and the hash of a frame have a meaning only for the world that wrote them; the
-//! hash is compared with that of a frame computed again. The same run gives the same bytes.
+//! that is killed loses at most the last chunk. The bytes of a state and the hash of a frame have a meaning only for the world that wrote them. The
+//! hash is compared with that of a frame that is computed again. The same run gives the same bytes.
 
 mod codec;
 mod error;

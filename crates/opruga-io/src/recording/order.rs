@@ -1,4 +1,4 @@
-//! Which frames may follow which: one rule for writing and for reading recordings.
+//! The rule for which frames may follow one another, used both for writing and for reading recordings.
 
 use core::ops::Range;
 

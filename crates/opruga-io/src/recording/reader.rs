@@ -10,14 +10,14 @@ use std::io::{ErrorKind, Read, Seek, SeekFrom};
 /// How the file of a recording ends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ending {
-    /// Properly: the run that wrote it ended it.
+    /// It ends properly: the run that wrote it has finished it.
     Closed,
-    /// Without its end: the run was killed, or is still running. All frames are intact.
+    /// It has no end: the run was killed, or is still running. All frames are intact.
     Open {
         /// Size of a chunk that was not written completely [bytes].
         lost: u64,
     },
-    /// With something else; frames after that cannot be found.
+    /// It contains something that is not a chunk; frames after that cannot be found.
     Damaged(RecordingError),
 }
 
@@ -97,7 +97,7 @@ impl<R: Read + Seek> Recording<R> {
         self.order.kept(frame).ok_or_else(|| RecordingError::no_frame(frame, &self.frames()))
     }
 
-    /// The hash of a frame, as given by the program that computed it. Every frame has one. If frames are read in order, each is read once.
+    /// The hash of a frame, as given by the program that computed it. Every frame has one. If frames are read in order, each chunk is read only once.
     ///
     /// # Errors
     /// [`RecordingError`] if the frame does not exist, or if a chunk before it that must be read is damaged.

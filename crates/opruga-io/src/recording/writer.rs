@@ -135,10 +135,10 @@ impl<W: Target> Writer<W> {
         self.offset += (self.pending.len() - from) as u64;
     }
 
-    /// Gives all frames so far to the system. From then on they outlive the process.
+    /// Gives all frames so far to the system, so that they survive the end of the process.
     ///
     /// # Errors
-    /// Those of the target; [`Writer::bytes`] is the number of bytes that it has taken.
+    /// The errors of the target; [`Writer::bytes`] is the number of bytes that it has taken.
     pub fn flush(&mut self) -> io::Result<()> {
         self.end_passed();
         if self.pending.is_empty() {

@@ -192,7 +192,7 @@ fn actions<const D: usize>(
         }
         _ => {
             let name = values.text("body")?;
-            // Copies are handled one by one: no body has their common name.
+            // Copies are handled one by one, because no body has their common name.
             if !bodies.names.contains_key(name) && !known.added.contains(&name) {
                 bodies.unknown(reader, location_of(node, "body"), join(path, "body"), name, known.added);
                 return None;

@@ -186,7 +186,7 @@ fn draft<'n, const D: usize>(
         None => None,
     };
     let sound = reader.count() == before;
-    // If these fields are right, the nodes have the positions that the scene asks for, and the names are right, too.
+    // If these fields are correct, so are the names and the positions of the nodes.
     const SHAPING: [&str; 6] = ["name", "shape", "position", "rotation", "scale", "copies"];
     let shaped =
         node.get("name").is_some() && SHAPING.iter().all(|field| reader.sound_since(before, &join(&path, field)));

@@ -3,7 +3,7 @@
 use crate::limits::Limits;
 
 opruga_math::messages! {
-    /// The quantity of which a scene has too much.
+    /// Quantities that exceed their limits.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CostError {
         "limit.bodies" #[error("the scene has {count} bodies or more")] #[value("{count}")] #[allowed("at most {most} bodies")]
@@ -52,7 +52,7 @@ impl Cost {
     ) -> Result<(), CostError> {
         self.bodies += copies;
         self.nodes += nodes * copies;
-        // The mesh counts once; state, models and description count for every copy.
+        // The mesh counts once, while state, models and description count for every copy.
         let each = nodes * (120.0 + 60.0 * D as f64 * models) + 1000.0 + 600.0 * models;
         self.bytes += nodes * 250.0 * D as f64 + each * copies;
         let Cost { bodies, nodes: all, bytes } = *self;

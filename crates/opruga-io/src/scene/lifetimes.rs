@@ -1,4 +1,5 @@
-//! Commands on bodies that do not exist when the commands begin: before another command adds them, or after one has removed them.
+//! Commands on bodies that do not exist when the commands begin, because another command adds them later or has already removed
+//! them.
 
 use super::body_list::Bodies;
 use super::errors::CommandError;
@@ -9,7 +10,7 @@ use crate::problem::{SceneError, visible};
 use opruga_world::blueprint::Action;
 use std::collections::BTreeMap;
 
-/// What a command needs of bodies, by their indices in the list.
+/// What a command requires of bodies, which are given by their indices in the list.
 enum Asks {
     /// It adds this one.
     Adds(usize),
@@ -55,7 +56,7 @@ impl<'n> Lifetimes<'n> {
 
     /// Reports every command that begins while its body does not exist.
     pub(super) fn report<const D: usize>(mut self, reader: &mut Reader<'_>, bodies: &Bodies<D>) {
-        // In the order in which the world runs them: commands with the same time run in the order of the file.
+        // Sorted in the order in which the world runs them; commands with the same time run in the order of the file.
         self.asked.sort_by(|a, b| a.at.total_cmp(&b.at));
         let mut coming: BTreeMap<usize, f64> = bodies.later.values().copied().collect();
         let mut gone: BTreeMap<usize, f64> = BTreeMap::new();

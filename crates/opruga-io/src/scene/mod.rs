@@ -1,7 +1,7 @@
 //! Scene files: text → checked [`Blueprint`], or all errors at once.
 //!
-//! Bytes → checks of encoding, size and depth → TOML with locations → overrides → sections, by the constants of [`opruga_world::schema`] and the
-//! caller's [`Catalogue`] → meshes, once the estimate of memory is within its limit → references and selectors.
+//! The steps are: bytes → checks of encoding, size and depth → TOML with locations → overrides → sections, according to the constants of
+//! [`opruga_world::schema`] and the caller's [`Catalogue`] → meshes, if the estimate of memory is within its limit → references and selectors.
 
 mod actions;
 mod bodies;
@@ -69,9 +69,8 @@ pub struct Options {
 /// What the reader made of a scene.
 #[derive(Debug)]
 pub struct Reading {
-    /// The complete scene if there are no errors. If there are errors, the rest of the scene, without the bodies, obstacles, loads and pins that have
-    /// errors of their own, and without commands and probes; this is enough to find further errors in the rest. None if the errors leave nothing to
-    /// build on.
+    /// The complete scene if there are no errors. Otherwise the scene without commands and probes, and without the bodies, obstacles, loads and pins
+    /// that have errors of their own; this is enough to find further errors in the rest. None if too little remains.
     pub blueprint: Option<AnyBlueprint>,
     /// All errors that can be found at once, in the order of their locations.
     pub errors: Vec<SceneError>,
@@ -84,7 +83,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Whether everything that holds bodies in statics is known: no error removes a pin, a load or an obstacle from the blueprint.
+    /// Whether everything that holds bodies in statics is known, that is, whether no error removes a pin, a load or an obstacle from the blueprint.
     pub fn knows_what_holds(&self) -> bool {
         self.errors.iter().all(|error| {
             let parts: Vec<&str> = error.path.split('.').collect();
@@ -134,8 +133,8 @@ pub fn survey(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options
     Reading { blueprint, errors, notices, files, unread }
 }
 
-/// Reads a scene from a file. The files that it names are read from the same folder, or from where `options` say. A file that is not regular, or
-/// larger than the limit, is refused before it is read.
+/// Reads a scene from a file. The files that it names are read from the same folder, or from the location that `options` give. A file that is not
+/// regular, or larger than the limit, is refused before it is read.
 ///
 /// # Errors
 /// Those of [`read`], and `read.failed` if the file cannot be read.
@@ -232,7 +231,7 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let loads =
         whole.loads.into_iter().filter_map(|load| Some(LoadBlueprint { body: sound_indices[load.body]?, ..load }));
     founded.then(|| Blueprint {
-        // Their pins stay, because statics would otherwise miss what holds a body. A pin that selects nonexistent nodes holds nothing.
+        // Their pins are kept, because in statics nothing would hold a body without them. A pin that selects nonexistent nodes holds nothing.
         bodies: whole.bodies.into_iter().zip(&sound_indices).filter_map(|(body, index)| index.map(|_| body)).collect(),
         colliders: sound_colliders,
         loads: loads.collect(),

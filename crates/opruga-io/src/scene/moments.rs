@@ -1,4 +1,5 @@
-//! When commands begin and end: with the first frame that begins at their time or later. Commands that therefore never act are reported.
+//! The frames with which commands begin and end: the first frame that begins at their time or later. Commands that never act for this reason are
+//! reported.
 
 use super::errors::{CommandError, SceneHint};
 use super::location_of;
@@ -55,9 +56,9 @@ impl Frames {
         false
     }
 
-    /// Reports parameters that are set again before a frame begins with the first value.
+    /// Reports parameters that are set twice before a frame begins, so that the first value has no effect.
     pub(super) fn sets(&self, reader: &mut Reader<'_>, mut sets: Vec<Set>) {
-        // In the order in which the world runs them.
+        // Sorted in the order in which the world runs them.
         sets.sort_by(|a, b| a.at.total_cmp(&b.at));
         let mut last: BTreeMap<&str, &Set> = BTreeMap::new();
         for set in &sets {

@@ -11,8 +11,8 @@ pub(super) enum What {
     Probes,
 }
 
-/// The names of one type of thing so far. `é` is one character (U+00E9) or two (U+0065 U+0301), which look the same in print. Nobody could tell apart
-/// two bodies whose names differ only in that, so both are the same name here.
+/// The names of one type of thing so far. `é` is one character (U+00E9) or two (U+0065 U+0301), which look the same in print. Two bodies whose names
+/// differ only in this could not be told apart, so both forms count as the same name.
 pub(super) struct Names<P> {
     what: What,
     /// The decomposed form (NFD) of a name → the first name with that form as it was written, and its location.

@@ -24,7 +24,7 @@ pub(crate) struct Known<'a, const D: usize> {
 /// Why a path does not name a parameter.
 struct Lost {
     about: CommandError,
-    /// The words that would be allowed; none if the message says it.
+    /// The words that would be allowed; none if the message lists them.
     allowed: Option<String>,
     nearest: Option<String>,
     /// Whether the path is that of the kind of a part, which a command cannot change.

@@ -37,7 +37,7 @@ pub(super) fn pin<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &s
 
 /// Reports pins that prescribe different positions of a node along the same axis. Both pins are named, once for each pair.
 pub(super) fn conflicts<const D: usize>(reader: &mut Reader<'_>, pins: &[Located<D>], body: &BodyBlueprint<D>) {
-    // Any number of pins at rest hold a node where it is.
+    // Any number of pins at rest hold a node at its position.
     if pins.iter().all(|(pin, ..)| pin.motion.is_empty()) {
         return;
     }
@@ -74,7 +74,8 @@ fn parted<const D: usize>(a: &PinBlueprint<D>, b: &PinBlueprint<D>, size: f64) -
     let shared = |axis: &usize| a.axes[*axis] && b.axes[*axis];
     times.into_iter().find_map(|time| {
         let (p, q) = (along_path::<D>(&a.motion, time).0, along_path::<D>(&b.motion, time).0);
-        // The same motion in other rows, and components that vanish by symmetry, differ by rounding.
+        // Differences due to rounding do not count. They occur if the same motion is given by other rows, or if components
+        // vanish by symmetry.
         let apart =
             |axis: &usize| (p[*axis] - q[*axis]).abs() > 1e-9 * (p[*axis].abs() + q[*axis].abs()) + 1e-12 * size;
         (0..D).filter(shared).find(apart).map(|axis| (time, axis))

@@ -182,7 +182,7 @@ impl Reader<'_> {
     pub(crate) fn naturals(&mut self, node: &Node, path: &str, range: &Allowed) -> Option<Vec<u32>> {
         let Data::Array(items) = &node.data else { return self.refuse_type(node, path, range) };
         if items.len() > 1 && items.iter().all(|item| matches!(item.data, Data::Array(_))) {
-            // One error instead of one per triangle.
+            // Gives one error instead of one per triangle.
             let name = path.rsplit('.').next().unwrap_or(path);
             let about = FieldError::Lists { field: visible(name), value: node.shown() };
             let error = SceneError::of(about).path(path).allows(range.describe(self.dimension));

@@ -11,7 +11,7 @@ use opruga_world::schema::{self, Child, Section};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// What every part of the reader needs.
+/// The data that every part of the reader needs.
 pub(crate) struct Reader<'a> {
     pub(crate) source: &'a Source<'a>,
     pub(crate) catalogue: &'a Catalogue,
@@ -65,7 +65,7 @@ impl<'a> Reader<'a> {
         self.errors.push(error);
     }
 
-    /// Adds an error, which is made only if it will be listed, because finding similar words takes time.
+    /// Adds an error. It is made only if it will be listed, because finding similar words takes time.
     fn report_lazily(&mut self, location: Location, error: impl FnOnce() -> SceneError) {
         if self.errors.len() >= MOST_SHOWN {
             self.more += 1;
@@ -109,7 +109,7 @@ impl<'a> Reader<'a> {
         if self.options.strict && !Notice::is_asked_for(about.code) {
             return self.report(location, about);
         }
-        // The first of each type carries the location, the others are counted.
+        // The first notice of each type has the location; the others are counted.
         if let Some(first) =
             self.notices.iter_mut().find(|n| n.about.code == about.code && n.about.message == about.message)
         {
@@ -240,21 +240,21 @@ impl<'a> Reader<'a> {
             error
         };
         match self.options.lenient {
-            // Each has a message of its own, so it is not compared with the listed ones.
+            // Each of these notices has its own message, so it is not compared with the listed ones.
             true if self.notices.len() >= MOST_SHOWN => self.more_notices += 1,
             true => self.notice(entry.location, error()),
             false => self.report_lazily(entry.location, error),
         }
     }
 
-    /// The names that misspelt fields probably mean, so that one slip gives one error. If unknown fields are only warnings, the fields that they may
-    /// have meant are still reported as missing.
+    /// The names that misspelt fields probably mean, so that one mistake gives one error. If unknown fields are only warnings, the fields that they
+    /// may have meant are still reported as missing.
     pub(crate) fn misspelt(&self, node: &Node, section: &Section, tag: Option<&str>) -> Vec<String> {
         if self.options.lenient {
             return Vec::new();
         }
         let unknown = node.entries().iter().filter(|entry| !names(section, tag).any(|name| name == entry.key));
-        // Only for errors that are listed: nobody sees the suggestions of the others.
+        // Only for errors that are listed, because the suggestions of the others are not shown.
         unknown.take(MOST_SHOWN).filter_map(|entry| nearest(&entry.key, names(section, tag))).collect()
     }
 

@@ -1,4 +1,4 @@
-//! Names of bodies in other tables: which body is meant, and the error if there is none.
+//! Names of bodies in other tables: finds the body with a name, or makes the error if there is none.
 
 use super::body_list::Bodies;
 use super::errors::{ReferenceError, SceneAllowed, SceneHint, Wanted};

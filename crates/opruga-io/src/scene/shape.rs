@@ -59,7 +59,7 @@ pub(super) fn mesh<const D: usize>(
 ) -> Option<Mesh<D>> {
     let made = match loaded {
         Some(loaded) => loaded.mesh::<D>(transform),
-        // The reason for the missing file has been reported.
+        // The reason why the file is missing has already been reported.
         None if shapes::is_from_file(shape.kind()) => return None,
         None => generated::<D>(shape, transform, at.name),
     };
@@ -107,7 +107,7 @@ fn generated<const D: usize>(
     Ok((made.mesh, notices))
 }
 
-/// Makes a shape from its fields alone, each a name and a value as in `--set NAME=VALUE`; later ones replace earlier ones.
+/// Makes a shape from its fields alone. Each is a name and a value, as in `--set NAME=VALUE`; later ones replace earlier ones.
 ///
 /// # Errors
 /// All errors that scenes can have, each with the field that it is about.

@@ -107,7 +107,7 @@ impl<const D: usize> Velocities<D> {
             }
             rows.push(core::array::from_fn(|d| row[d]));
         }
-        // They are rotated like positions, about zero.
+        // The vectors are rotated like positions, about the origin.
         let mut turned = Mesh::<D> { positions: rows, ..Mesh::default() };
         let refused = |problem| SceneError::of(BodyError::Rotation { problem });
         shapes::apply_transform(&mut turned, &shapes::Transform { scale: 1.0, rotation }).map_err(refused)?;

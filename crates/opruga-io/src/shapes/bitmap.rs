@@ -1,4 +1,4 @@
-//! Pictures: contours where a quantity of the pixels crosses a threshold.
+//! Pictures: contours along which a quantity of the pixels crosses a threshold.
 //!
 //! Values belong to the centres of pixels. Between centres they are linear along the grid lines, so contours are finer than pixels (marching
 //! squares). If two opposite corners of a square are inside, their mean decides whether they are connected. Everything outside the picture counts as
@@ -55,7 +55,7 @@ fn pixels(
     let mut row = |data: &[u8]| {
         for (value, pixel) in values[1..].iter_mut().zip(data.chunks_exact(samples)).take(w as usize) {
             let part = |k: usize| f32::from(pixel.get(k).copied().unwrap_or(255)) / 255.0;
-            // Luma of ITU-R BT.601, over white for dark shapes and over black for bright ones.
+            // Luma of ITU-R BT.601, on a white background for dark shapes and on a black one for bright shapes.
             let (luma, alpha) = match samples {
                 1 => (part(0), 1.0),
                 2 => (part(0), part(1)),
@@ -86,7 +86,7 @@ fn pixels(
     Ok(most)
 }
 
-/// Contours, built while rows come in: the steps from one grid line to the next, with their points.
+/// Contours, which are built while rows are read: the steps from one grid line to the next, with their points.
 struct Lines {
     threshold: f64,
     /// The previous row, and the number of rows so far.

@@ -1,4 +1,4 @@
-//! The amount of data that a letter of a TrueType font draws: composite letters consist of others, which may be composite themselves.
+//! The amount of data that a letter of a TrueType font draws. Composite letters consist of other letters, which may themselves be composite.
 //!
 //! # Source
 //! Microsoft, OpenType Specification 1.9, tables `glyf` and `loca`.
@@ -58,12 +58,12 @@ impl<'a> Letters<'a> {
     }
 }
 
-/// The letters that a composite one names.
+/// The letters that a composite letter names.
 fn parts(data: &[u8]) -> Vec<u16> {
     let word =
         |at: usize| data.get(at..).and_then(|rest| rest.first_chunk::<2>()).map(|word| u16::from_be_bytes(*word));
     let mut found = Vec::new();
-    // A negative number of contours, then a box, and then the parts.
+    // A composite letter begins with a negative number of contours, followed by a box and the parts.
     if word(0).is_none_or(|contours| contours < 0x8000) {
         return found;
     }

@@ -133,7 +133,7 @@ impl Curves {
         self.contours.len()
     }
 
-    /// The number of contours that may enclose an area.
+    /// The number of contours with enough points to enclose an area.
     pub(super) fn closed(&self) -> usize {
         self.contours.iter().filter(|contour| !contour.segments.is_empty()).count()
     }
@@ -292,7 +292,7 @@ impl Curves {
             return self.line_to(to);
         }
         let (sin, cos) = (libm::sin(rotation), libm::cos(rotation));
-        // From the midpoint of the chord, along the axes of the ellipse.
+        // Relative to the midpoint of the chord, along the axes of the ellipse.
         let (hx, hy) = (0.5 * (from[0] - to[0]), 0.5 * (from[1] - to[1]));
         let (x, y) = (cos * hx + sin * hy, cos * hy - sin * hx);
         let stretch = (x / rx) * (x / rx) + (y / ry) * (y / ry);

@@ -127,7 +127,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         drawing.notices.extend(overlap_notice(&rings, &together, how).filter(|_| painted.is_empty()));
         rings = together;
     }
-    // Remnants of borders that nearly coincide.
+    // This removes remnants of borders that nearly coincide.
     rings.retain(|ring| ring.area().abs() > 1e-12 * extent * extent || shape.text("overlap") == Some("refuse"));
     let mut rings = scale_and_center(rings, &mut painted, &drawing, shape)?;
     if how.is_none()
@@ -160,7 +160,7 @@ pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded,
         _ => Inside::Nothing,
     };
     too_fine(&rings, spacing, inside)?;
-    // The points of a contour or a font were not drawn by the user.
+    // The points of a contour of a picture, or of a font, were not drawn by the user.
     let given = if drawing.source.is_some() { drawing.curves.points() } else { 0 };
     let before = rings;
     let rings = outline::resampled(&before, spacing).map_err(|e| {
@@ -192,7 +192,8 @@ fn too_fine(rings: &[Ring], spacing: f64, inside: Inside) -> Result<(), Problem>
     Err(Problem::new("spacing", error))
 }
 
-/// Whether a ring encloses more than a given area. The halves of a figure of eight add up, though their signed areas cancel.
+/// Whether a ring encloses more than a given area. The halves of a figure of eight are added, although their signed areas
+/// cancel.
 fn encloses_more(ring: &Ring, least: f64) -> bool {
     let whole = |ring: &Ring| ring.area().abs();
     let halves = || outline::joined(core::slice::from_ref(ring), Overlap::EvenOdd).iter().map(whole).sum::<f64>();

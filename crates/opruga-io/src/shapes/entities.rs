@@ -1,4 +1,4 @@
-//! The length of a drawing with its entities expanded, computed before they are.
+//! The length of a drawing with its entities expanded, which is computed before they are expanded.
 
 use crate::budget::{EXPANSION, LimitHint};
 use crate::problem::SceneError;
@@ -25,7 +25,7 @@ pub(super) fn check(source: &Source<'_>) -> Result<(), SceneError> {
         let after = after.trim_start();
         let Some(quote) = after.chars().next().filter(|c| matches!(c, '"' | '\'')) else { continue };
         let Some((value, _)) = after[1..].split_once(quote) else { break };
-        // Of two declarations the first counts.
+        // If there are two declarations, the first one counts.
         entities.entry(name).or_insert(value);
         at = value.as_ptr() as usize - text.as_ptr() as usize + value.len();
     }
@@ -44,7 +44,7 @@ pub(super) fn check(source: &Source<'_>) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// The length of each entity including those in it, level by level.
+/// The length of each entity including those that it contains, level by level.
 fn written_out<'a>(entities: &BTreeMap<&'a str, &'a str>) -> BTreeMap<&'a str, u64> {
     let inner: Vec<(&str, u64, Vec<&str>)> = entities
         .iter()

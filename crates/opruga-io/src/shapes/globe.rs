@@ -8,7 +8,7 @@
 use super::curves::{Point, larger, smaller};
 use opruga_mesh::outline::{self, Overlap, Ring};
 
-/// A step of at least this many degrees between neighbours crosses the antimeridian: no edge is that long.
+/// A step of at least this many degrees between neighbours crosses the antimeridian, because no edge is that long.
 const OVER: f64 = 270.0;
 /// A whole turn [°].
 const TURN: f64 = 360.0;
@@ -32,7 +32,7 @@ pub(super) struct LaidOut {
 }
 
 /// Lays polygons out, each with its data. `stitched` says that the format omits cuts along the antimeridian, as topologies do; a step of exactly one
-/// turn is then a step in place.
+/// turn then means no motion.
 pub(super) fn lay_out<T>(polygons: &mut Vec<(Polygon, T)>, stitched: bool) -> LaidOut {
     let mut done = LaidOut::default();
     for (polygon, _) in &mut *polygons {
@@ -92,7 +92,7 @@ fn unrolled(ring: &[Point], stitched: bool) -> Option<(Vec<Point>, f64)> {
             any = true;
         }
     }
-    // The longitudes at a step in place are equal, so one of the two points is enough.
+    // After a step of exactly one turn, both points are equal, so one of them is enough.
     flat.dedup_by(|q, p| is_same(*q, *p));
     let swept = flat.windows(2).any(|pair| {
         let (o, a, b) = (flat[0], pair[0], pair[1]);
@@ -207,7 +207,8 @@ fn shared(borders: &[(usize, f64, [f64; 2], bool)]) -> Vec<usize> {
     for meridian in order.chunk_by(|a, b| turn(a.1) == turn(b.1)) {
         let side = |west: bool| meridian.iter().filter(move |border| border.3 == west);
         for west in [false, true] {
-            // For the other side: where each border begins, and how far north the borders reach that begin there or before.
+            // For the other side: the latitude at which each border begins, and how far north the borders reach that begin at
+            // this latitude or farther south.
             let (mut reach, mut others) = (f64::NEG_INFINITY, Vec::new());
             for border in side(!west) {
                 reach = larger(reach, border.2[1]);
@@ -256,7 +257,7 @@ mod tests {
         assert_eq!(lay_out(&mut two, false), LaidOut { beside: 1, cut: 2, ..LaidOut::default() });
         assert_eq!((two.len(), two[0].1, two[0].0.len()), (1, 'a', 1));
         assert!((area(&two[0].0) - 24.0).abs() < 1e-6 && (span(&two[0].0[0])[1] - 184.0).abs() < 1e-6);
-        // Islands on both sides are placed next to each other, and stay two.
+        // Islands on both sides are placed next to each other, and remain two islands.
         let mut islands =
             vec![(vec![box_of([170.0, 175.0], [0.0, 4.0])], ()), (vec![box_of([-175.0, -170.0], [0.0, 4.0])], ())];
         assert_eq!(lay_out(&mut islands, false), LaidOut { beside: 1, ..LaidOut::default() });

@@ -222,7 +222,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         Ok(parts)
     }
 
-    /// Counts rows that are drawn. The limit is the number that the file can contain, plus some that occur once and are drawn repeatedly.
+    /// Counts rows that are drawn. The limit is the number of rows that the file can contain, plus an allowance for rows that are drawn repeatedly.
     fn draw(&mut self, more: u64, at: Raw<'_>) -> Result<(), SceneError> {
         self.drawn = self.drawn.saturating_add(more);
         let available: usize = self.buffers.iter().flatten().map(|bytes| bytes.len()).sum();
@@ -318,7 +318,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         };
         let each = if kind == "VEC3" { 3 * size } else { size };
         let stride = view.stride.unwrap_or(each);
-        // Compared with the bytes present before anything is allocated.
+        // The size is compared with the number of bytes present before anything is allocated.
         let within = || {
             let last =
                 accessor.count.checked_sub(1)?.checked_mul(stride)?.checked_add(each)?.checked_add(accessor.offset)?;
@@ -365,7 +365,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
                     None => return bad(GltfError::Base64 {}),
                 }
             }
-            // Relative to the glTF file, by the rules for all files of a scene.
+            // The path is relative to the glTF file, and follows the rules for all files of a scene.
             (Some(uri), _) => {
                 let folder = source.file.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
                 (self.open)(&format!("{folder}{uri}"))?

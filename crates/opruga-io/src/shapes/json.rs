@@ -21,7 +21,7 @@ pub(super) fn span(source: &Source<'_>, raw: &str) -> (usize, usize) {
 /// `json.syntax` with line and column.
 pub(super) fn parse<'a, T: Deserialize<'a>>(source: &Source<'_>, raw: &'a str) -> Result<T, SceneError> {
     serde_json::from_str(raw).map_err(|e| {
-        // Lines and columns (in bytes) of the library are relative to the value.
+        // The library gives lines and columns (in bytes) relative to the value.
         let line = raw.split_inclusive('\n').take(e.line().saturating_sub(1)).map(str::len).sum::<usize>();
         let at = span(source, raw).0 + (line + e.column().saturating_sub(1)).min(raw.len().saturating_sub(1));
         let text = e.to_string();

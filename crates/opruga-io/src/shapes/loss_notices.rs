@@ -1,4 +1,4 @@
-//! Notices, with numbers, of what was lost when a body was made, and of where it is worse than promised.
+//! Notices, with numbers, of what was lost when a body was made, and of parts that are worse than promised.
 
 use super::errors::{Change, ShapeHint, ShapeNotice, ThinCause};
 use super::settings;
@@ -65,8 +65,8 @@ pub(super) fn thinned(given: usize, before: &[Ring], rings: &[Ring], spacing: f6
     Some(SceneError::of(notice))
 }
 
-/// The number of outlines of a drawing that became holes because they are within an outline of another element, which is painted there, too; and the
-/// first of these elements. Rings are nested; holes run clockwise.
+/// The number of outlines of a drawing that became holes although they are inside an outline of another element, which is painted at the same
+/// position; and the first of these elements. Rings are nested; holes run clockwise.
 pub(super) fn nested(rings: &[Ring]) -> Option<(u32, SceneError)> {
     // A ring is a hole of the innermost of the rings around it.
     let around = outline::around(rings);

@@ -227,7 +227,7 @@ impl<'a> Reader<'a, '_> {
                 return Err(refuse(self.source, &raw.get()[..1], error));
             }
         }
-        // A name cannot mean something without an area.
+        // A name cannot select something without an area.
         if self.areas + self.polygons.len() == before {
             self.names.truncate(named);
         }

@@ -1,4 +1,4 @@
-//! Shapes from files: drawings become outlines, and outlines bodies.
+//! Shapes from files: drawings become outlines, and outlines become bodies.
 //!
 //! ```text
 //! svg, map, text, bitmap ──→ curves ──drawing──→ rings at the wanted size and spacing ──┐

@@ -89,7 +89,7 @@ impl<'a> Line<'a> {
         self.source.mark(error.value(visible(part)), from, to)
     }
 
-    /// The same with the whole statement as the value.
+    /// An error at a part of it; the whole statement is the value.
     fn refuse_whole(&self, part: &str, error: ObjError) -> SceneError {
         self.refuse(part, error).value(visible(statement(self.text).0.trim()))
     }

@@ -1,4 +1,4 @@
-//! Remeshes surfaces of files with triangles of a desired size; if that size is not suitable, finds one that is.
+//! Remeshes surfaces of files with triangles of a desired size; if that size is not suitable, finds a suitable one.
 
 use super::errors::{ShapeError, ShapeHint};
 use crate::problem::SceneError;
@@ -20,7 +20,7 @@ const LARGEST_TRIED: f64 = 20_000.0;
 enum TooCoarse {
     /// Triangles would intersect others that are not their neighbours.
     Crosses,
-    /// This fraction of the volume would remain.
+    /// Only this fraction of the volume would remain.
     Encloses(f64),
 }
 

@@ -4,7 +4,7 @@ use super::drawing_errors::SvgNotice;
 use crate::problem::SceneError;
 use opruga_mesh::outline::{self, Overlap, Ring};
 
-/// What is inside if the rings of a part overlap.
+/// The rule for what is inside if the rings of a part overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Rule {
     /// The file gives no rule; other programs then use the non-zero rule.

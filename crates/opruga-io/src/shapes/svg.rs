@@ -2,8 +2,8 @@
 //!
 //! The reader takes `path`, `rect`, `circle`, `ellipse`, `polygon` and `polyline` in `svg`, `g` and `a`, in the first suitable child of `switch`, and
 //! through `use`. It applies `transform`, and also the `viewBox` of an inner `svg` and of a `symbol`. Elements without an outline (`title`, `defs`,
-//! gradients …) and elements that are not displayed are skipped. Elements that would be drawn but have no outline here (`text`, `image`, strokes,
-//! markers, filters, animations, masks, and clip paths that cut something off) are refused or counted. Style sheets are applied; rules with
+//! gradients …) and elements that are not displayed are skipped. Elements that would be drawn but for which no outline is computed (`text`, `image`,
+//! strokes, markers, filters, animations, masks, and clip paths that cut something off) are refused or counted. Style sheets are applied; rules with
 //! unsupported selectors are counted, or refused if they would change outlines. Every part of the drawing uses the even-odd rule, or the non-zero
 //! rule if its `fill-rule` says so. Fill colours are read if the scene asks for them.
 //!
@@ -148,7 +148,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     /// An error at the tag of an element.
     fn marked(&self, node: Node<'_, '_>, error: SceneError) -> SceneError {
         let range = node.range();
-        // The tag alone, without the contents of the element.
+        // Only the tag, without the contents of the element.
         let end = self.source.text[range.clone()].find('>').map_or(range.end, |k| range.start + k + 1);
         self.source.mark(error, range.start, end)
     }
@@ -195,7 +195,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         Ok(None)
     }
 
-    /// Reads an element alone, with the transforms and clips around it.
+    /// Reads only one element, with the transforms and clips around it.
     fn element_by_itself(&mut self, wanted: Node<'_, '_>) -> Result<(), SceneError> {
         let (mut map, mut fill) = (IDENTITY, Fill::FIRST);
         let (mut clips, mut frames) = (Vec::new(), Vec::new());

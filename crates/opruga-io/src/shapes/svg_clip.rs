@@ -1,4 +1,4 @@
-//! Clip paths: a clip path that cuts nothing off leaves a drawing as it is.
+//! Clip paths: a clip path that cuts nothing off does not change a drawing.
 //!
 //! # Source
 //! W3C, Scalable Vector Graphics 1.1, chapter 14.

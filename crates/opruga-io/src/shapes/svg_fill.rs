@@ -22,7 +22,7 @@ pub(super) struct Fill {
     fill_opacity: f64,
     /// The fill rule.
     rule: Rule,
-    /// Whether rules of style sheets may apply to it or to an element around it, which cannot be decided.
+    /// Whether rules of style sheets may apply to it, or to an element around it, although this cannot be decided.
     styled: bool,
 }
 
@@ -39,13 +39,13 @@ impl Fill {
 pub(super) struct Fills<'a, 'd> {
     document: &'d Document<'a>,
     source: &'a Source<'a>,
-    /// Whether colours are needed; otherwise only whether an element is filled.
+    /// Whether colours are needed; if not, only whether an element is filled matters.
     wanted: bool,
     /// Red, green, blue and opacity of every part of the drawing; none for parts that are not filled.
     pub(super) painted: Vec<Option<[u8; 4]>>,
     /// The number of elements that are filled with a gradient.
     pub(super) gradients: usize,
-    /// The number of parts to which rules of style sheets may apply, which cannot be decided.
+    /// The number of parts to which rules of style sheets may apply, although this cannot be decided.
     pub(super) styled: usize,
     /// The fill rule of every part of the drawing.
     pub(super) rules: Vec<Rule>,
@@ -81,7 +81,7 @@ impl<'a, 'd> Fills<'a, 'd> {
         Fills { rule: "clip-rule", ..Fills::of(self.document, self.source, self.sheets, false) }
     }
 
-    /// Returns the fill of an element inside one with the fill `around`.
+    /// Returns the fill of an element inside an element with the fill `around`.
     ///
     /// # Errors
     /// `svg.colour` for something that is not a fill, if colours are needed; `svg.unsupported` for an unknown fill rule; `svg.style` for style sheets

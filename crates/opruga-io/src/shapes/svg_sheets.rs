@@ -1,4 +1,4 @@
-//! Style sheets of a drawing: which of their rules apply to an element.
+//! Style sheets of a drawing, and the rules in them that apply to an element.
 //!
 //! The reader supports selectors of names, `.class`, `#id` and `*`, also nested (` `, `>`), in lists. For rules with other selectors, and for
 //! conditional rules (`@media`), it cannot decide to which elements they apply: they may apply to every element with one of the names in them.
@@ -48,7 +48,7 @@ type Weight = [usize; 3];
 #[derive(Debug)]
 struct Rule {
     selectors: Vec<Selector>,
-    /// The names of elements, `.class` and `#id` to which it may apply, if its selectors are not supported.
+    /// If its selectors are not supported: the names of elements, `.class` and `#id` to which it may apply.
     perhaps: Vec<String>,
     declarations: Vec<Declaration>,
     /// The range of its sheet in the file.
@@ -280,7 +280,7 @@ impl Selector {
             [(words, _)] => all(words, node),
             [.., (last, _)] if !all(last, node) => false,
             parts => {
-                // From the outermost element inwards: how many parts have matched anywhere above, and at the parent.
+                // From the outermost element inwards: the number of parts that have matched anywhere above, and at the parent.
                 let mut lineage: Vec<Node<'_, '_>> = node.ancestors().filter(Node::is_element).collect();
                 lineage.reverse();
                 let (mut above, mut parent) = (vec![false; parts.len()], vec![false; parts.len()]);

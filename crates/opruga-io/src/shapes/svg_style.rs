@@ -36,7 +36,7 @@ impl Sheets {
                 return Some((name, value));
             }
         }
-        // It moves the centre of a transform.
+        // This property moves the centre of a transform.
         let moved = self.style(node, "transform-origin").filter(|_| node.has_attribute("transform"));
         moved.filter(|value| !matches!(*value, "0" | "0 0" | "0px 0px")).map(|value| ("transform-origin", value))
     }

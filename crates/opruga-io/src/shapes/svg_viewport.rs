@@ -12,7 +12,7 @@ use crate::problem::{SceneError, visible};
 use roxmltree::Node;
 use svgtypes::{Align, AspectRatio, ViewBox};
 
-/// Where the contents of an element are drawn.
+/// The region in which the contents of an element are drawn.
 pub(super) struct Viewport {
     /// The map from its coordinates to those around it.
     pub(super) map: Affine,
@@ -33,7 +33,8 @@ impl Reader<'_, '_> {
         Ok(Some(view))
     }
 
-    /// Where the contents of an `<svg>` or a `<symbol>` are drawn. A `use` may give its size; none if the size is zero.
+    /// The region in which the contents of an `<svg>` or a `<symbol>` are drawn. A `use` may give its size; none if the size is
+    /// zero.
     pub(super) fn viewport(
         &self,
         node: Node<'_, '_>,

@@ -1,4 +1,4 @@
-//! Triangles of a file, and what is made of them: a closed surface, cloth, or a filled body.
+//! Triangles of a file, from which a closed surface, cloth, or a filled body is made.
 
 use super::curves::larger;
 use super::errors::ShapeHint;
@@ -15,7 +15,7 @@ use opruga_mesh::{FaceError, Mesh, MeshError, cut_face};
 use opruga_world::shapes;
 use std::collections::BTreeMap;
 
-/// Faces with corners farther from their plane than this fraction of their size are reported: another division would give another surface.
+/// Faces with corners farther from their plane than this fraction of their size are reported, because another division would give another surface.
 const BENT: f64 = 0.02;
 /// A triangle is refused if its area is below this fraction of its longest edge squared.
 const THIN: f64 = 1e-10;
@@ -23,7 +23,7 @@ const THIN: f64 = 1e-10;
 const SLIVER: f64 = 1e-3;
 /// Usual extents of surfaces [m].
 const USUAL: [f64; 2] = [1e-4, 1e2];
-/// The largest factor by which a surface may be larger or smaller than usual for another unit to explain it.
+/// If a surface is larger or smaller than usual by more than this factor, another unit does not explain it.
 const UNITS: f64 = 1e5;
 
 /// What a reader found.

@@ -8,7 +8,7 @@ use crate::problem::{SceneError, visible};
 use opruga_core::spec::Values;
 use opruga_mesh::triangle_parts;
 
-/// A body as in the file, node by node.
+/// A body with the nodes and cells of the file.
 pub(super) fn loaded(
     name: &str,
     bytes: &[u8],
