@@ -38,7 +38,7 @@ impl Style {
         let (longest, aspect) = (f64::from(longest), view.aspect(dimension));
         let tall = ((longest - beside) * aspect + above).clamp(0.45 * longest, 0.75 * longest);
         let wide = ((tall - above) / aspect + beside).clamp(0.6 * longest, longest);
-        // Videos store one colour for two pixels.
+        // Videos store one colour for two pixels, so sides must be even.
         let even = |side: f64| 2 * (0.5 * side).round() as u32;
         Style { width: even(wide), height: even(tall), ..Style::default() }
     }
@@ -182,7 +182,7 @@ impl Layout {
     ) {
         let (unit, size) = (self.unit, 13.0 * self.unit);
         let length_unit = &pictures[0].length_unit;
-        // The name of each, the length of its arrow in pixels, and that of both together.
+        // The name of each, the length of its arrow in pixels, and the length of both together.
         let entries = |most: f32| -> Vec<(ArrowKind, String, f32, f32)> {
             let drawn = |kind| pictures.iter().any(|picture| picture.arrows.iter().any(|arrow| arrow.kind == kind));
             let entry = |(&kind, &longest): (&ArrowKind, &f64)| {
@@ -207,7 +207,7 @@ impl Layout {
         let gap = 20.0 * unit;
         let total_width =
             |entries: &[(ArrowKind, String, f32, f32)]| entries.iter().map(|(.., wide)| wide + gap).sum::<f32>();
-        // As long as possible, so that all of them fit.
+        // Arrows are as long as possible, but all of them fit.
         let lengths = [70.0, 45.0, 30.0, 20.0].map(|most| most * unit);
         let whole = lengths.into_iter().map(entries).find(|entries| total_width(entries) - gap <= to - from);
         let mut end = to;

@@ -1,8 +1,8 @@
 //! Pictures, film strips, plots and videos of deformable bodies, without a graphics card.
 //!
-//! A [`Picture`] describes what is seen at one moment. A [`View`], fitted to all pictures of a run, describes from where. Then [`draw`] makes an
-//! [`Image`], [`strip`] a row of them, and [`Mp4Writer`] or [`GifWriter`] a film.
-// The reproducible elementary functions are for physics; a picture may differ in the last bit.
+//! A [`Picture`] describes what is visible at one moment. A [`View`], which is fitted to all pictures of a run, describes how it is seen. From these,
+//! [`draw`] makes an [`Image`], [`strip`] a row of images, and [`Mp4Writer`] or [`GifWriter`] a film.
+// The reproducible elementary functions are only for physics; a picture may differ in the last bit.
 #![allow(clippy::disallowed_methods)]
 
 mod animation;

@@ -6,9 +6,9 @@ use crate::picture::{ArrowKind, ArrowPicture, Picture};
 use crate::view::View;
 use tiny_skia::PathBuilder;
 
-/// The maximum number of pins of a body for which each may be drawn as a support.
+/// If a body has no more pins than this, each may be drawn as a support.
 const SUPPORTS: usize = 40;
-/// The minimum distance of neighbours for that, in units of lines.
+/// The minimum distance between neighbouring supports, in units of lines.
 const SUPPORT_SPACING: f32 = 17.0;
 
 /// The number of arrows above which they are drawn thinner.
@@ -68,7 +68,7 @@ pub(crate) fn draw_marks(
     for body in &picture.bodies {
         let pins = body.pinned.iter().map(|node| body.positions[*node as usize]);
         let points: Vec<[f32; 2]> = pins.filter(|position| in_sight(*position)).filter_map(project).collect();
-        // Marks that would overlap are merged; if supports would stand in a row, dots are drawn instead.
+        // Marks that would overlap are merged. Dots replace supports that would form a row.
         let supports = marks_apart(&points, 12.0 * unit);
         let row = marks_apart(&supports, SUPPORT_SPACING * unit).len() < supports.len();
         if body.pinned.len() <= SUPPORTS && !row {
@@ -166,13 +166,13 @@ fn labels(
     let covered = |canvas: &Canvas, side: Side| -> usize {
         all.iter().map(|label| canvas.differing(rect(label, side), background)).sum()
     };
-    // Above, unless much more is covered there, so that names do not jump from picture to picture.
+    // Names are above unless much more would be covered, so that they do not jump from picture to picture.
     let area: f32 = all.iter().map(|label| rect(label, Side::Above)).map(|[.., wide, tall]| wide * tall).sum();
     let much = covered(canvas, Side::Below) + (0.15 * area) as usize;
     let side = if much < covered(canvas, Side::Above) { Side::Below } else { Side::Above };
     for label in &all {
         let own = rect(label, side);
-        // A small overlap with something else is no reason to leave the row.
+        // A small overlap with something else does not move a name out of the row.
         let enough = (0.1 * own[2] * own[3]) as usize;
         let free = [Side::Right, Side::Left].map(|side| rect(label, side));
         let free = free.into_iter().find(|rect| canvas.differing(*rect, background) == 0);

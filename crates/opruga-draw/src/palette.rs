@@ -41,8 +41,8 @@ impl Palette {
         } else {
             sums.sort_by_key(|sum| std::cmp::Reverse(sum[0]));
             let (kept, others) = sums.split_at(KEPT);
-            // Weighted by the square roots of their counts: otherwise the plain squares of a floor would take the colours that the shades of bodies
-            // need.
+            // Colours are weighted by the square roots of their counts; otherwise the plain squares of a floor would take the colours that the shades
+            // of bodies need.
             let learnt: Vec<u8> = others
                 .iter()
                 .flat_map(|sum| {
@@ -114,7 +114,8 @@ mod tests {
 
     #[test]
     fn shades_of_a_small_body_before_a_large_background_are_told_apart() {
-        // Blue to yellow, light to dark, on a hundredth of a plain picture: with the 256 most frequent colours the distance is 59 here.
+        // Colours from blue to yellow and from light to dark fill a hundredth of a plain picture. With the 256 most frequent colours, the distance
+        // would be 59.
         let wide = 600;
         let body = |x: u32, y: u32| [(4 * x) as u8, (2 * x + 2 * y) as u8, (4 * (63 - y)) as u8];
         let colour = |x, y| if x < 64 && y < 64 { body(x, y) } else { [252, 252, 253] };

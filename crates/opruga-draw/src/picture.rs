@@ -87,7 +87,7 @@ pub enum Facets {
 /// An area that is painted on a flat body.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct AreaPicture {
-    /// Red, green, blue and opacity; if it is not given, the body's own colours, clipped at the area.
+    /// Red, green, blue and opacity; if it is not given, the body's own colours are drawn, clipped at the border of the area.
     pub colour: Option<[u8; 4]>,
     /// The points that bound the area [m].
     pub positions: Vec<[f64; 3]>,
@@ -128,8 +128,8 @@ pub struct BodyPicture {
     /// The distance of neighbours at the start [m]. If it leaves no space for dots in a flat picture, none are drawn, in any picture of a run. If it
     /// is not given, dots are always drawn.
     pub node_spacing: Option<f64>,
-    /// The larger side of the body at the start [m]. It determines what is drawn of the body and how thick, equally in all pictures of a run. If it
-    /// is not given, the size in this picture is used.
+    /// The larger side of the body at the start [m]. It determines which parts of the body are drawn and how thick lines are, in the same way in all
+    /// pictures of a run. If it is not given, the size in this picture is used.
     pub extent: Option<f64>,
     /// Lines of the rest shape, drawn beneath the body; may be empty.
     pub rest: RestPicture,

@@ -143,7 +143,7 @@ pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<I
     captioned_strip(pictures, &captions, view, style)
 }
 
-/// The same with a given text below each picture.
+/// Draws a strip with a given text below each picture.
 pub fn captioned_strip(
     pictures: &[&Picture],
     captions: &[String],

@@ -30,9 +30,9 @@ pub const FIRST_SCENE: &str = "ball";
 /// The width up to which the properties are in a drawer [points], as on a phone held upright.
 const NARROW: f32 = 700.0;
 
-/// Two pictures at least this far apart [s] do not count as consecutive, unless time passes in the simulation.
+/// Two pictures that are at least this far apart [s] do not count as consecutive, unless time passes in the simulation.
 const IDLE: f64 = 0.25;
-/// How long a frame is computed before the picture counts as outdated.
+/// If a frame takes longer than this to compute, the picture counts as outdated.
 const STALE: Duration = Duration::from_millis(700);
 
 /// The whole window.
@@ -49,7 +49,7 @@ pub struct Studio {
     /// The language of the interface.
     pub language: Language,
     theme: Theme,
-    /// Where language and theme are stored.
+    /// The store of language and theme.
     store: Store,
     show: Show,
     plots_open: bool,
@@ -66,7 +66,7 @@ pub struct Studio {
     closed: u64,
     /// The last source of a message.
     heard: message::Heard,
-    /// The last message, the time since which it is shown, and where; it disappears by itself.
+    /// The last message, the time since which it is shown, and its position; it disappears by itself.
     last_message: (String, f64, message::Placement),
     /// Pictures of the interface per second.
     rate: f64,
@@ -74,7 +74,7 @@ pub struct Studio {
     played: bool,
     /// The renderer and its device, if there is a choice.
     drawn_by: Option<[String; 2]>,
-    /// Where the work is saved in case the window is lost.
+    /// The place where the work is saved in case the window is lost.
     #[cfg(not(target_arch = "wasm32"))]
     rescue: Option<crate::rescue::Rescue>,
     /// The state of closing the window.
@@ -139,7 +139,7 @@ impl Studio {
         self.gallery.cache = Some(folder);
     }
 
-    /// Saves the work there in case the window is lost.
+    /// Sets the place where the work is saved in case the window is lost.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn keep_at(&mut self, rescue: crate::rescue::Rescue) {
         self.rescue = Some(rescue);
@@ -179,7 +179,7 @@ impl Studio {
         &self.link
     }
 
-    /// Where a point of the scene is in the window.
+    /// The position in the window of a point of the scene.
     pub fn on_screen(&self, point: [f64; 3]) -> Option<egui::Pos2> {
         self.canvas.on_screen(&self.link.shown(), point)
     }
@@ -201,13 +201,13 @@ impl Studio {
     pub fn show(&mut self, ui: &mut Ui) {
         let shown = self.link.shown();
         let seconds = f64::from(ui.input(|i| i.unstable_dt)).max(1e-4);
-        // If pictures are not consecutive, nothing was drawn between them, and nobody waited for it.
+        // If pictures are not consecutive, nothing was drawn between them, and the user was not waiting for it.
         let follows = seconds < IDLE || shown.playing && self.played;
         self.played = shown.playing;
         if follows {
             self.rate += 0.05 * (1.0 / seconds - self.rate);
         }
-        // This picture reports what was done: it may be the last one for a long time.
+        // This picture reports what was done, because it may be the last one for a long time.
         self.keeping.poll(&self.link);
         self.canvas.follow_names(&shown);
         let mut asks = Vec::new();
@@ -298,7 +298,7 @@ impl Studio {
         }
     }
 
-    /// The panel of properties; side by side, of both sides or of the right one.
+    /// The panel of properties. If two scenes are side by side, it shows those of both sides or of the right one.
     fn properties(&mut self, ui: &mut Ui, shown: &Arc<Shown>, asks: &mut Vec<Request>) {
         let words = self.language;
         let Some(beside) = &shown.beside else {

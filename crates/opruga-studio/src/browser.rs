@@ -57,7 +57,7 @@ pub(crate) fn stored(name: &str) -> Option<String> {
     window()?.local_storage().ok()??.get_item(name).ok()?
 }
 
-/// Stores a text there. If the browser does not support this, the text is lost with the page.
+/// Stores a text for this page under a name. If the browser does not support this, the text is lost with the page.
 pub(crate) fn store(name: &str, text: &str) {
     if let Some(Ok(Some(storage))) = window().map(|window| window.local_storage()) {
         let _ = storage.set_item(name, text);

@@ -62,8 +62,8 @@ impl Twins {
     }
 }
 
-/// Makes the right scene: the left one with the differences written into it. If a body has other nodes there, references to nodes are changed to the
-/// nearest ones at rest.
+/// Makes the right scene, which is the left one with the differences written into it. If a body has other nodes in it, references to nodes are
+/// changed to the nearest nodes at rest.
 ///
 /// # Errors
 /// [`Report`] if a difference cannot be written into the scene, or all errors of a shape.
@@ -140,7 +140,7 @@ fn rest_positions(blueprint: &AnyBlueprint) -> Vec<(String, Vec<[f64; 3]>)> {
 
 /// For every point, the index of the nearest of others; if several are equally near, the first.
 fn nearest(of: &[[f64; 3]], among: &[[f64; 3]]) -> Vec<u32> {
-    // Sorted by x, the search ends when the difference in x alone exceeds the best distance.
+    // Points are sorted by x, so the search ends when the difference in x alone exceeds the best distance.
     let mut order: Vec<u32> = (0..among.len() as u32).collect();
     order.sort_by(|a, b| among[*a as usize][0].total_cmp(&among[*b as usize][0]).then(a.cmp(b)));
     let find = |point: &[f64; 3]| {

@@ -1,5 +1,5 @@
-//! The scene as its text. The actions of the user are written into it, so that saving means writing the text, and the command line can repeat what
-//! was done here.
+//! The scene as its text. The actions of the user are written into this text, so saving only writes it to a file, and the command line can repeat
+//! what was done.
 
 mod overrides;
 mod taken_over;
@@ -33,7 +33,7 @@ pub fn read(
     let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
     let file = format!("{}.toml", document.name);
     let read = scene::read(document.text().as_bytes(), &file, &catalogue_of(registries), &reading);
-    // The text has changed since anybody has seen it.
+    // The text has changed since the user has last seen it.
     let (blueprint, notices) = read.map_err(|errors| without_lines(errors, &document.name, ""))?;
     // Time continues after the end that the scene gives for a run, so every command is executed here.
     let is_reported = |code: &str| !Notice::is_asked_for(code) && code != "command.never";
@@ -59,7 +59,7 @@ impl Document {
     }
 
     /// Makes a document from a text that has not been read yet. It is either the text of a file, whose lines are reported, or a text made around the
-    /// file of this name, whose lines nobody knows.
+    /// file of this name, whose lines the user does not know.
     ///
     /// # Errors
     /// All errors in the text.
@@ -142,8 +142,8 @@ impl Document {
         self.text.get_mut("command")?.as_array_of_tables_mut()?.get_mut(number)
     }
 
-    /// Removes what was recorded from a time on [s]. Of the commands after the first `kept`, those that begin then or later are removed, and those
-    /// that are active then end; points that are pinned then stay pinned.
+    /// Removes what was recorded from a time on [s]. Of the commands after the first `kept`, those that begin at that time or later are removed, and
+    /// those that are active at that time end; points that are pinned at that time stay pinned.
     pub fn cut(&mut self, kept: usize, time: f64) {
         let Some(tables) = self.text.get_mut("command").and_then(Item::as_array_of_tables_mut) else { return };
         for number in (kept..tables.len()).rev() {
@@ -418,8 +418,8 @@ impl Document {
     }
 }
 
-/// Removes the lines from errors in the text of a scene that nobody sees, because they would mean nothing to the user. These errors name `file`
-/// instead, or nothing if it is empty; lines of other files are kept.
+/// Removes the lines from errors in the text of a scene that the user does not see, because lines would mean nothing to the user. These errors name
+/// `file` instead, or nothing if it is empty; lines of other files are kept.
 pub(crate) fn without_lines(errors: Vec<SceneError>, scene: &str, file: &str) -> Vec<SceneError> {
     let own = format!("{scene}.toml");
     let without_own_lines = |error: SceneError| match error.file == own {

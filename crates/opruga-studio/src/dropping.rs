@@ -28,7 +28,7 @@ pub fn take(path: &Path) -> Result<Request, Report> {
     request(&file, bytes, || Files::beside(path))
 }
 
-/// Does the same for a file of this name from any source; its bytes are read if it is a scene.
+/// Does the same for a file with this name from any source; its bytes are read if it is a scene.
 pub(crate) fn request(
     file: &str,
     bytes: impl FnOnce() -> Result<Vec<u8>, Report>,

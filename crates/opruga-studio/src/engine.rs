@@ -38,7 +38,7 @@ pub struct Common {
 pub struct State {
     /// The snapshot of its world.
     pub world: Vec<u8>,
-    /// Side by side, the state of the right side, and why that one has stopped.
+    /// If two scenes are side by side, the state of the right side, and why it has stopped.
     pub right: Option<(Box<State>, Option<Report>)>,
 }
 
@@ -114,7 +114,8 @@ pub trait Engine: Send {
     fn add_from(&mut self, scene: AnyBlueprint, scene_warnings: Vec<Warning>) -> Result<(), WorldError>;
     /// The node of a body nearest to a point.
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32>;
-    /// The node that corresponds to the one nearest to a point in the scene beside it; none if there is only one scene.
+    /// The node that corresponds to the node of the scene beside it that is nearest to a point; none if there is only one
+    /// scene.
     fn nearest_beside(&self, _body: usize, _point: [f64; 3]) -> Option<u32> {
         None
     }
@@ -273,7 +274,7 @@ impl Engine for Living {
     }
 
     fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError> {
-        // Stages at the end of the next frame look beyond it, so the path extends one frame farther.
+        // Stages at the end of the next frame are evaluated beyond it, so the path extends one frame farther.
         let row = self.row_of(self.world.frames() + 2, pointer);
         self.world.lead(number, row.clone())?;
         Ok(row)
@@ -284,7 +285,7 @@ impl Engine for Living {
         if self.world.finish(number, until).is_ok() {
             return Ok(until);
         }
-        // It has just begun, so it acts for one frame.
+        // The command has just begun, so it acts for one frame.
         let until = self.time_of(self.world.frames() + 1);
         self.world.finish(number, until).map(|()| until)
     }
@@ -387,7 +388,7 @@ impl Engine for Living {
         let numbers = self.world.bodies();
         let mut bodies = Vec::with_capacity(numbers.len());
         for &number in &numbers {
-            // Nobody reads the values of single bodies in a crowd.
+            // In a crowd, the values of single bodies are not of interest.
             let readings = if numbers.len() <= 64 { self.world.readings(number) } else { Vec::new() };
             let Some(body) = self.world.scene().body(number) else { continue };
             bodies.push(BodyShown {

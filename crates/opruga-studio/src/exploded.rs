@@ -7,6 +7,6 @@ pub struct Exploded {
     pub body: String,
     /// The kind of its integrator.
     pub integrator: String,
-    /// Whether that integrator is unstable with this step, as far as the world can decide.
+    /// Whether that integrator is unstable with this step, as far as the world can determine it.
     pub unstable: bool,
 }

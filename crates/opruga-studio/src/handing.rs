@@ -1,5 +1,5 @@
 //! The destination of files: a desktop window writes them to the folder `out/studio`, a web page gives them as downloads. A scene is written together
-//! with the files that it names, so that it can be run from there.
+//! with the files that it names, so that it can be run from that folder.
 
 use crate::report::Report;
 use opruga::io::{Files, scene};
@@ -65,10 +65,10 @@ mod window {
             Ok(path)
         }
 
-        /// Writes a scene; if it names files, it goes to a folder of its own together with them. The path of the scene comes first.
+        /// Writes a scene. If it names files, it is written to its own folder together with them. The path of the scene comes first.
         ///
         /// # Errors
-        /// Those of the system; nothing is left behind then.
+        /// The errors of the system; in this case no file is left behind.
         pub fn scene(
             &self,
             name: &str,
@@ -143,7 +143,7 @@ mod page {
         crate::browser::download(&name, bytes).map(|()| name)
     }
 
-    /// Downloads a scene and the files that it names, each separately. A browser puts them all into one folder, where the scene finds them.
+    /// Downloads a scene and the files that it names, each separately. A browser puts all of them into one folder, so the scene finds its files.
     pub(crate) fn scene_with_files(
         name: &str,
         text: &str,

@@ -1,4 +1,5 @@
-//! Earlier states to which a session can return, within a memory budget. If they exceed it, every second one is dropped.
+//! Earlier states to which a session can return, within a memory budget. If they exceed the budget, every second state is
+//! dropped.
 
 use crate::engine::State;
 
@@ -6,7 +7,7 @@ use crate::engine::State;
 #[derive(Debug)]
 pub struct Keyframes {
     kept: Vec<(u64, State)>,
-    /// The number of frames between two of them.
+    /// The number of frames between two keyframes.
     every: u64,
     bytes: usize,
     budget: usize,
@@ -16,7 +17,7 @@ pub struct Keyframes {
 const FIRST_INTERVAL: u64 = 10;
 
 impl Keyframes {
-    /// No keyframes yet, with a budget of this many bytes.
+    /// Makes an empty list of keyframes with a budget of this many bytes.
     pub fn new(budget: usize) -> Keyframes {
         Keyframes { kept: Vec::new(), every: FIRST_INTERVAL, bytes: 0, budget }
     }

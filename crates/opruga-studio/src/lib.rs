@@ -1,7 +1,7 @@
 //! Opruga Studio: a window on a running scene, in which the user pulls bodies, draws new ones and changes their physics.
 //!
 //! [`session`] is the complete studio without a window; the rest displays it and sends requests to it.
-// No physics here: pictures and clocks may differ in the last bit.
+// This crate contains no physics, so pictures and clocks may differ in the last bit.
 #![allow(clippy::disallowed_methods)]
 
 pub mod differences;

@@ -108,7 +108,7 @@ fn main() -> ExitCode {
                 return Ok(Box::new(Measured::new(studio, &creation.egui_ctx, count, &report)) as Box<dyn eframe::App>);
             }
             match lost {
-                // Time is stopped where the previous window was lost.
+                // Time is stopped at the moment at which the previous window was lost.
                 Some(saved) => studio.report(Severity::Refused, Report::WindowLost(saved)),
                 None => studio.ask(Request::Play(true)),
             }

@@ -3,19 +3,19 @@
 
 use crate::shown::Shown;
 
-/// The number of frames before the first that counts, for fonts, textures and other preparations.
+/// The number of frames that are not measured, because fonts, textures and other things are prepared in them.
 const WARM_UP: usize = 60;
 
 /// The measurements of one frame [ms].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Frame {
-    /// From the beginning of the previous frame to that of this one.
+    /// From the beginning of the previous frame to the beginning of this one.
     whole: f64,
     /// Panels and scene, up to the shapes to be drawn.
     interface: f64,
     /// The triangulation of these shapes, if it was measured separately.
     triangles: f64,
-    /// The simulation, if it does not have a thread of its own.
+    /// The simulation, if it does not have its own thread.
     simulation: f64,
     /// The whole thread: the above, and the work of the driver in this thread.
     thread: f64,
@@ -125,7 +125,7 @@ mod native {
         nanoseconds.map_or_else(|| 1e3 * begin.elapsed().as_secs_f64(), |ns| 1e-6 * ns)
     }
 
-    /// Triangulates every frame once more than necessary, to measure the time of that [ms].
+    /// Triangulates every frame once more than necessary, to measure how long this takes [ms].
     struct Triangles(Arc<Mutex<f64>>, Instant);
 
     impl Plugin for Triangles {

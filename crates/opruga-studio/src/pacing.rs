@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
-/// The longest delay that is caught up, so that the simulation does not leap after a pause of ten minutes.
+/// The longest delay that is caught up, so that the simulation does not jump after a pause of ten minutes.
 const LONGEST: f64 = 0.1;
 /// The weight of the last frame in the mean time of a frame.
 const FRESH: f64 = 0.1;
-/// The time constant of the displayed ratio: older values hardly count [s].
+/// The time constant of the displayed ratio [s]; older values hardly count.
 const MEMORY: f64 = 0.3;
 
-/// The simulated time that is still owed.
+/// The simulated time that is still due.
 #[derive(Clone, Debug)]
 pub struct Pacing {
     owed: f64,
@@ -26,7 +26,7 @@ impl Default for Pacing {
 }
 
 impl Pacing {
-    /// Forgets the owed time, after a pause or a leap in time.
+    /// Forgets the time that is due, after a pause or a jump in time.
     pub fn rest(&mut self) {
         self.owed = 0.0;
     }
@@ -35,7 +35,7 @@ impl Pacing {
     /// computes one and returns how long it took, or an error. Spends at most `budget`.
     ///
     /// # Errors
-    /// Those of `frame`; no time is owed then.
+    /// The errors of `frame`; in this case no time remains due.
     pub fn run<E>(
         &mut self,
         elapsed: Duration,
@@ -61,10 +61,10 @@ impl Pacing {
             self.owed -= length;
             done += 1;
         }
-        // Time that cannot be caught up is dropped: simulated time slows down.
+        // Time that cannot be caught up is dropped, so simulated time slows down.
         let lost = (self.owed - length).max(0.0);
         self.owed -= lost;
-        // Time that was not even owed, because the last picture was long ago, is lost, too.
+        // Time that did not become due, because the last picture was long ago, is lost, too.
         let passed = elapsed.as_secs_f64();
         let asked = passed * speed;
         if asked > 0.0 {

@@ -22,7 +22,7 @@ use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 use wasm_bindgen::prelude::*;
 
-/// How long a frame may take before the user is asked whether to wait for it [s]: browsers offer to close pages that do not respond for about five
+/// How long a frame may take before the user is asked whether to wait for it [s]. Browsers offer to close pages that do not respond for about five
 /// seconds.
 const PATIENCE: f64 = 2.0;
 
@@ -290,7 +290,7 @@ impl Page {
 /// The hash of the state of a scene after a number of frames, computed without a window. The scene is one that comes with the program, or a text.
 ///
 /// # Errors
-/// The errors of the scene, or why it does not run.
+/// The errors of the scene, or the reason why it does not run.
 #[wasm_bindgen]
 pub fn hash_after(scene_or_text: &str, frames: u32) -> Result<String, String> {
     let text = opruga::scenes::find(scene_or_text).unwrap_or(scene_or_text);

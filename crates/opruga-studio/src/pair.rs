@@ -47,12 +47,12 @@ struct Pair {
     twins: Twins,
     /// Why the right one has stopped.
     stopped: Option<Report>,
-    /// Whether the right one has missed a command; it can then only be rebuilt.
+    /// Whether the right side has missed a command, after which it can only be rebuilt.
     behind: bool,
 }
 
 impl Pair {
-    /// Repeats on the right side what the left one has accepted.
+    /// Repeats on the right side what the left side has accepted.
     fn follow<T>(&mut self, act: impl FnOnce(&mut dyn Engine) -> Result<T, WorldError>) {
         if self.stopped.is_none()
             && let Err(error) = act(&mut *self.right)
@@ -88,7 +88,7 @@ impl Pair {
 
 impl Engine for Pair {
     fn frame(&mut self) -> Result<(), WorldError> {
-        // If the right one is interrupted, both return to the previous state.
+        // If the right side is interrupted, both sides return to the previous state.
         let before = self.left.snapshot();
         self.left.frame()?;
         if self.stopped.is_some() {
@@ -281,7 +281,7 @@ impl Engine for Pair {
             let stocks = ["kinetic", "elastic", "gas", "gravity"];
             row.iter().filter(|(name, _)| stocks.contains(&name.as_str())).map(|(_, x)| x).sum()
         };
-        // If the right one has stopped, there is nothing to compare.
+        // If the right side has stopped, there is nothing to compare.
         if self.stopped.is_none() {
             let energy = stored(&right) - stored(&row);
             row.extend(right.into_iter().skip(1).map(|(name, x)| (format!("right.{name}"), x)));

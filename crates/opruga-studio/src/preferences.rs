@@ -22,7 +22,7 @@ impl Default for Preferences {
 /// Where preferences are stored.
 #[derive(Clone, Debug, Default)]
 pub enum Store {
-    /// Nowhere: they are lost with the window.
+    /// They are not stored, and are lost with the window.
     #[default]
     Nowhere,
     /// In this file.
@@ -49,7 +49,7 @@ impl Preferences {
         preferences
     }
 
-    /// The text with these preferences; the rest of it stays.
+    /// The text with these preferences; the rest of it does not change.
     fn written_into(self, text: &str) -> String {
         let mut document = text.parse::<DocumentMut>().unwrap_or_default();
         document["language"] = value(self.language.code());
@@ -59,7 +59,7 @@ impl Preferences {
 }
 
 impl Store {
-    /// The store of the user on this machine; nowhere if the system names no folder for it.
+    /// The store of the user on this machine, or `Nowhere` if the system names no folder for it.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn of_the_person() -> Store {
         let folder = folders::preferences(|name| std::env::var_os(name));

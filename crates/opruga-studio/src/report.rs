@@ -106,7 +106,7 @@ pub enum Report {
     NoDifference(String),
     /// A file is no text.
     NoText(String),
-    /// A file is neither a scene nor a shape, with the endings of those.
+    /// A file is neither a scene nor a shape; contains the endings of these.
     NoShapeFile(String, String),
     /// The name of a file cannot be used in a scene.
     NameOfFile(String),

@@ -1,5 +1,5 @@
-//! The work of the user is saved while it is done. If the window is lost, with the graphics device, the driver or the whole screen, the supervising
-//! program finds it there ([`crate::watch`]).
+//! The work of the user is saved while the user works. If the window is lost, together with the graphics device, the driver or the whole screen, the
+//! supervising program finds the saved work ([`crate::watch`]).
 
 use crate::handing::named_files;
 use crate::report::Report;
@@ -27,7 +27,7 @@ pub struct Rescue {
     last: Option<Instant>,
     /// The text that was last saved, and whether it contains anything that the user has not saved.
     kept: (Arc<str>, bool),
-    /// The files of a scene, which are read only once: the scene, where they are, and their contents.
+    /// The files of a scene, which are read only once: the scene, the location of the files, and their contents.
     files: Option<(String, Files, Files)>,
 }
 
@@ -99,7 +99,7 @@ pub fn read(path: &Path) -> Result<Shared, Report> {
     share::unpack(&scene::bytes_of(path, &scene::Limits::default()).map_err(refused)?)
 }
 
-/// Reopens the session that was lost, which then goes to the moment where it was and stops there.
+/// Reopens the session that was lost; it goes to the moment at which it was lost, and stops.
 ///
 /// # Errors
 /// Why it cannot be opened.

@@ -1,5 +1,5 @@
-//! The simulation behind the interface, which sends requests and receives the last picture. The simulation runs on a thread of its own or, in a
-//! browser, in the time that a picture of the window leaves.
+//! The simulation behind the interface, which sends requests and receives the last picture. The simulation runs on its own thread or, in a browser,
+//! in the time that remains between pictures of the window.
 
 pub mod sliced;
 #[cfg(not(target_arch = "wasm32"))]
@@ -26,7 +26,7 @@ pub struct Copied {
     pub name: String,
     /// Its text with everything that was done.
     pub text: String,
-    /// Where the files that it names are.
+    /// The location of the files that it names.
     pub files: Files,
     /// The models and integrators that it can name.
     pub registries: Registries,
@@ -101,7 +101,7 @@ impl Course {
             (self.session.frames(), self.session.is_seeking(), self.session.message_count());
         self.session.tick(now.saturating_sub(self.last), budget, &clock);
         self.last = now;
-        // A frame that fails is also news, though it changes nothing.
+        // A frame that fails also needs a new picture, although it changes nothing.
         news |= self.session.frames() != before || was_seeking || self.session.message_count() != message_count;
         news.then(|| self.session.shown())
     }

@@ -1,11 +1,11 @@
-//! The curves of a run: numbers frame by frame, within a memory limit. If they exceed it, every second frame is dropped.
+//! The curves of a run: numbers for each frame, within a memory limit. If they exceed the limit, every second frame is dropped.
 
 use opruga::core::potential::Reading;
 use std::sync::Arc;
 
 /// The memory limit of the samples [bytes].
 const MOST_BYTES: usize = 16 << 20;
-/// The largest number of samples: no window is wide enough to distinguish more.
+/// The largest number of samples. No window is wide enough to distinguish more.
 const MOST: usize = 8_192;
 
 /// The numbers of one frame.
@@ -44,7 +44,7 @@ impl Sample {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Samples {
     kept: Vec<Sample>,
-    /// The number of frames between two of them.
+    /// The number of frames between two samples.
     every: u64,
     bytes: usize,
 }

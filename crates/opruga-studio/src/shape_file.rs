@@ -19,7 +19,7 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// The body for a scene with other bodies, of this size [m], from a file with this name there.
+    /// The body, with this size [m], for a scene with other bodies in which the file has this name.
     pub fn body(&self, file: &str, size: f64) -> Option<InlineTable> {
         let document: DocumentMut = self.text.parse().ok()?;
         let mut body = document.get("body")?.as_array_of_tables()?.get(0)?.clone().into_inline_table();

@@ -1,4 +1,5 @@
-//! A whole scene in one piece: its text and the files that it names, compressed; in an address, as letters after the `#`, which browsers do not send.
+//! A whole scene in one piece: its text and the files that it names, compressed. In an address, they are letters after the `#`, which browsers do not
+//! send.
 
 use crate::report::Report;
 use flate2::read::DeflateDecoder;

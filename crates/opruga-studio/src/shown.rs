@@ -141,7 +141,7 @@ pub struct Pace {
 pub enum Severity {
     /// Something was done.
     Done,
-    /// Something could not be done; everything is as it was before.
+    /// Something could not be done; nothing has changed.
     Refused,
 }
 
@@ -254,7 +254,7 @@ pub struct Shown {
     pub energy: EnergyShown,
     /// The momentum [kg m/s].
     pub momentum: [f64; 3],
-    /// The curves of this run; if the scene is open, they may extend beyond this moment.
+    /// The curves of this run; they may extend beyond this moment.
     pub samples: Arc<RwLock<Samples>>,
     /// The warnings.
     pub warnings: Vec<Warning>,
@@ -283,7 +283,7 @@ pub struct Shown {
     pub resets: u64,
     /// The same scene in another configuration.
     pub beside: Option<Beside>,
-    /// Bodies that were replaced under another name: old and new names.
+    /// Bodies that were renamed when they were replaced: old and new names.
     pub renamed: Vec<(String, String)>,
     /// The last body that was added or copied, with a running number.
     pub newest: Option<(u64, String)>,

@@ -3,14 +3,14 @@
 
 use egui::{Context, Event, Plugin, PointerButton, RawInput};
 
-/// The longest duration of a press that began and ended within one picture \[s\]: however long the picture took, it counts as a click.
+/// The longest duration of a press that began and ended within one picture \[s\]: however long the picture took, the press counts as a click.
 const TAP: f64 = 0.125;
 
 /// The events that wait for the next picture.
 #[derive(Debug, Default)]
 pub(crate) struct Taps {
     later: Vec<Event>,
-    /// When the press began whose release waits [s].
+    /// The time at which the press began whose release waits [s].
     pressed: Option<f64>,
 }
 

@@ -47,7 +47,7 @@ pub fn apply(context: &Context) {
             widget.corner_radius = CornerRadius::same(5);
         }
     });
-    // The toolkit's faint text is too faint to be read; with a stronger one, plain text must stand out more.
+    // The toolkit's faint text is too faint to be read. With stronger faint text, plain text must stand out more.
     for (theme, plain, faint) in [(Theme::Dark, 190, 154), (Theme::Light, 60, 100)] {
         context.style_mut_of(theme, |style| {
             style.visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(plain);

@@ -1,5 +1,5 @@
-//! A program that supervises the window. OpenGL cannot provide another device for the same window, and a driver that fails takes the program with it.
-//! The window is therefore a separate process, which this one starts. If the window is lost, its work is saved, the path is reported, and another
+//! A program that supervises the window. OpenGL cannot provide another device for the same window, and a driver that fails ends the program. The
+//! window is therefore a separate process, which this program starts. If the window is lost, its work is saved, the path is reported, and another
 //! window continues from there. If the program is asked to end, the work is saved and the path is reported, too.
 
 use crate::handing::Folder;
@@ -35,7 +35,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Whether Ctrl-C or a signal has asked the program to end.
 static END: AtomicBool = AtomicBool::new(false);
-/// Whether it was asked more than once: the window then gets no time to end by itself. Its work is saved anyway.
+/// Whether it was asked more than once. In this case the window gets no time to end by itself, but its work is saved anyway.
 static AT_ONCE: AtomicBool = AtomicBool::new(false);
 
 /// The action after the end of a window.

@@ -9,8 +9,8 @@ pub(crate) struct Loop {
     pub(crate) closed: bool,
 }
 
-/// Groups loops: each outer line with the holes in it. Outer lines run counter-clockwise, holes clockwise; if this gives no grouping, all loops form
-/// one group.
+/// Groups loops, each outer line with the holes in it. Outer lines run counter-clockwise, and holes clockwise. If this gives no grouping, all loops
+/// form one group.
 pub(crate) fn parts<'a>(loops: &'a [Loop], positions: &[[f64; 3]]) -> Vec<Vec<&'a Loop>> {
     let at = |node: u32| [positions[node as usize][0], positions[node as usize][1]];
     let corners = |chain: &Loop| chain.nodes.iter().map(|node| at(*node)).collect::<Vec<[f64; 2]>>();
@@ -67,7 +67,7 @@ pub(crate) fn chain(edges: &[[u32; 2]]) -> Vec<Loop> {
     let mut used = vec![false; edges.len()];
     let around = |node: u32| &incident[starts[node as usize] as usize..starts[node as usize + 1] as usize];
     let is_end = |edge: &[u32; 2]| edge.iter().any(|&node| around(node).len() == 1);
-    // Open lines first, from their ends; the rest are closed loops.
+    // Open lines are chained first, from their ends; the rest are closed loops.
     let mut order: Vec<usize> = (0..edges.len()).collect();
     order.sort_by_key(|&index| !is_end(&edges[index]));
     let mut loops = Vec::new();
@@ -135,7 +135,7 @@ mod tests {
         let loops: Vec<Loop> = (0..4).map(ring).collect();
         let found = parts(&loops, positions.as_flattened());
         assert_eq!(found, [vec![&loops[0], &loops[2]], vec![&loops[1]], vec![&loops[3]]]);
-        // A hole without an outer line: an inverted body is drawn as a body.
+        // A hole without an outer line is an inverted body, and is drawn as a body.
         assert_eq!(parts(&loops[2..3], positions.as_flattened()).len(), 1);
     }
 

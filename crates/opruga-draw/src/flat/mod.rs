@@ -134,7 +134,7 @@ mod tests {
         assert_eq!(painted(0.75, 0.0), [255, 0, 0]);
         assert_eq!(painted(0.0, 0.0), [0, 0, 255], "the dot in the hole");
         assert_eq!([painted(0.4, 0.4), painted(1.5, 0.0)], [[255; 3]; 2], "the hole, and the body around the drawing");
-        // Without a colour: the colours of the nodes, clipped at the area.
+        // An area without a colour gets the colours of the nodes, clipped at its border.
         let shaded = at(vec![frame(None)], vec![1.0; 4]);
         assert_eq!(shaded(0.75, 0.0), [253, 231, 37]);
         assert_eq!([shaded(0.0, 0.0), shaded(1.5, 0.0)], [[255; 3]; 2]);
@@ -178,7 +178,7 @@ mod tests {
         assert_eq!(seen(&by_lines), [255; 3], "the line alone leaves a hole, which is why triangles are filled");
     }
 
-    /// Whether the cells of a body are drawn is decided once per run: a squeezed body shows the same as before.
+    /// Whether the cells of a body are drawn is decided once per run, so a squeezed body is drawn as before.
     #[test]
     fn the_lattice_is_drawn_in_all_pictures_of_a_run_or_in_none() {
         let side = 24;
@@ -212,7 +212,7 @@ mod tests {
                     (0..size * size).map(|k| image.pixel(k % size, k / size)).filter(|c| *c != [255; 3]).collect();
                 colours.sort_unstable();
                 colours.dedup();
-                // One colour and the soft edge of the body, or lines over it.
+                // There is one colour and the soft edge of the body, or there are lines over it.
                 colours.len() > 2
             })
         };
@@ -223,7 +223,8 @@ mod tests {
         assert!(shown(600)[0] && !shown(120)[0]);
     }
 
-    /// Names are either all above their bodies or all below, and not on a floor; in a pile of two each is nearer to its own body.
+    /// Names are either all above or all below their bodies, and not on a floor. In a pile of two bodies, each name is nearer
+    /// to its own body.
     #[test]
     fn names_lie_where_nothing_is_in_the_way() {
         let body = |x: f64, y: f64, label: &str| BodyPicture {
@@ -249,12 +250,12 @@ mod tests {
         let (written, at) = rows(vec![body(-1.5, 0.0, "left"), body(1.5, 0.1, "right")], floor());
         let ground = at.pixel([0.0; 3])[1] as u32;
         assert!(!written.is_empty() && written.iter().all(|y| *y < ground), "{written:?} {ground}");
-        // Hung from above: names below the bodies.
+        // If bodies hang from above, names are below them.
         let ceiling = vec![ColliderPicture::HalfSpace { point: [0.0, 1.05, 0.0], normal: [0.0, -1.0, 0.0] }];
         let (written, at) = rows(vec![body(-1.5, 0.0, "left"), body(1.5, 0.0, "right")], ceiling);
         let feet = at.pixel([0.0; 3])[1] as u32;
         assert!(!written.is_empty() && written.iter().all(|y| *y >= feet), "{written:?} {feet}");
-        // One above the other: two rows of letters, both above their bodies.
+        // If one body is above the other, there are two rows of letters, both above their bodies.
         let (written, at) = rows(vec![body(0.0, 0.0, "low"), body(0.0, 2.0, "high")], floor());
         let rows_of =
             |y: f64| written.iter().filter(|row| (at.pixel([0.0, y, 0.0])[1] - **row as f32).abs() < 12.0).count();

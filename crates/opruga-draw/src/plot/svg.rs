@@ -211,7 +211,7 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, [x, y]: [&Scale; 2], area: [f64; 4],
             let pixel_of = move |point: &[f64; 3]| Some([at_x(x.fraction(point[0])?), at_y(y.fraction(point[end])?)]);
             thinned(line.band.iter().map(pixel_of))
         };
-        // Forward along the upper ends, and back along the lower ones.
+        // The band runs forward along the upper ends, and back along the lower ones.
         let around = edge(2).into_iter().flatten().chain(edge(1).into_iter().flatten().rev());
         let points: Vec<String> = around.map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
         let (points, colour) = (points.join(" "), hex(colour_of(line, number)));

@@ -98,7 +98,7 @@ impl Camera {
         };
         let far_enough = |seen: &[[f64; 3]]| {
             let need = |p: &[f64; 3]| (0..2).map(|axis| p[axis].abs() / slope[axis] - p[2]).fold(0.0, f64::max);
-            // The camera does not come too close to a point in front of the centre.
+            // The camera must not come too close to a point in front of the centre.
             let free = |p: &[f64; 3]| 0.8 * view.extent() - p[2];
             seen.iter().map(|p| need(p).max(free(p))).fold(1e-9, f64::max)
         };

@@ -310,7 +310,8 @@ mod tests {
     /// Every face of a box has one colour up to its edges: the shading of its neighbours does not affect it.
     #[test]
     fn the_edges_of_a_box_are_sharp() {
-        // Two triangles per face, and four squares per face: nodes at edges, at corners and inside.
+        // One box has two triangles per face, the other four squares per face, so that nodes are at edges, at corners and
+        // inside.
         for cells in [1_usize, 2] {
             let found =
                 shapes::shape(&ColliderPicture::Box { min: [0.0; 3], max: [1.0; 3], inside: false }).expect("a box");
@@ -348,7 +349,7 @@ mod tests {
             counts.remove(&[255; 3]);
             let (all, large): (u32, u32) =
                 counts.values().fold((0, 0), |(all, large), n| (all + n, large + if *n > 300 { *n } else { 0 }));
-            // Gloss varies slightly over a face seen in perspective; the rest are the pixels of the edges.
+            // Gloss varies slightly over a face seen in perspective; the remaining pixels are those of the edges.
             assert!(large > all * 9 / 10, "{cells}: {large} of {all}");
         }
     }

@@ -1,4 +1,4 @@
-//! The line around the visible part of a body: outside the region that covers it, and nowhere inside.
+//! The line around the visible part of a body, which is outside the region that the body covers, and nowhere inside.
 
 use super::camera::Seen;
 use super::raster::{Cover, SAMPLES, Screen, line_triangles};
@@ -6,7 +6,7 @@ use super::triangles;
 use crate::image::Image;
 use crate::picture::BodyPicture;
 
-/// The samples that a body covers, whatever is in front of it, and those of the line around them.
+/// The samples that a body covers, whatever is in front of it, and the samples of the line around them.
 struct Mask {
     width: usize,
     height: usize,
@@ -110,7 +110,7 @@ mod tests {
             let bodies = vec![BodyPicture { outlined, colour: Some([180, 60, 60]), ..body.clone() }];
             let picture = Picture { dimension: 3, bodies, ..Picture::default() };
             let mut view = View::fit([&picture]).expect("a view");
-            // From the side on which the sheets of the tests are one behind another.
+            // Seen from this side, the sheets of the tests are one behind another.
             (view.azimuth, view.elevation) = (10.0, 20.0);
             draw_scene(&picture, &view, [255; 3], [SIZE, SIZE]).expect("a picture")
         })

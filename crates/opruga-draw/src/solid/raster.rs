@@ -1,4 +1,4 @@
-//! Fills triangles on a screen of samples where the nearest sample wins; four samples make a pixel.
+//! Fills triangles on a screen of samples. The nearest sample is visible; four samples make a pixel.
 
 use super::camera::Seen;
 use crate::error::DrawError;
@@ -115,7 +115,7 @@ impl Screen {
         });
     }
 
-    /// Draws a line with a width in samples, slightly nearer than it is, so that it is visible on a surface.
+    /// Draws a line with a width in samples, slightly nearer to the camera than it is, so that it is visible on a surface.
     pub(crate) fn line(&mut self, ends: [Seen; 2], width: f32, colours: [[u8; 3]; 2]) {
         for corners in line_triangles(ends, width) {
             let corners = corners.map(|corner| Seen { inverse_distance: corner.inverse_distance * 1.004, ..corner });
@@ -136,7 +136,7 @@ impl Screen {
         }
     }
 
-    /// Draws a disc with a radius in samples, slightly nearer than it is.
+    /// Draws a disc with a radius in samples, slightly nearer to the camera than it is.
     pub(crate) fn disc(&mut self, center: Seen, radius: f32, colour: [u8; 3]) {
         let [x, y] = center.pixel;
         let span = |middle: f32, limit: usize| {

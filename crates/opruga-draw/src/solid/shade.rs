@@ -9,7 +9,8 @@ const SMALL: f32 = 40.0;
 
 /// The cosine of the angle between faces above which an edge is sharp.
 const SHARP: f64 = 0.77;
-/// The cosine of the angle between a face and the mean of the faces at its corner up to which no edge there is sharp.
+/// An edge at a corner is not sharp if the cosine of the angle between a face and the mean of the faces at that corner is above
+/// this.
 const BLUNT: f64 = 0.94;
 
 /// The light of a scene, in the directions of the camera.

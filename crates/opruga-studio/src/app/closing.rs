@@ -6,8 +6,8 @@ use crate::shown::Shown;
 use egui::{Id, Modal, Ui, ViewportCommand};
 use std::time::Duration;
 
-/// How long the window waits for the simulation to report whether there is unsaved work. If it does not answer, the window assumes that there is: a
-/// frame that takes longer belongs to a large scene.
+/// How long the window waits for the simulation to report whether there is unsaved work. If it does not answer, the window assumes that there is,
+/// because a frame that takes longer belongs to a large scene.
 const PATIENCE: Duration = Duration::from_millis(300);
 
 /// The state of closing the window.
@@ -64,7 +64,7 @@ impl Studio {
             },
             Closing::Saving if !self.keeping.is_saving() => match self.keeping.saved() {
                 Some(files) => {
-                    // The window closes before anybody could read it there.
+                    // The window closes before anyone could read it in the window.
                     eprintln!("saved: {}", files.join(", "));
                     self.close_now(ui);
                 }

@@ -12,7 +12,7 @@ impl Studio {
         if ui.ctx().text_edit_focused() {
             return;
         }
-        // A slider or a button with the focus uses keys itself, but none with Ctrl.
+        // A slider or a button that has the focus uses keys itself, but no keys with Ctrl.
         let focused = ui.ctx().memory(|m| m.focused().is_some());
         let pressed = |modifiers: Modifiers, key: Key| {
             (modifiers.command || !focused) && ui.input_mut(|i| i.consume_key(modifiers, key))
@@ -53,8 +53,8 @@ impl Studio {
                 }
             }
         }
-        // The space bar starts and stops time when it is released, unless the pointer was used while it was held: then it moved the view. If the
-        // space bar is released before the pointer, this is remembered until it is pressed again.
+        // The space bar starts and stops time when it is released, unless the pointer has moved the view in the meantime. If the space bar is
+        // released before the pointer, this is remembered until it is pressed again.
         let anew = |event: &egui::Event| {
             matches!(event, egui::Event::Key { key: Key::Space, pressed: true, repeat: false, .. })
         };

@@ -86,7 +86,7 @@ impl Heard {
         for speaker in [Speaker::Session, Speaker::Window, Speaker::Pen] {
             let index = speaker as usize;
             if now[index].is_some() && now[index] != self.numbers[index] {
-                // It moves to the end; the others keep their order.
+                // This source moves to the end; the others keep their order.
                 self.order.sort_by_key(|other| *other == speaker);
             }
         }
@@ -135,7 +135,7 @@ impl Studio {
         let of_window = self.keeping.message().map(|_| self.keeping.message_count());
         let now = [message.map(|message| message.number), of_window, pen.map(|_| 0)];
         let Some(speaker) = self.heard.last(now) else { return };
-        // A notice that is still shown when another message comes is dropped.
+        // A notice that is still shown when another message appears is dropped.
         let is_notice = |severity: Severity, offer: bool| severity == Severity::Done && !offer;
         if speaker != Speaker::Session
             && let Some(message) = message.filter(|message| is_notice(message.severity, message.offer.is_some()))
@@ -166,7 +166,7 @@ impl Studio {
         let heard = format!("{speaker:?} {:?}: {}", now[speaker as usize], spoken.text);
         let time = ui.input(|i| i.time);
         if self.last_message.0 != heard {
-            // Bodies move, but the message stays where it was first placed.
+            // Although bodies move, the message stays at its first position.
             let placement = self.least_hiding(&spoken.text, ui, free, rect.width(), shown);
             self.last_message = (heard, time, placement);
         }
@@ -188,13 +188,13 @@ impl Studio {
             - match &shown.beside {
                 None => 40.0,
                 Some(_) if rect.width() >= rect.height() => 66.0,
-                // If the scenes are one above the other, the lower one has nothing there.
+                // If the scenes are one above the other, the lower one has nothing at its lower border.
                 Some(_) => 8.0,
             };
         Rect::from_min_max(Pos2::new(rect.left() + 8.0, high), Pos2::new(rect.right() - 8.0, low.max(high)))
     }
 
-    /// The placement of a text that hides as little of the bodies as possible; it may be broken into more lines for that.
+    /// The placement of a text that hides as little of the bodies as possible. The text may be broken into more lines for this.
     fn least_hiding(&self, text: &str, ui: &Ui, free: Rect, width: f32, shown: &Shown) -> Placement {
         let covered = self.canvas.covered(shown);
         let widest = (width - 120.0).clamp(120.0, 620.0);

@@ -1,4 +1,4 @@
-//! Arrows over a scene of the plane, and the key of the arrows in both dimensions, which shows an arrow with the length of a round value.
+//! Arrows over a scene in the plane, and the legend of the arrows in both dimensions, which shows an arrow for a round value.
 
 use super::camera::Flat;
 use super::look::{Look, Paper, colour, on_paper};
@@ -8,7 +8,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use opruga::draw::{ArrowKind, arrow_colour, arrow_unit, format_value, nice_length};
 use std::collections::BTreeMap;
 
-/// The length of the longest arrow of each kind in the plane, and of unit normals there [points].
+/// The length of the longest arrow of each kind, and of unit normals, in the plane [points].
 const LONG: f64 = 60.0;
 const LONG_NORMAL: f64 = 18.0;
 
@@ -73,7 +73,7 @@ pub(super) fn arrow(painter: &Painter, from: Pos2, to: Pos2, stroke: Stroke, lon
     painter.add(Shape::convex_polygon(head, stroke.color, Stroke::NONE));
 }
 
-/// The entry of the key for a kind: the length on the screen of an arrow with a round value, and its text.
+/// The legend entry for a kind of arrow: the screen length of an arrow whose value is round, and the text beside it.
 fn entry(look: &Look<'_>, kind: ArrowKind, most: f64, points: f64, words: Language) -> Option<(f32, String)> {
     if !(points > 0.0 && points.is_finite()) {
         return None;
@@ -82,14 +82,15 @@ fn entry(look: &Look<'_>, kind: ArrowKind, most: f64, points: f64, words: Langua
     if kind == ArrowKind::Normal {
         return Some((points as f32, name.into()));
     }
-    // When zoomed in they would take the whole window.
+    // If the view is zoomed in, arrows could fill the whole window.
     let value = nice_length(most * (0.3 * f64::from(look.rect.width()) / points).min(1.0));
     let unit = arrow_unit(kind, &look.shown.picture.length_unit);
     Some(((points * value / most) as f32, format!("{name} {} {unit}", format_value(value))))
 }
 
-/// Draws the key above the scale bar: for every visible kind of arrow, one with a round value. In space, arrows have the length that they have at the
-/// point in the centre of the view; `points_of` is the length of the longest one there in points of the screen. Returns the rectangles of its rows.
+/// Draws the legend of the arrows above the scale bar: for every visible kind, an arrow with a round value. In space, arrows have the length that
+/// they would have at the point in the centre of the view; `points_of` is the length of the longest arrow at that point, in points of the screen.
+/// Returns the rectangles of the rows.
 pub(super) fn key(look: &Look<'_>, longest: &Longest, points_of: Option<f64>, words: Language) -> Vec<Rect> {
     let Look { painter, rect, paper, shown, .. } = *look;
     let base = rect.bottom()
@@ -138,7 +139,7 @@ mod tests {
         assert_eq!(longest.of(ArrowKind::Velocity), Some(5.0));
         longest.follow(&seen(1.0));
         assert!(longest.of(ArrowKind::Velocity).is_some_and(|long| (4.0..5.0).contains(&long)));
-        // A scene at rest has no scale, and a kind that is no longer visible leaves none behind.
+        // A scene at rest has no scale, and a kind that is no longer visible loses its scale.
         longest.follow(&seen(0.0));
         assert_eq!(longest.of(ArrowKind::Velocity), None);
         longest.follow(&seen(5.0));

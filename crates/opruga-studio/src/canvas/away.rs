@@ -6,7 +6,7 @@ use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Align2, Button, Color32, Id, Order, Pos2, Rect, RichText, Stroke, Ui, Vec2};
 
-/// From the border of the free area to the tip of the arrow, and the length of the arrow [points].
+/// The distance from the border of the free area to the tip of the arrow, and the length of the arrow [points].
 const BORDER: f32 = 8.0;
 const ARROW: f32 = 26.0;
 
@@ -26,8 +26,8 @@ impl Canvas {
         offsets.min_by(|a, b| a.length_sq().total_cmp(&b.length_sq()))
     }
 
-    /// The offset on the screen from its centre to a point. In space it is measured across the line of sight, because a point may be behind the
-    /// camera.
+    /// The offset on the screen from its centre to a point. In space it is measured perpendicular to the line of sight, because a point may be behind
+    /// the camera.
     fn offset_to(&self, shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Vec2> {
         if shown.dimension != 3 {
             return Some(self.flat.to_screen(rect, point, shown.picture.y_down) - rect.center());
@@ -130,7 +130,7 @@ mod tests {
         assert_eq!(canvas.away(&shown(&[])), None, "there is none");
         let offset = canvas.away(&shown(&[90.0, -40.0])).expect("they are out of sight");
         assert!(offset.x < 0.0 && offset.y.abs() < 0.1 * offset.x.abs(), "the nearest one: {offset:?}");
-        // Closer than its own size, it contains the whole screen.
+        // If the camera is closer to the body than the size of the body, the body contains the whole screen.
         let mut near = Canvas { rect: Some(rect), ..Default::default() };
         near.flat.zoom(1e4, rect, rect.center() + Vec2::new(50.0, -50.0), false);
         assert_eq!(near.away(&shown(&[0.0])), None);

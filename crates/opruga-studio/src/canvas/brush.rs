@@ -5,7 +5,7 @@ use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Vec2};
 use std::sync::Arc;
 
-/// Points of a line closer together than this are merged; with hard borders, in a crowd, `JOINED_HARD` applies [points of the screen].
+/// Points of a line that are closer together than this are merged [points of the screen]. If borders are hard, as in a crowd, `JOINED_HARD` applies.
 const JOINED: f32 = 0.4;
 const JOINED_HARD: f32 = 1.5;
 /// A line with more points than this is searched for straight pieces; `BESIDE`, or `BESIDE_HARD` with hard borders, is the largest deviation of its
@@ -22,8 +22,8 @@ fn vertex(pos: Pos2, color: Color32) -> Vertex {
     Vertex { pos, uv: WHITE_UV, color }
 }
 
-/// The direction of a vector on the screen. Coordinates are in the thousands, and differences are neither so large nor so small that a square would
-/// overflow or underflow.
+/// The direction of a vector on the screen. Coordinates are at most some thousands, so differences are neither so large nor so small that a square
+/// would overflow or underflow.
 fn unit(vector: Vec2) -> Vec2 {
     let long = vector.length_sq().sqrt();
     if long > 0.0 { vector / long } else { Vec2::ZERO }
@@ -48,7 +48,7 @@ impl Brush {
     /// Begins a picture with borders of this softness, of which `screen` is visible.
     pub(crate) fn begin(&mut self, soft: f32, screen: Rect) {
         self.screen = Some(screen);
-        // Nobody needs the last mesh any more, so its arrays are reused.
+        // The last mesh is no longer needed, so its arrays are reused.
         if let Some(Ok(mesh)) = self.shown.take().map(Arc::try_unwrap) {
             self.mesh = mesh;
         }
@@ -86,7 +86,7 @@ impl Brush {
         }
     }
 
-    /// Adds the corners at a point of a line, across it; the length of `side` is the factor by which a width of 1 is stretched there.
+    /// Adds the corners at a point of a line, on both sides of it. The length of `side` is the factor by which the width is stretched at this point.
     fn across(&mut self, at: Pos2, side: Vec2, width: f32, color: Color32) {
         let half = 0.5 * width;
         if self.soft > 0.0 {
@@ -144,7 +144,7 @@ impl Brush {
         }
         match line[..] {
             [] => {}
-            // So far away that it is only a point.
+            // The line is so far away that it is only a point.
             [(at, color)] => self.disc(at, 0.5 * width, color),
             _ => self.around(&line, width),
         }
@@ -162,7 +162,7 @@ impl Brush {
         let next = line[1..].iter().chain([&line[0]]);
         for ((at, color), (next, _)) in line.iter().zip(next) {
             let after = direction(*at, *next);
-            // Perpendicular to the bisector of both directions, with a length that keeps the width of the band.
+            // The side is perpendicular to the bisector of both directions, with a length that keeps the width of the band.
             let sum = Vec2::new(-before.y - after.y, before.x + after.x);
             let square = sum.length_sq();
             let side = if square > 4.0 / (MOST_MITRE * MOST_MITRE) {

@@ -30,7 +30,7 @@ impl Flat {
     pub(crate) fn fit(&mut self, view: &View, rect: Rect, tools: Option<Rect>) {
         let tools =
             tools.map_or(TOOLS, |tools| tools.bottom() - rect.top()).clamp(TOOLS, (0.5 * rect.height()).max(TOOLS));
-        // Bodies move: there is space around them for that.
+        // There is space around the bodies, because they move.
         let wide = (view.high[0] - view.low[0]).max(1e-9) * 1.25;
         let tall = (view.high[1] - view.low[1]).max(1e-9) * 1.1;
         let high = rect.height() - BORDER - tools - self.foot;
@@ -40,7 +40,7 @@ impl Flat {
         self.center = [view.center()[0], view.center()[1] + up * f64::from(tools - self.foot) / self.scale];
     }
 
-    /// Widens a view that the user has not moved if a body of the plane leaves it, to each side by at most twice the size of the first view. Beyond
+    /// Widens a view that the user has not moved if a body in the plane leaves it, on each side by at most twice the size of the first view. Beyond
     /// that, the view follows the bodies if they fit into it. Returns whether the view changed.
     pub(crate) fn widen(&self, view: &mut View, first: &[[f64; 3]; 2], shown: &Shown, rect: Rect) -> bool {
         if shown.dimension != 2 {
@@ -74,7 +74,7 @@ impl Flat {
             let seen = [corners[0][d].min(corners[1][d]), corners[0][d].max(corners[1][d])];
             let edge = 0.02 * (seen[1] - seen[0]);
             if low < first[0][d] - most || high > first[1][d] + most {
-                // Far away from everything: the view keeps its size and follows.
+                // If bodies are far away from everything, the view keeps its size and follows them.
                 let over = [seen[0] + edge - low, high - seen[1] + edge];
                 if high - low + 2.0 * edge < seen[1] - seen[0] && over.iter().any(|over| *over > 0.0) {
                     let shift = if over[1] > 0.0 { over[1] } else { -over[0] };
@@ -111,7 +111,7 @@ impl Flat {
         let sign = if y_down { 1.0 } else { -1.0 };
         let x = self.scale * (point[0] - self.center[0]);
         let y = sign * self.scale * (point[1] - self.center[1]);
-        // Nothing is visible far outside, and larger numbers, or NaN, would break the painter.
+        // Nothing far outside is visible, and the painter cannot handle larger numbers or NaN.
         let sane = |x: f64| if x.is_nan() { 1e5 } else { x.clamp(-1e5, 1e5) } as f32;
         rect.center() + Vec2::new(sane(x), sane(y))
     }
@@ -142,13 +142,13 @@ impl Flat {
         [self.center[0], self.center[1], 0.0]
     }
 
-    /// The length of a number of points on the screen [m].
+    /// Converts a number of points on the screen to a length [m].
     pub(crate) fn metres(&self, points: f64) -> f64 {
         points / self.scale
     }
 }
 
-/// A view with the floors and walls that bodies may reach: at the start, bodies are often far above them.
+/// A view that includes the floors and walls that bodies may reach, because bodies are often far above them at the start.
 pub(super) fn with_floors(mut view: View, shown: &Shown) -> View {
     let center = view.center();
     let size = view.extent();
@@ -223,7 +223,7 @@ mod tests {
         }
         assert!(rect.contains(flat.to_screen(rect, [-0.5, 0.5, 0.0], false)), "it is seen again");
         assert!(view.high[0] - view.low[0] <= 5.0 * (first[1][0] - first[0][0]) + 1e-9, "{:?}", view.high);
-        // Two bodies that fly apart do not fit into it, so it stays.
+        // Two bodies that fly apart do not fit into the view, so it does not move.
         let mut apart = shown(0.0);
         apart.picture.bodies = vec![ball(-40.0), ball(40.0)];
         apart.extents = apart.picture.bodies.iter().map(Extent::of).collect();

@@ -11,8 +11,8 @@ use std::sync::Arc;
 pub(super) struct Captions(Vec<(Rect, Arc<Galley>, Color32)>);
 
 impl Captions {
-    /// The height below a scene for captions and, above them, for the names of its lowest bodies: with the scenes next to each other, and one above
-    /// the other [points].
+    /// The height below a scene for captions and, above them, for the names of the lowest bodies [points]: if the scenes are next to each other, and
+    /// if one is above the other.
     pub(super) const FOOT: [f32; 2] = [46.0, 32.0];
 
     /// The names of the two scenes, the distance between them, and why the second one has stopped. If the scenes are one above the other, the
@@ -46,7 +46,7 @@ impl Captions {
                 let [mean, largest] = [mean, largest].map(format_value);
                 format!("\n{} {mean} m, {} {largest} m", language.mean_distance(), language.largest_distance())
             }
-            // If the nodes differ, there are no distances between them.
+            // If the bodies have different nodes, there are no distances between nodes.
             (None, Some(far)) => format!("\n{} {} m", language.center_distance(), format_value(far)),
             (None, None) => String::new(),
         };

@@ -1,4 +1,4 @@
-//! The visible detail of a closed line: a point is left out if the line without it looks the same on the screen.
+//! The visible detail of a closed line. A point is omitted if the line looks the same on the screen without it.
 
 use egui::{Color32, Pos2, Rect, Vec2};
 
@@ -18,12 +18,12 @@ pub(crate) struct Detail {
 /// A straight piece of a line that is extended point by point.
 struct Piece {
     from: (Pos2, Color32),
-    /// The range of directions in which all of its points are close enough to it, as the two outermost; none before the first point that is far
-    /// enough away.
+    /// The range of directions for which all of its points are close enough to the line, given by the two outermost directions; none before the first
+    /// point that is far enough away.
     cone: Option<[Vec2; 2]>,
     /// The largest distance of its points from its beginning.
     far: f32,
-    /// Whether it has a second point; a difference between two neighbouring points is interpolated.
+    /// Whether it has a second point. The colour between two neighbouring points is interpolated.
     begun: bool,
     /// Whether its points are still close enough to a straight line.
     straight: bool,
@@ -36,7 +36,7 @@ impl Piece {
         Piece { from, cone: None, far: 0.0, begun: false, straight: true, outside: detail.outside(from.0) }
     }
 
-    /// Extends the piece by a point if possible; returns whether it is.
+    /// Extends the piece by a point if possible; returns whether it was possible.
     fn takes(&mut self, point: (Pos2, Color32), detail: &Detail) -> bool {
         self.outside &= detail.outside(point.0);
         let offset = point.0 - self.from.0;
@@ -101,7 +101,7 @@ impl Detail {
         }
     }
 
-    /// The same with twice the tolerances.
+    /// The same detail with twice the tolerances.
     fn rougher(self) -> Detail {
         Detail {
             merge_distance: 2.0 * self.merge_distance,
@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn tips_corners_and_colours_are_kept_and_points_on_one_another_and_numbers_that_are_none_do_no_harm() {
         let at = |x: f32, y: f32| (Pos2::new(x, y), RED);
-        // There and back along one line: the tip must be kept.
+        // A line that goes there and back: its tip must be kept.
         let spike: Vec<_> = (0..=100).chain((0..100).rev()).map(|k| at(k as f32, 100.0)).collect();
         let tip = kept(&detail(), &spike);
         assert!(tip.iter().any(|index| (*index as i32 - 100).abs() <= 1), "{tip:?}");

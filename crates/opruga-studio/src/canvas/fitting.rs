@@ -1,4 +1,5 @@
-//! The visible part of a scene: everything at first, and later also what moves there, until the user moves the view.
+//! The visible part of a scene. It contains everything at the start, and is widened to include what moves, until the user moves
+//! the view.
 
 use super::camera::with_floors;
 use super::{Canvas, Doing};
@@ -9,15 +10,14 @@ use opruga::WorldError;
 use opruga::draw::View;
 
 impl Canvas {
-    /// Forgets what was fitted to states that no longer exist: the range of the colours, and how far the view was widened if the user has not moved
-    /// it.
+    /// Forgets what was fitted to states that no longer exist: the range of the colours, and the widening of the view if the user has not moved it.
     fn fit_if_replaced(&mut self, shown: &Shown, rect: Rect) {
         if std::mem::replace(&mut self.replaced, shown.replaced) == shown.replaced {
             return;
         }
         self.range = None;
         if std::mem::replace(&mut self.resets, shown.resets) != shown.resets {
-            // The start is shown as it was at first, wherever the user has moved the view since.
+            // The start is shown as at first, even if the user has moved the view since then.
             self.far = false;
             self.fit();
         } else if std::mem::take(&mut self.far) {
@@ -28,7 +28,7 @@ impl Canvas {
         }
     }
 
-    /// Restores the first view if a body has just exploded and the user has not moved the view: the rest of the scene is where it was.
+    /// Restores the first view if a body has just exploded and the user has not moved the view, because the rest of the scene has not moved.
     fn stay_if_exploded(&mut self, shown: &Shown, rect: Rect) {
         let exploded = shown.message.as_ref().filter(|message| matches!(message.report, Report::Exploded(_)));
         let number = exploded.map(|message| message.number);
@@ -115,7 +115,7 @@ impl Canvas {
         if low > high {
             return;
         }
-        // Values that are nearly zero are not spread over all colours.
+        // Values that are nearly zero must not be spread over all colours.
         let least = match shown.picture.legend.as_ref().map_or("", |legend| &legend.unit) {
             "%" | "Pa" => 1.0,
             _ => 0.01,

@@ -41,7 +41,7 @@ impl GrabbedHandle {
         self.now = at;
     }
 
-    /// The rotation as seen, clockwise [rad], and the factor.
+    /// The clockwise rotation on the screen [rad], and the factor.
     fn change(&self) -> (f32, f32) {
         let (a, b) = (self.from - self.middle, self.now - self.middle);
         match self.kind {
@@ -106,13 +106,13 @@ impl Canvas {
                 around.extend_with(at);
             }
         }
-        // It stays within sight even if the body is not.
+        // The box remains visible even if the body is not.
         let around = around.expand(MARGIN).intersect(rect.shrink(16.0));
         (around.width() > 4.0 && around.height() > 4.0).then_some(Handles { name, around, space: shown.dimension == 3 })
     }
 }
 
-/// Draws a preview of a body: as it looks now, rotated and scaled about the centre of its box.
+/// Draws a preview of a body: its present shape, rotated and scaled about the centre of its box.
 pub(super) fn ghost(
     painter: &Painter,
     grabbed: &GrabbedHandle,

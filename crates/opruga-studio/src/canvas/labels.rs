@@ -3,7 +3,7 @@
 use super::look::{Paper, RUBBER};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 
-/// The largest number of bodies with which names avoid other bodies.
+/// The largest number of bodies for which names avoid other bodies.
 const FEW: usize = 64;
 
 /// A body with a name: its rectangle on the screen, and the mean horizontal position of its nodes.
@@ -25,7 +25,7 @@ impl<'a> Named<'a> {
     }
 }
 
-/// Writes the names of bodies below them, or next to them where there is space, but not over `taken` rectangles. Names without space are omitted.
+/// Writes the names of bodies below them, or next to them if there is space, but not over `taken` rectangles. Names without space are omitted.
 pub(super) fn names(painter: &Painter, named: &[Named<'_>], paper: &Paper, taken: &[Rect]) {
     let mut taken = taken.to_vec();
     let compared = if named.len() <= FEW { named } else { &[] };
@@ -101,7 +101,7 @@ mod tests {
             assert!(taken.iter().all(|other| !other.intersects(place)), "{middle}: {place:?} of {taken:?}");
             taken.push(place);
         }
-        // Where many names overlap there is no space for another.
+        // If many names overlap, there is no space for another one.
         while let Some(place) = free(at(300.0), 300.0, size, &taken, &[]) {
             assert!(taken.len() < 12, "{taken:?}");
             taken.push(place);
@@ -113,7 +113,7 @@ mod tests {
         let size = Vec2::new(80.0, 14.0);
         let at = |x: f32, y: f32| Rect::from_center_size(Pos2::new(x, y), Vec2::splat(22.0));
         let (body, above) = (at(220.0, 330.0), at(220.0, 288.0));
-        // There is no space below, because of what is there, and another body is above.
+        // There is no space below, because something else is there, and another body is above.
         let taken = [Rect::from_min_max(Pos2::new(130.0, 342.0), Pos2::new(320.0, 400.0))];
         let place = free(body, 220.0, size, &taken, &[above]).expect("room");
         assert!(!place.intersects(above) && !place.intersects(taken[0]), "{place:?}");

@@ -8,7 +8,7 @@ use egui::{Align, Align2, CornerRadius, FontId, Galley, Mesh, Pos2, Rect, Shape,
 use opruga::draw::{BodyPicture, format_value, nice_ticks, scientific};
 use std::sync::Arc;
 
-/// The least height required above the bar, and the largest width of its name on one line [points].
+/// The smallest height above the bar, and the largest width of its name on one line [points].
 const NAME: [f32; 2] = [84.0, 240.0];
 
 /// Whether a body is drawn in its own colours.
@@ -78,7 +78,7 @@ pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     let Look { painter, shown, rect, paper, range, .. } = *look;
     let Some(legend) = &shown.picture.legend else { return };
     let Some(LegendLayout { bar, name, whole: behind }) = legend_layout(look, tools, language) else { return };
-    // A long name is wider than the bar with its numbers; the area below it next to these stays visible.
+    // A long name is wider than the bar with its numbers. The area below the name and next to the bar remains visible.
     let side = behind.with_min_x(bar.left() - 24.0);
     let above = behind.with_max_y(bar.top() - 4.0);
     let ground = paper.background.gamma_multiply(0.7);
@@ -149,7 +149,7 @@ mod tests {
             Shown { dimension: 2, picture, ..Default::default() }
         };
         let tools = Rect::from_min_max(Pos2::new(10.0, 160.0), Pos2::new(314.0, 248.0));
-        // A phone, the lower of two scenes on it, and a small laptop on which there is space next to the tools.
+        // A phone, the lower of two scenes on a phone, and a small laptop with space next to the tools.
         let parts = [
             (Rect::from_min_max(Pos2::new(0.0, 150.0), Pos2::new(360.0, 555.0)), tools),
             (Rect::from_min_max(Pos2::new(0.0, 352.0), Pos2::new(360.0, 555.0)), tools),

@@ -1,4 +1,4 @@
-//! The scene on the screen, and the actions of the pointer there.
+//! The scene on the screen, and the actions of the pointer on it.
 
 mod arrows;
 mod away;
@@ -52,7 +52,7 @@ enum Doing {
     Drawing(Vec<[f64; 2]>),
 }
 
-/// The part of the window where the scene is.
+/// The part of the window that shows the scene.
 #[derive(Debug, Default)]
 pub struct Canvas {
     /// The action of a press.
@@ -104,7 +104,7 @@ pub struct Canvas {
     range: Option<[f64; 2]>,
     /// Whether the user has already pulled, so that no hint is needed.
     pub pulled: bool,
-    /// Why an outline was refused, until the next one.
+    /// The reason why the last outline was refused.
     pub refused: Option<&'static str>,
     /// Whether the space bar has moved the view since it was pressed; it then does not start or stop time.
     pub panned: bool,
@@ -141,7 +141,7 @@ impl Canvas {
         }
     }
 
-    /// Where new bodies are placed [m]: at the pointer if it is on the scene, otherwise at the centre of the view.
+    /// The position of new bodies [m]: that of the pointer if it is on the scene, otherwise the centre of the view.
     pub fn landing(&self, shown: &Shown, pointer: Option<Pos2>) -> [f64; 3] {
         let left = self.rect.zip(pointer).filter(|(rect, at)| rect.contains(*at));
         // The scene beside it has the same view.
@@ -162,7 +162,7 @@ impl Canvas {
         if shown.dimension == 3 { self.space.eye().map_or(2.0, |eye| eye.radius) } else { self.flat.metres(side) }
     }
 
-    /// Where a point of the scene is in the window.
+    /// The position in the window of a point of the scene.
     pub fn on_screen(&self, shown: &Shown, point: [f64; 3]) -> Option<Pos2> {
         let rect = self.rect?;
         if shown.dimension == 3 {
@@ -203,7 +203,8 @@ impl Canvas {
         }
         let (rect, other) = halves(whole, shown.beside.is_some());
         if self.other.is_some() != other.is_some() {
-            // The area has been halved or doubled: everything is shown as it is now, or as it was before a body exploded.
+            // The area has been halved or doubled, so the view shows everything as it is now, or as it was before a body
+            // exploded.
             match (self.exploded, &mut self.scales) {
                 (Some(_), Some(view)) => {
                     [view.low, view.high] = self.first;
@@ -246,7 +247,7 @@ impl Canvas {
         self.press(ui, &response, shown, hovered.as_deref(), rect, under.as_ref(), offset, &mut asks);
         let range = self.range.unwrap_or([0.0, 1.0]);
         let look = Look { painter: &painter, shown, rect, paper: &paper, show: self.wanted, range };
-        // Side by side both have the same colours, and the legend is in the second one.
+        // Two scenes side by side have the same colours, and the legend is in the second one.
         let taken = if other.is_none() { legend::bounds(&look, self.tools, language) } else { None };
         self.written = taken.into_iter().collect();
         let pair = other.zip(shown.beside.as_ref());
@@ -326,7 +327,7 @@ impl Canvas {
         }
         let there = |name: &String| shown.bodies.iter().any(|body| body.name == *name);
         let Some(selected) = self.selected.as_ref().filter(|selected| !there(selected)) else { return };
-        // From name to name, the latest first.
+        // Names are followed one by one, the latest first.
         let mut names = vec![selected.clone()];
         let mut index = 0;
         while let Some(name) = names.get(index).cloned() {
@@ -366,7 +367,7 @@ impl Canvas {
         }
     }
 
-    /// The distance behind the point in the centre of the view of something at a given distance from the camera; the same in the plane.
+    /// Converts a distance from the camera to a distance behind the point in the centre of the view; in the plane, it does not change.
     fn behind(&self, rect: Rect, distance: f64) -> f64 {
         let looked_at = self.scales.as_ref().and_then(|scales| self.space.distance(scales, rect));
         distance - looked_at.unwrap_or(0.0)

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 /// Outlines with at most this many edges keep their triangles, which are computed again if a body has folded. For larger outlines, visible triangles
 /// are computed for every picture.
 const MOST_ANEW: usize = 4_000;
-/// Up to this many bodies, all are checked for folds in every picture; if there are more, this many are checked in each.
+/// The number of bodies that are checked for folds in every picture; if there are no more than this, all are checked.
 const LOOKED_AT: usize = 64;
 
 /// The outlines of every body seen so far.
@@ -105,8 +105,8 @@ impl Outline {
     }
 }
 
-/// Whether no triangle is inverted and the triangles cover the area within the lines; if the lines crossed when the triangles were made, they may
-/// not.
+/// Whether no triangle is inverted and the triangles cover the area within the lines. They may not cover it if the lines crossed when the triangles
+/// were made.
 fn fits(body: &BodyPicture, outline: &Outline) -> bool {
     let mut covered = 0.0;
     for triangle in outline.parts.iter().flat_map(Part::of_body) {
@@ -119,7 +119,7 @@ fn fits(body: &BodyPicture, outline: &Outline) -> bool {
     covered >= 0.999 * outline.closed.iter().map(|line| enclosed(body, line)).sum::<f64>()
 }
 
-/// Twice the area within a line; negative where that runs clockwise.
+/// Twice the area within a line; negative if the line runs clockwise.
 fn enclosed(body: &BodyPicture, line: &[u32]) -> f64 {
     let point = |index: usize| body.positions[line[index % line.len()] as usize];
     (0..line.len()).map(|k| (point(k), point(k + 1))).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
@@ -129,8 +129,8 @@ fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// The closed lines of a body's edges, each in its own direction and with no node twice, and the edges that do not belong to one. Lines that touch in
-/// a node are separated when the walk returns to it.
+/// The closed lines of a body's edges, each in its own direction and without repeated nodes, and the edges that do not belong to a closed line. Lines
+/// that touch in a node are separated when the walk returns to it.
 fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
     let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     edges.iter().rev().for_each(|[a, b]| next.entry(*a).or_default().push(*b));
@@ -254,7 +254,7 @@ mod tests {
             facets: Facets::Edges(right.1.clone()),
             ..Default::default()
         };
-        // Its corners reversed, all at one point, and crossed so that the signed areas cancel.
+        // The corners are reversed, or all at one point, or crossed so that the signed areas cancel.
         for wrong in [
             [[0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]],
             [[1.0, 1.0]; 4],

@@ -28,8 +28,8 @@ pub(crate) fn body(line: &[[f64; 2]], finest: f64) -> Result<InlineTable, &'stat
     if area < 30.0 * finest * finest {
         return Err("too_small");
     }
-    // The skin is as stiff for its number of vertices as that of the ball of the thesis, and the gas preserves the area against the ambient pressure
-    // at any scale.
+    // Relative to its number of vertices, the skin is as stiff as that of the ball in the thesis. The gas preserves the area against the ambient
+    // pressure at any scale.
     let stiffness = 57_600.0 / count as f64;
     let pressure = 120.0;
     let rows: Vec<String> = points.iter().map(|p| format!("[{:.5}, {:.5}]", p[0], p[1])).collect();

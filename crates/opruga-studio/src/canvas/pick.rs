@@ -19,7 +19,7 @@ pub(crate) struct Under {
     pub(crate) point: [f64; 3],
     /// Its distance along the axis of the camera; 0 in the plane [m].
     pub(crate) distance: f64,
-    /// The size of a point of the screen there [m].
+    /// The size of a point of the screen at this distance [m].
     pub(crate) pixel: f64,
 }
 

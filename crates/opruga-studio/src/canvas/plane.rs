@@ -1,4 +1,4 @@
-//! A scene of the plane, drawn by the painter of the interface and therefore sharp at every zoom.
+//! A scene in the plane, which is drawn by the painter of the interface and therefore sharp at every zoom.
 
 use super::arrows::{self, Longest};
 use super::brush::Brush;
@@ -55,7 +55,7 @@ impl Colours {
     }
     fn at(&self, scalar: f64) -> Ink {
         let index = (scalar - self.low) * self.factor;
-        // As a byte, the index is clamped to the range of the colours.
+        // Conversion to a byte clamps the index to the range of the colours.
         self.inks[if index.is_nan() { 256 } else { usize::from(index as u8) }]
     }
 }
@@ -182,7 +182,7 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     let of = |node: &u32| (at[*node as usize], inks[*node as usize].line);
     let edged = !(outline.closed.is_empty() && outline.open.is_empty());
     if outline.springs {
-        // Over filled areas they have another colour, to be visible.
+        // Over filled areas, they have another colour so that they are visible.
         let (width, share) = if edged { (1.2, if paper.dark { 0.4 } else { 0.15 }) } else { (1.8, 0.0) };
         for [a, b] in &body.segments {
             let (a, b) = (of(a), of(b));
@@ -203,7 +203,7 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     if body.nodes_drawn && at.len() <= 20_000 {
         let radius = if at.len() > 400 { 1.6 } else { 2.6 };
         for (pos, ink) in at.iter().zip(inks.iter()) {
-            // If the user wants to see them, they stand out from their line.
+            // If the user wants to see the vertices, they stand out from their line.
             if show.vertices {
                 brush.disc(*pos, radius + 1.8, paper.background);
                 brush.disc(*pos, radius + 0.6, ink.line.lerp_to_gamma(paper.ink, 0.6));
@@ -285,7 +285,7 @@ fn obstacle(
             if size == 0.0 {
                 return;
             }
-            // Across the whole window, wherever the point of the plane is.
+            // The line crosses the whole window, wherever the given point of the plane is.
             let n = [normal[0] / size, normal[1] / size];
             let t = [-n[1], n[0]];
             let middle = flat.middle();
@@ -384,7 +384,7 @@ fn beside(at: Pos2, size: Vec2, bounds: Rect, taken: &[Rect]) -> Rect {
     ];
     let candidates = candidates.map(|(align, offset)| align.anchor_size(at + offset, size));
     let free = |rect: &Rect| taken.iter().all(|other| !other.intersects(rect.expand(3.0)));
-    // If the point itself is within other things, next to these.
+    // If the point itself is within other things, the position is next to these.
     let around = taken.iter().filter(|other| other.contains(at)).flat_map(|other| {
         let level = candidates[0].min;
         let [left, right] = [other.left() - size.x - 6.0, other.right() + 6.0].map(|x| Pos2::new(x, level.y));
@@ -453,7 +453,7 @@ mod tests {
             assert!(room.contains_rect(place) && !place.contains(at), "{at:?}: {place:?}");
             assert!(![legend, tools].iter().any(|other| other.intersects(place)), "{at:?}: {place:?}");
         }
-        // Out of sight, or in a window that is too small for it.
+        // The point is out of sight, or the window is too small.
         assert!(room.contains_rect(beside(Pos2::new(-900.0, 9000.0), size, room, &[])));
         assert!(beside(Pos2::ZERO, size, Rect::from_min_size(Pos2::ZERO, Vec2::splat(4.0)), &[]).is_finite());
     }

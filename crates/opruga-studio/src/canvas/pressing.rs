@@ -21,7 +21,8 @@ struct Press {
     beside: bool,
 }
 
-/// A pull that has had no effect yet. While time is stopped, a press alone selects a body, and what was recorded after this moment stays.
+/// A pull that has had no effect yet. While time is stopped, a press without movement only selects a body, and the recording after this moment is
+/// kept.
 #[derive(Clone, Debug)]
 pub(super) struct Waiting {
     grab: Request,
@@ -117,7 +118,7 @@ impl Canvas {
         });
         let Some(latest) = at else { return };
         let at = pressed_at(ui).filter(|_| self.doing == Doing::Nothing).unwrap_or(latest);
-        // Two fingers move the view, so whatever the first of them grabbed is released.
+        // Two fingers move the view, so anything that the first finger has grabbed is released.
         if ui.input(|i| i.multi_touch().is_some()) {
             if let Doing::Holding(..) = std::mem::take(&mut self.doing) {
                 asks.push(Request::Release);
@@ -236,7 +237,7 @@ impl Canvas {
             _ => Grip::Pull,
         };
         self.pulled |= grip == Grip::Pull;
-        // A pinned node is grabbed at its own position, so that the same node is found again.
+        // A pinned node is grabbed at its own position, so that the session finds the same node.
         let pinned = pin.filter(|_| grip == Grip::Pin).map(|pin| {
             let of_left = shown.pins.iter().find(|left| (left.0, left.1) == (pin.0, pin.1));
             of_left.map_or(pin.2, |left| left.2)
@@ -310,7 +311,7 @@ mod tests {
         let whole =
             [Event::PointerMoved(d), button(a, true), Event::PointerMoved(b), Event::PointerMoved(c), button(d, false)];
         assert_eq!(path(&whole, true), [a, b, c, d]);
-        // In the pictures between, and in the last one, after which the pointer moves on.
+        // The path in the pictures between press and release, and in the last picture, after which the pointer moves on.
         assert_eq!(path(&whole[2..4], false), [b, c]);
         assert_eq!(path(&[Event::PointerMoved(b), button(c, false), Event::PointerMoved(d)], false), [b, c]);
         assert!(path(&[], false).is_empty());

@@ -1,5 +1,5 @@
-//! A scene of space, drawn to a texture by the renderer of the command line, in parallel to the interface. It needs no graphics card and has depth,
-//! smooth shading and a soft shadow.
+//! A scene in space, which the renderer of the command line draws to a texture, in parallel to the interface. It needs no graphics card, and draws
+//! depth, smooth shading and a soft shadow.
 
 use super::arrows::Longest;
 use super::look::Look;
@@ -80,7 +80,7 @@ impl Space {
         self.busy.load(Ordering::Acquire) || self.done.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
-    /// Takes over the camera of another one.
+    /// Uses the camera of another one.
     pub(crate) fn share_eye(&mut self, other: &Space) {
         self.eye = other.eye;
     }
@@ -105,7 +105,8 @@ impl Space {
         }
     }
 
-    /// Rotates about the point in the centre of the view; if there is a floor, not below it, where nothing could be seen.
+    /// Rotates about the point in the centre of the view. If there is a floor, the camera does not go below it, where nothing
+    /// could be seen.
     pub(crate) fn turn(&mut self, delta: Vec2, floor: bool) {
         if let Some(eye) = &mut self.eye {
             eye.azimuth -= f64::from(delta.x) * 0.4;
@@ -238,7 +239,7 @@ fn fingerprint(shown: &Shown) -> u64 {
     let label = picture.legend.as_ref().map_or(0, |legend| legend.label.len() as u64 * 31 + legend.unit.len() as u64);
     let map = picture.legend.as_ref().map_or(0, |legend| legend.map as u64);
     let lines: usize = picture.bodies.iter().map(|b| b.segments.len() + usize::from(b.nodes_drawn)).sum();
-    // A body that is moved at the start is elsewhere in the same frame.
+    // If a body is moved at the start, its position changes although the frame is the same.
     let corners = shown.extents.iter().flat_map(|extent| extent.corners).flatten();
     let corner_bits = corners.fold(0_u64, |sum, x| sum.rotate_left(7) ^ x.to_bits());
     let counted = map * 1_000_000_007

@@ -76,7 +76,7 @@ mod tests {
     use super::*;
     use opruga::io::scene;
 
-    /// For every path, the text with the value in it is read like the text with the override.
+    /// For every path, the text that contains the value is read in the same way as the original text with the override.
     #[test]
     fn a_text_with_its_overrides_is_the_scene_that_was_run() {
         let ball = opruga::scenes::find("ball").expect("it comes with the program");

@@ -1,4 +1,4 @@
-//! Drags in a scene give way when the user grabs the same body.
+//! Drags in a scene end when the user grabs the same body.
 
 use super::{Document, tables};
 use toml_edit::{Item, Table};
@@ -35,7 +35,8 @@ impl Document {
         (gone + ended > 0).then_some(gone)
     }
 
-    /// Removes those of the first `kept` commands that begin after a time \[s\] on a body that no longer exists then. Returns their number.
+    /// Removes those of the first `kept` commands that begin after a time \[s\] and act on a body that no longer exists at that time. Returns their
+    /// number.
     pub fn forget_later(&mut self, kept: usize, body: &str, time: f64) -> usize {
         let Some(commands) = self.text.get_mut("command").and_then(tables) else { return 0 };
         let before = commands.len();

@@ -1,4 +1,4 @@
-//! Bodies that have grown beyond all proportions: long before their positions lose digits, nothing can be seen of them.
+//! Bodies that have grown beyond all proportions. They can no longer be seen long before their positions lose digits.
 
 use super::Living;
 use crate::exploded::Exploded;
@@ -35,7 +35,7 @@ impl Living {
             if size <= LARGEST * self.size {
                 return false;
             }
-            // A later body may be larger than everything was at the start; a body of zero size cannot be measured.
+            // A body that is added later may be larger than everything at the start; a body of zero size cannot be measured.
             let at_rest = self.world.scene().body(*body).map_or_else(Vec::new, AnyBody::rest_positions);
             let at_rest = longest_side(at_rest.into_iter());
             let scene = self.size.max(at_rest);

@@ -1,5 +1,5 @@
-//! Saving: the scene, pictures, films and tables. Films and tables are computed again from the scene in the background, so they are what the command
-//! line would make of it. A desktop window writes files, a web page gives them as downloads.
+//! Saving: the scene, pictures, films and tables. Films and tables are computed again from the scene in the background, so they are the same as those
+//! that the command line makes. A desktop window writes files, a web page gives them as downloads.
 
 use crate::differences::right_of;
 use crate::document::Document;
@@ -180,7 +180,7 @@ async fn write(what: What, copied: &Copied, show: Show, progress: &Progress) -> 
         return Ok(Report::Written(vec![handing::file(&copied.name, ending, &bytes)?]));
     }
     let mut written = handing::scene_with_files(&copied.name, &copied.text, &copied.files, &copied.registries)?;
-    // Side by side there are two scenes.
+    // If two scenes are side by side, both are saved.
     if let Some(differences) = &copied.differences {
         let right =
             right_of(&Document::new(&copied.name, &copied.text)?, differences, &copied.files, &copied.registries)?.0;
@@ -224,7 +224,7 @@ async fn table(copied: &Copied, progress: &Progress) -> Result<Vec<u8>, Report> 
         engine.frame()?;
         rows.push(engine.row());
     }
-    // Bodies are added and removed; the table has columns for everything that ever existed.
+    // Bodies may be added and removed, so the table has columns for everything that existed at any time.
     let mut names: Vec<String> = Vec::new();
     for (name, _) in rows.iter().flatten() {
         if !names.contains(name) {
@@ -246,7 +246,7 @@ async fn film(what: What, copied: &Copied, show: Show, progress: &Progress) -> R
     if what != What::Picture {
         pictures.push(engine.moment(&show));
     }
-    // Computing the scene counts as one half, drawing it as the other.
+    // Computing the scene counts as one half of the work, drawing it as the other half.
     for frame in 0..copied.frames {
         breathe().await;
         progress.set(frame, 2 * copied.frames);

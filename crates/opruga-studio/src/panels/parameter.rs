@@ -20,7 +20,7 @@ pub struct FieldContext<'a> {
     pub dimension: usize,
     /// The language of the interface.
     pub words: Language,
-    /// The values of all fields of the kind: some fields have no effect with others.
+    /// The values of all fields of the kind, because some fields have no effect if others are given.
     pub values: Option<&'a Values>,
     /// The specification of the kind, if fields can also be removed.
     pub whole: Option<&'static Spec>,
@@ -31,7 +31,7 @@ pub struct FieldContext<'a> {
 pub enum Change {
     /// Another value of the field.
     Value(Value),
-    /// Other values of its kind: the field replaces another one, or is removed.
+    /// Other values of its kind, because the field replaces another one, or is removed.
     Whole(Values),
 }
 
@@ -53,7 +53,7 @@ pub fn begin(spec: &'static Spec, dimension: usize) -> Values {
     };
     for field in spec.fields.iter().filter(chosen) {
         if let Some(value) = starting(field) {
-            // Starting values are allowed ones: a test checks all of them.
+            // Starting values are allowed values; a test checks all of them.
             let _ = values.set(spec, field.name, value, dimension);
         }
     }
@@ -96,7 +96,7 @@ pub fn instead(spec: &'static Spec, values: &Values, field: &Field, dimension: u
     Some(new)
 }
 
-/// The values of other fields that a field requires.
+/// The values that a field requires of other fields.
 fn words_of(field: &Field) -> impl Iterator<Item = (&'static str, &'static str)> {
     field.applies.iter().filter_map(|condition| match condition {
         Condition::Word(name, words) => words.first().map(|word| (*name, *word)),
@@ -199,8 +199,8 @@ fn companion_is_silent(spec: &Spec, values: &Values, name: &str) -> bool {
     !spec.fields.iter().any(needs)
 }
 
-/// A field that the scene does not give: a button that gives it a value, possibly instead of another field, or its name if only a scene file can give
-/// it.
+/// Shows a field that the scene does not give: a button that gives it a value, possibly instead of another field, or only its name if a button cannot
+/// give it.
 fn absent(ui: &mut Ui, context: FieldContext<'_>, name: &str, unit: &str, about: &str) -> Option<Change> {
     let FieldContext { part, kind, field, words, .. } = context;
     let start = starting(field).map(Change::Value);
@@ -234,7 +234,7 @@ fn number(
     whole: bool,
 ) -> Option<f64> {
     let (low, high, open) = ends(field, now, whole);
-    // An upper end without a limit stays as it was when the slider was first shown, unless the value has exceeded it.
+    // An upper end without a limit does not change after the slider was first shown, unless the value has exceeded it.
     let high = if open {
         let end = hand.ends.entry(path.to_string()).or_insert(high);
         if now > *end {
@@ -284,7 +284,7 @@ fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
     let wide = 10f64.powf((20.0 * size).log10().ceil());
     match field.range {
         Allowed::Number { least, greatest } => {
-            // Distant limits give the meaningful range, not the usual one.
+            // Distant limits are what is possible, and not what is usual.
             let low = match least {
                 Bound::Closed(x) | Bound::Open(x) if x >= -FAR => x,
                 _ if whole => 0.0,
@@ -296,7 +296,7 @@ fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
                 _ => (low, wide, true),
             }
         }
-        // For numbers of vertices and the like: as many as are practical.
+        // For numbers of vertices and similar counts, the end is a practical number.
         Allowed::Integer { least, greatest } if greatest >= MOST_WHOLE => {
             (least as f64, (MOST_WHOLE as f64).max(wide), false)
         }

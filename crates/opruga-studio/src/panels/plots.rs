@@ -8,7 +8,7 @@ use egui_plot::{AxisHints, GridInput, GridMark, Line, Plot, PlotPoints, VLine};
 use opruga::draw::{OKABE_ITO, format_tick, format_value, nice_ticks};
 use std::sync::PoisonError;
 
-/// A curve: its points in runs, between which the values are unknown.
+/// A curve: runs of points, between which the values are unknown.
 type Curve = Vec<Vec<[f64; 2]>>;
 
 /// Shows the curves side by side; those of gas belong to the selected body.
@@ -75,7 +75,7 @@ pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>,
     });
 }
 
-/// About `count` round numbers on an axis. All have the spacing of the grid as a whole, so that they look alike.
+/// About `count` round numbers on an axis. All of them get the spacing of the whole grid, so that they look alike.
 fn marks(input: GridInput, count: usize) -> Vec<GridMark> {
     let ticks = nice_ticks(input.bounds.0, input.bounds.1, count);
     let step_size = ticks.windows(2).map(|pair| pair[1] - pair[0]).fold(input.bounds.1 - input.bounds.0, f64::min);
@@ -118,7 +118,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, now: Option<f64>, 
     ui.vertical(|ui| {
         let top = ui.cursor().top();
         ui.set_width(size.x);
-        // One line: a second one would push the curve down. Hovering over it shows the whole text.
+        // The title has one line, because a second line would push the curve down. Hovering over it shows the whole text.
         ui.add(egui::Label::new(RichText::new(title).size(12.0).strong()).truncate());
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = egui::vec2(8.0, 0.0);
@@ -142,7 +142,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, now: Option<f64>, 
             .y_axis_formatter(|mark, _| figure(&mark))
             .y_axis_min_width(30.0);
         let weak = ui.visuals().weak_text_color();
-        // Points that the screen cannot distinguish are not drawn: a minute has thousands of moments.
+        // Points that the screen cannot distinguish are not drawn, because a minute has thousands of moments.
         let ends = lines.iter().flat_map(|(_, curve)| curve).flat_map(|run| run.first().into_iter().chain(run.last()));
         let (first, last) = ends.fold((f64::MAX, f64::MIN), |(a, b), point| (a.min(point[0]), b.max(point[0])));
         let columns = |run: &[[f64; 2]]| {

@@ -106,7 +106,7 @@ impl Properties {
         });
     }
 
-    /// Shows a parameter; `whole` makes the request if its kind gets other values.
+    /// Shows a parameter; `whole` makes the request if its kind gets other values as a whole.
     fn set(
         &mut self,
         ui: &mut Ui,
@@ -127,7 +127,7 @@ impl Properties {
             ui.label(RichText::new(&body.title).strong().size(14.0));
             ui.label(RichText::new(format!("{} {}", body.nodes, words.nodes())).weak());
         });
-        // Those of single chambers are shown in the table and by the colours.
+        // Readings of single chambers are shown in the table and by the colours.
         let readings: Vec<_> = body.readings.iter().filter(|(name, _)| !name.contains('.')).take(4).collect();
         let half = 0.5 * ui.available_width() - 10.0;
         for two in readings.chunks(2) {
@@ -136,7 +136,7 @@ impl Properties {
                 for (name, x) in two {
                     let unit = match &**name {
                         "pressure" => " Pa",
-                        // As in the plots: a body of the plane encloses an area.
+                        // As in the plots, a body in the plane encloses an area.
                         "volume" if kinds.dimension == 3 => " m³",
                         "volume" => " m²",
                         "nRT" => " J",
@@ -315,7 +315,7 @@ impl Properties {
         let title = RichText::new(format!("{}: {}", words.shape(), words.kind(Part::Shape, spec.kind))).strong();
         CollapsingHeader::new(title).id_salt(("shape", &body.title)).default_open(false).show(ui, |ui| {
             for field in spec.fields.iter().filter(|f| f.name != "center" && f.name != "corner") {
-                // Every value makes another body, but for the user it is the same one.
+                // Every value makes another body, but to the user it is the same body.
                 let path = &format!("shape.{}.{}", body.title, field.name);
                 let now = shape.get(field.name);
                 let context = FieldContext {

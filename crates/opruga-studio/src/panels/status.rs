@@ -14,9 +14,9 @@ const SIZE: f32 = 11.5;
 /// The height of a row, and the space between two numbers [points].
 const TALL: f32 = 16.0;
 const GAP: f32 = 14.0;
-/// The least space for the text after the numbers [points].
+/// The smallest space for the text after the numbers [points].
 const REST: f32 = 100.0;
-/// The width from which everything fits into one row, in every language [points].
+/// The smallest width at which everything fits into one row in every language [points].
 const BROAD: f32 = 1000.0;
 
 /// A number: its text, its longest usual form, whether it needs attention, and its explanation.
@@ -27,8 +27,8 @@ struct Number {
     about: String,
 }
 
-/// Shows the status line: the numbers, and the renderer. It includes the rate of pictures, if they are consecutive, and how long the present frame
-/// has been computed, with the progress of its preparation. Its height depends only on the width of the window.
+/// Shows the status line: the numbers, and the renderer. It includes the rate of pictures, if they are consecutive, the computing time of the present
+/// frame so far, and the progress of its preparation. Its height depends only on the width of the window.
 pub fn status(
     ui: &mut Ui,
     shown: &Shown,
@@ -56,7 +56,7 @@ pub fn status(
                 let layout = Layout::left_to_right(Align::Center);
                 ui.allocate_ui_with_layout(vec2(wide[number], TALL), layout, |ui| {
                     ui.set_min_size(vec2(wide[number], TALL));
-                    // The numbers after the first belong to the previous frame.
+                    // All numbers except the first belong to the previous frame.
                     if busy.is_some() && number > 0 {
                         ui.disable();
                     }

@@ -15,7 +15,7 @@ const WORK: u64 = 96_000_000;
 /// The pixels of a picture: red, green, blue and opacity.
 pub(super) type Pixels = Vec<u8>;
 
-/// Draws a scene a little after its start; a large one at its start.
+/// Draws a scene a little after its start, or at its start if it is large.
 pub(super) async fn draw(name: &str, registries: &Registries) -> Option<Pixels> {
     let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
     let text = opruga::scenes::find(name)?;
@@ -128,7 +128,7 @@ mod kept {
             };
             let first = drawn();
             assert_eq!((first.len(), files().len()), (BYTES, 1));
-            // Another picture in its place is shown, so nothing was drawn.
+            // If another picture is stored in its place, that picture is shown, so nothing was drawn.
             let other = vec![7; BYTES];
             keep(&folder, "two-chambers", &files()[0], &other).expect("it is kept");
             assert_eq!(drawn(), other);

@@ -1,4 +1,4 @@
-//! The simulation in the time that a picture of the window leaves, if there are no threads: it has a turn before every picture. Longer frames slow
+//! The simulation without threads, in the time that remains between pictures of the window. It has a turn before every picture. Longer frames slow
 //! simulated time down; the status line shows by how much.
 
 use super::{Ask, Copied, Course};
@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// How long frames are computed in a turn: at sixty pictures per second, this leaves the same time for the interface.
+/// How long frames are computed in a turn. At sixty pictures per second, this leaves the same time for the interface.
 const BUDGET: Duration = Duration::from_millis(8);
 
 /// The simulation and its last picture.
@@ -34,7 +34,7 @@ impl Link {
     /// Takes over a session; `wake` is called whenever a new picture of the window is needed.
     ///
     /// # Errors
-    /// None; on systems with threads, the system may refuse one.
+    /// There are none; on systems with threads, the system may refuse to start one.
     pub fn start(mut session: Session, wake: impl Fn() + 'static) -> std::io::Result<Link> {
         let last = Arc::new(session.shown());
         let inner = Inner { course: Course::new(session), asks: Vec::new(), last };
@@ -46,12 +46,12 @@ impl Link {
         self.wake = Box::new(wake);
     }
 
-    /// How long the simulation has been busy: always none here, because the window waits for it.
+    /// How long the simulation has been busy. Without threads this is always none, because the window waits for it.
     pub fn busy(&self) -> Option<Duration> {
         None
     }
 
-    /// The progress of a preparation: always none here.
+    /// The progress of a preparation. Without threads this is always none.
     pub fn prepared(&self) -> Option<f64> {
         None
     }

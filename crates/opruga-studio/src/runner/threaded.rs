@@ -1,4 +1,4 @@
-//! The simulation on a thread of its own: the interface never waits for it.
+//! The simulation on its own thread, so that the interface never waits for it.
 
 use super::{Ask, Copied, Course};
 use crate::session::{Request, Session};
@@ -25,8 +25,8 @@ pub struct Link {
     break_off: Arc<BreakOff>,
 }
 
-/// Pictures that the thread has made and that may still be in use. The thread frees them after their last use: freeing the data of a thousand bodies
-/// would take the interface a millisecond.
+/// Pictures that the thread has made and that may still be in use. The thread frees them after their last use, because freeing the data of a thousand
+/// bodies would take the interface a millisecond.
 #[derive(Default)]
 struct Old(Vec<Arc<Shown>>);
 
@@ -64,7 +64,7 @@ impl Link {
         if request.breaks_off() {
             self.break_a_long_frame_off();
         }
-        // If the thread has ended, nobody handles the request, and the last picture stays.
+        // If the thread has ended, the request is not handled, and the last picture stays.
         let _ = self.asks.send(Ask::Do(request));
     }
 

@@ -29,7 +29,7 @@ pub struct Placed {
 pub enum Edit {
     /// A new body; its table as in the scene file, with a name that another body may already have.
     Add(InlineTable),
-    /// The same with its centre at a point, or at the nearest position at which it intersects no other body and no obstacle \[m\].
+    /// A new body with its centre at a point, or at the nearest position at which it intersects no other body and no obstacle \[m\].
     Drop(InlineTable, [f64; 3]),
     /// A copy of a body next to it.
     Duplicate(String),
@@ -144,8 +144,8 @@ impl Session {
         Ok(())
     }
 
-    /// Resets the integrator of a body to that of the scene. At the start, it then has none of its own; a moving body continues with an integrator of
-    /// its own that is the same.
+    /// Resets the integrator of a body to that of the scene. At the start, the body then has no integrator of its own. A moving body gets its own
+    /// integrator that is equal to that of the scene.
     pub(super) fn as_the_scene(&mut self, body: usize) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Integrator);
@@ -167,7 +167,7 @@ impl Session {
         }
     }
 
-    /// Changes the integrator of all bodies without one of their own.
+    /// Changes the integrator of all bodies that do not have their own.
     pub(super) fn integrator(&mut self, values: &Values) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Integrator);
@@ -232,7 +232,7 @@ impl Session {
             Edit::Transform(name, placed) => {
                 let mut table = self.table_of(name)?;
                 self.transform(name, &mut table, placed)?;
-                // Handles rotate and scale about the opposite side or the centre, so the displacement of the centre does not tell which edit was
+                // Handles rotate and scale about the opposite side or the centre, so the displacement of the centre does not show which edit was
                 // meant.
                 let step = match placed {
                     Placed { scaled, .. } if *scaled != 1.0 => Step::Scale,
@@ -284,7 +284,7 @@ impl Session {
         self.document.body(name).ok_or_else(|| Report::Copy(name.to_string()))
     }
 
-    /// The displacement of the centre of a body from where it was placed [m].
+    /// The displacement of the centre of a body from its initial position [m].
     fn displacement_of(&mut self, name: &str) -> [f64; 3] {
         if self.at_start() {
             return [0.0; 3];
@@ -322,7 +322,7 @@ impl Session {
             return Err(Report::Scaled(placed.scaled));
         }
         let (sin, cos) = placed.turned.sin_cos();
-        // The position compensates for the displacement of the mesh's centre by the rotation.
+        // The position compensates for the displacement of the mesh's centre that the rotation causes.
         let turned = match dimension {
             2 => [cos * middle[0] - sin * middle[1], sin * middle[0] + cos * middle[1], 0.0],
             _ => [cos * middle[0] + sin * middle[2], middle[1], cos * middle[2] - sin * middle[0]],
@@ -459,7 +459,7 @@ mod tests {
         let [x, y, z] = turn_about_y(0.4, [0.0, 0.7, 0.0]);
         assert!((y - 1.1).abs() < 1e-12 && x.abs() + z.abs() < 1e-12, "{x} {y} {z}");
         let quarter = core::f64::consts::FRAC_PI_2;
-        // First about x, then about y: a rotation by 120° about (1, 1, −1)/√3.
+        // A rotation about x followed by one about y is a rotation by 120° about (1, 1, −1)/√3.
         let turn = turn_about_y(quarter, [quarter, 0.0, 0.0]);
         let third = 2.0 * core::f64::consts::FRAC_PI_3 / 3.0_f64.sqrt();
         assert!(turn.iter().zip([third, third, -third]).all(|(a, b)| (a - b).abs() < 1e-12), "{turn:?}");

@@ -1,4 +1,4 @@
-//! Warnings at the end of a scene: shapes are checked there, and whenever time is stopped after it.
+//! Warnings at the end of a scene. Shapes are checked at the end, and whenever time is stopped after it.
 
 use super::Session;
 use crate::report::Report;
@@ -17,7 +17,7 @@ pub(super) struct Ends {
 }
 
 impl Ends {
-    /// No warnings yet, for a scene with these warnings at its start.
+    /// The state before the end, for a scene with these warnings at its start.
     pub(super) fn of(early: Vec<Warning>) -> Ends {
         Ends { early, ..Ends::default() }
     }
@@ -35,7 +35,7 @@ impl Ends {
 }
 
 impl Session {
-    /// Checks the shapes at the end of the scene on the command line, and shows the warnings that the command line would print there.
+    /// Checks the shapes at the end of the scene on the command line, and shows the warnings that the command line would print.
     pub(super) fn look_at_the_end(&mut self) {
         if self.engine.frames() != self.engine.end() {
             return;

@@ -9,11 +9,11 @@ use toml_edit::InlineTable;
 /// The lowest and the highest corner of a box [m].
 type Ends = [[f64; 3]; 2];
 
-/// The spacing of the positions that are tried, in sizes of the body, and their number to each side, in the plane and in space: they reach up to six
-/// and four sizes away.
+/// The spacing of the positions that are tried, relative to the size of the body, in the plane and in space. The positions reach up to six and four
+/// sizes away.
 const APART: [f64; 2] = [0.25, 0.5];
 const TRIED: [i32; 2] = [24, 8];
-/// The gap between a body and its neighbours, in sizes of the body.
+/// The gap between a body and its neighbours, relative to the size of the body.
 const GAP: f64 = 0.02;
 
 /// The box around points.
@@ -67,8 +67,8 @@ fn is_in(ends: &Ends, obstacle: &ColliderPicture, hollow: bool, dimension: usize
     }
 }
 
-/// The free displacement nearest to the desired one, among those that are tried; the desired one if none is free. Of two at equal distance, the
-/// higher one.
+/// The free displacement nearest to the desired one, among those that are tried; the desired one if none is free. Of two displacements of equal
+/// length, the higher one is chosen.
 fn nearest(wanted: [f64; 3], size: f64, dimension: usize, free: impl Fn([f64; 3]) -> bool) -> [f64; 3] {
     if free(wanted) {
         return wanted;
@@ -90,11 +90,12 @@ impl Session {
         // A table that cannot be read is refused when it is added.
         let Some([low, high]) = self.box_of(table) else { return shift(table, at, dimension) };
         let by = self.free_displacement(table, [0, 1, 2].map(|d| at[d] - 0.5 * (low[d] + high[d])));
-        // Rounded to a hundredth of its size: nobody points more precisely.
+        // Rounded to a hundredth of its size, because users do not point more precisely.
         let size = (0..dimension).map(|d| high[d] - low[d]).fold(0.0, f64::max);
         let unit = if size > 0.0 { 10f64.powi(size.log10().floor() as i32 - 2) } else { 0.01 };
         let rounded = by.map(|x| {
-            // Divided by its reciprocal if that is whole, to write 0.01 and not 0.010000000000000002.
+            // The number is divided by the reciprocal of the unit if that is whole, so that 0.01 is written instead of
+            // 0.010000000000000002.
             if unit < 1.0 { (x / unit).round() / (1.0 / unit).round() } else { (x / unit).round() * unit }
         });
         shift(table, rounded, dimension);

@@ -63,11 +63,11 @@ pub enum Request {
         name: String,
         /// Its text.
         text: String,
-        /// Where the files that it names are.
+        /// The location of the files that it names.
         files: Files,
     },
-    /// Add a shape from a file to the scene, with its centre at a point and this size [m]. If its dimension differs, open a scene around it with as
-    /// many substeps as it needs.
+    /// Add a shape from a file to the scene, with its centre at a point and with this size [m]. If its dimension differs from that of the scene, open
+    /// a scene around it with as many substeps as it needs.
     Take(Shape, [f64; 3], f64),
     /// Start or stop time.
     Play(bool),
@@ -75,7 +75,7 @@ pub enum Request {
     Step,
     /// Return to the start and remove what was recorded since.
     Reset,
-    /// Return to the start and keep what was recorded since, which then happens again.
+    /// Return to the start, keep what was recorded since, and replay it.
     Replay,
     /// Go to a frame.
     Seek(u64),
@@ -95,7 +95,8 @@ pub enum Request {
     Set(String, Value),
     /// Remove a field of an obstacle.
     Unset(String),
-    /// Set a parameter by dragging, since the press of this number: everything that is set during the press is undone together.
+    /// Set a parameter by dragging during the press with this number. Everything that is set during one press is undone
+    /// together.
     Draw(u64, String, Value),
     /// Change the models of a body.
     Models(usize, Vec<Values>),
@@ -113,7 +114,7 @@ pub enum Request {
     Accept(Offer),
     /// Set the display options.
     Show(Show),
-    /// Show the scene twice, side by side, or no longer.
+    /// Show the scene twice, side by side, or only once.
     Compare(bool),
     /// Add a difference of the right scene.
     Differ(Difference),
@@ -127,7 +128,7 @@ impl Request {
     pub(crate) fn breaks_off(&self) -> bool {
         use Request::{Accept, Draw, Open, Play, Replay, Reset, Seek};
         let now = matches!(self, Open { .. } | Play(false) | Replay | Reset | Seek(_) | Accept(_));
-        // Values that are being dragged come with every picture, so no frame would ever be completed.
+        // Values that are being dragged come with every picture, so that no frame would ever be completed.
         now || self.is_edit() && !matches!(self, Draw(..))
     }
 
@@ -147,7 +148,7 @@ pub struct Session {
     engine: Box<dyn Engine>,
     /// The differences of the right scene, if there is one.
     differences: Option<Vec<Difference>>,
-    /// Bodies that were replaced under another name: old and new names.
+    /// Bodies that were renamed when they were replaced: old and new names.
     renamed: Vec<(String, String)>,
     /// The last body that was added or copied, with a running number.
     newest: Option<(u64, String)>,
@@ -173,7 +174,7 @@ pub struct Session {
     playing: bool,
     speed: f64,
     pacing: Pacing,
-    /// The recent time of a frame [s], also while one is computed.
+    /// The recent computing time of a frame [s], also while a frame is being computed.
     cost: f64,
     show: Show,
     message: Option<Message>,

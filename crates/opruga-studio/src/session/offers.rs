@@ -44,7 +44,7 @@ impl Session {
                         None => session.integrator(values),
                     };
                     match take(self, &values) {
-                        // It has a stable step, which may be shorter.
+                        // This integrator has a stable step, which may be shorter.
                         Err(Report::World(WorldError::UnstableStep { substeps, .. }))
                             if substeps <= MOST_SUBSTEPS
                                 && self.frame_would_take(self.nodes_now(), with_a_margin(substeps)) <= TOO_LONG =>
@@ -60,7 +60,7 @@ impl Session {
             }
             Offer::Substeps(substeps) => {
                 let refused = self.refused.take();
-                // A scene that was not opened has its own substeps.
+                // A scene that could not be opened has its own number of substeps.
                 if let Some(Request::Open { name, text, files }) = refused {
                     return self.open_with(&name, &text, files, *substeps);
                 }
@@ -106,7 +106,7 @@ impl Session {
     pub(super) fn offer_after_a_failure(&mut self, body: &str) -> Option<Offer> {
         let shown = self.engine.shown(&self.show);
         let more = 2 * u64::from(shown.substeps) <= u64::from(MOST_SUBSTEPS);
-        // If no step is stable, half of it is not, either.
+        // If no step is stable, half the step is not stable either.
         let steady = steady(&self.setting.registries);
         let another =
             without_a_stable_step(&shown, body).zip(steady).map(|(body, spec)| Offer::Steady(body, spec.kind));
@@ -119,7 +119,7 @@ impl Session {
             WorldError::Diverged { body, .. }
             | WorldError::Step { body, .. }
             | WorldError::NotConverged { body, .. } => self.offer_after_a_failure(body),
-            // If a frame cannot have that many, the message names other remedies.
+            // If a frame cannot have that many substeps, the message names other remedies.
             WorldError::UnstableStep { substeps, .. } if *substeps <= MOST_SUBSTEPS => {
                 let wanted = with_a_margin(*substeps);
                 let nodes = self.nodes_with(request.as_ref());
@@ -132,7 +132,7 @@ impl Session {
                     self.refused = request;
                     Some(Offer::Substeps(wanted))
                 } else {
-                    // The number is the present one: fewer were requested, and the present one stays.
+                    // This is the present number: fewer substeps were requested, and the number stays the same.
                     None
                 }
             }
@@ -207,7 +207,7 @@ impl Session {
         if *now < 1 || ratio <= 0.0 {
             return None;
         }
-        // Both are assumed to grow by powers of the value, which these two points determine.
+        // Both are assumed to be powers of the value, which are determined by these two points.
         let of_steps = (f64::from(substeps) / needed).ln() / ratio;
         let of_nodes = (nodes as f64 / self.nodes_now().max(1) as f64).ln() / ratio;
         let takes = |value: i64| {
@@ -224,8 +224,7 @@ impl Session {
     }
 }
 
-/// Whether the world warns that no step is stable for the integrator of a body: then the index of the body, or none if it uses the integrator of the
-/// scene.
+/// If the world warns that no step is stable for the integrator of a body: the index of the body, or none if it uses the integrator of the scene.
 fn without_a_stable_step(shown: &Shown, name: &str) -> Option<Option<usize>> {
     let body = shown.bodies.iter().find(|body| body.name == name)?;
     let values = body.integrator.as_ref().or(shown.integrator.as_ref())?;

@@ -55,7 +55,7 @@ impl Session {
             true => named_files(&shape.name, &shape.text, &shape.files, &self.setting.registries).into_iter().collect(),
             false => Vec::new(),
         };
-        // If it cannot be read, or consists of several files, the scene around it reports or shows this.
+        // If the file cannot be read, or the shape consists of several files, the scene around it reports or shows this.
         let [(_, bytes)] = &files[..] else { return self.open_around(shape) };
         let file = self.free_file(&shape.file, bytes);
         let Some(body) = shape.body(&file, size) else { return Err(Report::NameOfFile(shape.file.clone())) };
@@ -65,7 +65,7 @@ impl Session {
         outcome.map_err(|report| {
             self.files = before;
             match report {
-                // Errors about no other file are errors about this one.
+                // Errors that are about no other file are errors about this one.
                 Report::Scene(mut errors) => {
                     errors.iter_mut().filter(|e| e.file.is_empty()).for_each(|e| e.file.clone_from(&shape.file));
                     Report::Scene(errors)

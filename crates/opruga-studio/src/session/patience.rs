@@ -1,4 +1,4 @@
-//! The time limit of a frame for environments in which nobody can interrupt it, such as a web page, which has one thread.
+//! The time limit of a frame in environments in which it cannot be interrupted, such as a web page, which has only one thread.
 
 use super::{Request, Session};
 use crate::report::Report;
@@ -34,7 +34,7 @@ impl Patience {
     /// No limit.
     pub(super) const ENDLESS: Patience = Patience { first: f64::INFINITY, now: f64::INFINITY };
 
-    /// The limit for a scene that was just opened.
+    /// The initial limit, for a scene that was just opened.
     pub(super) fn anew(self) -> Patience {
         Patience { now: self.first, ..self }
     }

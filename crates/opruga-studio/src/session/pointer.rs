@@ -49,7 +49,7 @@ impl Grabbed {
     }
 }
 
-/// A pull that has ended: the world removes it in its next frame, but the display at once.
+/// A pull that has ended. The world removes it in its next frame, but it is no longer displayed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Released {
     body: usize,
@@ -136,7 +136,7 @@ impl Session {
         Ok(())
     }
 
-    /// The document as it will be after the pointer has released what it holds, which otherwise would be held for ever.
+    /// The document after the release of everything that the pointer holds, which would otherwise be held for ever.
     pub(super) fn let_go_of_all(&self) -> Document {
         let mut document = self.document.clone();
         if let Some((grabbed, [_, written])) =
@@ -314,8 +314,8 @@ impl Session {
         }
     }
 
-    /// Displays the present action of the pointer, which the world receives in its next frame: while time is stopped, a pull follows the pointer, and
-    /// a released one is gone. `position_of` returns the position of a node in the scene of these pulls.
+    /// Displays the present action of the pointer, which the world receives only in its next frame: while time is stopped, a pull follows the
+    /// pointer, and a released pull is not shown. `position_of` returns the position of a node in the scene of these pulls.
     pub(super) fn show_hand(
         &self,
         pulls: &mut Vec<[[f64; 3]; 3]>,

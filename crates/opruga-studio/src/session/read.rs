@@ -34,7 +34,7 @@ impl Session {
         self.document.text()
     }
 
-    /// Where the files that the scene names are.
+    /// The location of the files that the scene names.
     pub fn files(&self) -> &Files {
         &self.files
     }

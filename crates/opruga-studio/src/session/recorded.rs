@@ -1,4 +1,5 @@
-//! A recorded run in the window: its states are available, and the actions of the user from one of them on start a different run.
+//! A recorded run in the window. Its states are available, and the first action of the user starts a different run from the
+//! state shown.
 
 use super::{KEYFRAME_BYTES, Session};
 use crate::document::Document;
@@ -21,7 +22,8 @@ pub(super) struct Viewed {
 }
 
 impl Session {
-    /// Opens a recorded run at its first frame. As many of its states are held as fit into the memory for keyframes; those between are computed.
+    /// Opens a recorded run at its first frame. As many of its states are kept as fit into the memory for keyframes; the states between them are
+    /// computed.
     ///
     /// # Errors
     /// Why it cannot be viewed: a run that a program controlled, a scene that this version does not read, damage.
@@ -68,7 +70,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Takes the next frame from the recording, if its state is there and the pointer holds nothing.
+    /// Takes the next frame from the recording, if its state was recorded and the pointer holds nothing.
     pub(super) fn recorded_frame(&mut self) -> Result<bool, WorldError> {
         let next = self.engine.frames() + 1;
         if self.recording.is_none() || self.grabbed.is_some() || next > self.latest {

@@ -65,7 +65,7 @@ impl Session {
 
     /// The names under which the user knows the existing bodies.
     fn titles(&self) -> Titles {
-        // Most sessions have renamed nothing; in a crowd single bodies have no labels.
+        // In most sessions nothing was renamed; in a crowd, single bodies have no labels.
         let present = if self.renamed.is_empty() { Vec::new() } else { self.engine.names() };
         if present.len() > 64 { Titles::default() } else { Titles::new(self.renamed.clone(), present) }
     }

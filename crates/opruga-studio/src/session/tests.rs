@@ -147,7 +147,7 @@ fn a_push_follows_the_pointer_and_stays_the_same_while_that_stands_still() {
     assert_ne!(session.shown().pushes[0][0], node);
     let pushes = |session: &Session| session.text().matches("do = \"push\"").count();
     assert_eq!(pushes(&session), 1, "one force is one command");
-    // Back at the point of the press it does not push, and after its release neither.
+    // When the pointer is back at the point of the press, it does not push, and neither does it after its release.
     ask(&mut session, Request::Lead(pressed));
     pass(&mut session, 3);
     assert_eq!((force(&mut session), pushes(&session)), (None, 1));
@@ -255,13 +255,13 @@ fn substeps_of_which_a_frame_would_take_long_are_refused_with_its_duration_and_a
     assert_eq!((shown.bodies.len(), shown.bodies[0].nodes as i64), (1, value));
     pass(&mut session, 2);
     assert_replays(&session);
-    // A number of substeps that a frame has time for is offered as it is.
+    // A number of substeps for which a frame has time is offered unchanged.
     let stiffness =
         |k| Request::Set(format!("body.{}.models.mass_spring.stiffness", shown.bodies[0].name), Value::Number(k));
     session.handle(stiffness(16_000.0));
     let message = session.shown().message.expect("a refusal");
     assert!(matches!(message.offer, Some(Offer::Substeps(n)) if n > shown.substeps), "{message:?}");
-    // Fewer than necessary are refused, and the present number is not an offer.
+    // A number that is too small is refused, and the present number is not offered.
     session.handle(Request::Set("time.substeps".into(), Value::Integer(1)));
     let message = session.shown().message.expect("a refusal");
     assert!(message.severity == Severity::Refused && message.offer.is_none(), "{message:?}");

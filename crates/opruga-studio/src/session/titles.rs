@@ -39,7 +39,7 @@ impl Titles {
         if self.present.iter().any(|other| other == title) { name } else { title }
     }
 
-    /// The same for the parts of a text in quotes: a name, or a path that begins with one.
+    /// Replaces names in the parts of a text that are in quotes: a name, or a path that begins with a name.
     pub(super) fn in_text(&self, text: &str) -> String {
         if self.is_empty() {
             return text.into();

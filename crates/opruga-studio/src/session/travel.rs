@@ -21,7 +21,7 @@ pub(super) struct Past {
     /// The scene at its start at that time.
     pub(super) start: Document,
     pub(super) frame: u64,
-    /// The frame up to which the run that was left is identical with this one.
+    /// The frame up to which the run that was left is identical to the present one.
     pub(super) common: u64,
     pub(super) pins: Vec<Pinned>,
     pub(super) differences: Option<Vec<Difference>>,
@@ -55,8 +55,8 @@ impl Session {
         self.pacing.rest();
     }
 
-    /// Arrives at a moment. At the end of the computed run, the commands given there while time was stopped take effect at once. At an earlier moment
-    /// they do not, because new actions replace everything that followed.
+    /// Arrives at a moment. At the end of the computed run, the commands that were given while time was stopped take effect at once. At an earlier
+    /// moment they do not, because new actions replace everything that followed.
     pub(super) fn arrive(&mut self) {
         self.replaced += 1;
         self.goal = None;
@@ -144,7 +144,7 @@ impl Session {
         }
         let newest = differences.as_ref().and_then(|list| list.last()).map(Difference::about);
         let past = self.past(newest.map_or(Step::Compare, Step::Differ));
-        // If both are still on the way to a moment, that moment.
+        // If both are still on the way to a moment, this is that moment.
         let (latest, goal) = (self.latest, self.goal.unwrap_or(self.engine.frames()));
         self.with_differences(differences, |session| {
             session.take(session.document.clone(), session.own_commands, [latest; 2])?;
