@@ -1,4 +1,4 @@
-//! Checkpoints of a run: their contents, when they are written, and which older one replaces a damaged one.
+//! Checkpoints of a run: their contents, when they are written, and which earlier checkpoint replaces a damaged one.
 
 use crate::errors::{CallError, CallWarning, ResumeHint};
 use crate::failure::Failure;
@@ -203,8 +203,8 @@ impl<'a> Keeper<'a> {
         Keeper { folder, source, calling, every, next, older, begun: false, failed: None }
     }
 
-    /// Writes the header of the table and its first row, so that anybody who looks into the folder of a run that has begun, or was killed before its
-    /// first checkpoint, finds its columns. The table of an earlier run stays as long as its checkpoint does.
+    /// Writes the header of the table and its first row, so that the folder shows the columns even if the run has just begun or was killed before its
+    /// first checkpoint. The table of an earlier run stays as long as its checkpoint does.
     pub(crate) fn begin(&self, table: &NumberTable) -> Result<(), WriteError> {
         match self.folder.path(TABLE).exists() {
             true => Ok(()),
@@ -218,7 +218,7 @@ impl<'a> Keeper<'a> {
         let start = self.next.filter(|next| Instant::now() >= *next).map(|_| Instant::now())?;
         let written = self.write(world, table);
         let took = start.elapsed();
-        // For large worlds on slow disks: at least half of the time is spent on the run.
+        // Even for large worlds on slow disks, at least half of the time is spent on the run.
         self.next = self.every.map(|every| Instant::now() + every.max(took));
         let error = written.err()?;
         let count = self.failed.as_ref().map_or(0, |f| f.0) + 1;

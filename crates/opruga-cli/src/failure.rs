@@ -72,7 +72,7 @@ impl Failure {
         Failure::Call(fault.into())
     }
 
-    /// 1 a check failed · 2 bad call or content · 3 diverged · 4 reading and writing · 130 interrupted.
+    /// The codes are: 1 a check failed · 2 bad call or content · 3 diverged · 4 reading or writing failed · 130 interrupted.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Failure::Scene(errors) => errors.first().map_or(2, |e| e.exit_code() as u8),

@@ -9,7 +9,7 @@ use opruga::{AnyBody, AnyWorld};
 const MEASURED: f64 = 2.0;
 /// Longer runs are reported [s].
 const LONG: f64 = 30.0;
-/// A larger number of substeps is not suggested.
+/// The largest number of substeps that is suggested.
 const MANY_SUBSTEPS: f64 = 1000.0;
 
 /// Reports the duration once.

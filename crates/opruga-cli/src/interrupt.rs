@@ -9,7 +9,7 @@ use std::time::Duration;
 static STOP: AtomicBool = AtomicBool::new(false);
 /// Whether the user has asked the program to end.
 static END: AtomicBool = AtomicBool::new(false);
-/// Whether another program reports the end instead of this one: it ends by itself and prints what became of its work.
+/// Whether another program reports the end instead of this one. That program ends by itself and prints what became of its work.
 static SILENT: AtomicBool = AtomicBool::new(false);
 static HANDLER: Once = Once::new();
 
@@ -17,7 +17,7 @@ static HANDLER: Once = Once::new();
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// The flag that is set when the present work should stop. After the first call, Ctrl-C and termination signals set it. A second signal ends the
-/// program at once: files are written under temporary names, so existing ones stay intact.
+/// program at once: files are written under temporary names, so existing files stay intact.
 pub(crate) fn asked_to_stop() -> &'static AtomicBool {
     HANDLER.call_once(|| {
         // If the system provides no handler, a signal ends the program as usual.
@@ -60,8 +60,8 @@ pub(crate) fn begin_work() {
     }
 }
 
-/// From here on, a file that reaches the limit of file sizes (`ulimit -f`) is a failed write as on a full disk, which is reported with path and
-/// bytes, and does not end the program.
+/// After this call, a file that reaches the limit of file sizes (`ulimit -f`) does not end the program. It is a failed write, as on a full disk, and
+/// is reported with its path and bytes.
 pub(crate) fn outlive_the_limit_on_files() {
     #[cfg(unix)]
     {

@@ -58,7 +58,7 @@ fn main() -> ExitCode {
     };
     language::choose(arguments.language);
     let json = arguments.command.as_ref().is_some_and(Command::json);
-    // Everything that a scene can name is passed on from here.
+    // Everything that a scene can name is created here and passed on.
     let registries = Registries::default();
     let outcome = match &arguments.command {
         None => studio::first(&registries),

@@ -23,7 +23,7 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Reads, fills, reports, draws and writes.
+/// Reads the file, fills it, reports on it, draws it, and writes the mesh.
 pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
     for (option, value) in [("--size", call.size), ("--scale-to", call.scale_to)] {
         if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
@@ -80,7 +80,7 @@ fn picture_of(call: &Call, out: Option<&(&Path, String)>) -> Option<PathBuf> {
     call.picture.clone().or_else(beside)
 }
 
-/// The shape, in the terms of scenes, that the call asks for, and the dimension.
+/// The shape that the call asks for, in the terms of scenes, and its dimension.
 fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize, Values), Failure> {
     let set = overrides(&call.set)?;
     let is_set = |field: &str| set.iter().any(|(path, _)| path == field);
@@ -92,7 +92,7 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
         _ => Ok(None),
     };
     let spacing = || length("spacing", call.size, Some(CallFault::NoSize {}));
-    // First the options of the call, then `--set`.
+    // The options of the call come first, then `--set`.
     let made = |kind: &str, dimension: usize, fields: Vec<(String, String)>| {
         let all = [&[word("file", name)], &fields[..], &set[..]].concat();
         let (values, _) = scene::shape_of_fields(kind, dimension, &all).map_err(Failure::Scene)?;
@@ -149,7 +149,7 @@ fn shape(call: &Call, folder: &Path, name: &str, ending: &str) -> Result<(usize,
     }
 }
 
-/// The error about a file or an option of the call.
+/// Makes the error about a file or an option of the call.
 fn refused(call: &Call, name: &str, problem: Problem) -> Failure {
     let value = |option: &str, value: Option<f64>| value.map(|value| format!("{option} {value}"));
     let option = match problem.field {

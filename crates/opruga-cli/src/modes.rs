@@ -20,10 +20,11 @@ use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// The fraction of the square of the largest frequency that a zero frequency may have because of rounding.
+/// The square of a frequency that should be zero may be this fraction of the square of the largest frequency, because of
+/// rounding.
 const ROUNDING: f64 = 1e-15;
 
-/// The largest displacement in a picture, in extents of the body.
+/// The largest displacement in a picture, as a fraction of the extent of the body.
 const AMPLITUDE: f64 = 0.12;
 
 /// Finds the modes of a body, prints them, and draws their shapes.
@@ -86,7 +87,7 @@ fn of_world(call: &Modes, source: &Source, reading: &scene::Options, world: &mut
             Failure::range("--body", format!("`{name}`"), CallRange::OneOf { names: names.join(", ") })
         })?,
     };
-    // Up to the state about which the body vibrates.
+    // The frames up to the state about which the body vibrates.
     let frames = (call.after / world.scene().time().frame - 1e-9).ceil() as u64;
     for _ in 0..frames.max(u64::from(call.equilibrium)) {
         world.frame().map_err(|error| source.frame_error(&error, world, reading))?;

@@ -131,7 +131,7 @@ impl Outputs<'_> {
         }
     }
 
-    /// Writes strip, video and plots.
+    /// Writes the strip, the video and the plots.
     pub(crate) fn pictures(
         &self,
         scenery: &Scenery,
@@ -213,7 +213,7 @@ impl Outputs<'_> {
         Ok(name.into())
     }
 
-    /// Wall-clock time per node and substep [ns]; none if there was no step.
+    /// The wall-clock time per node and substep [ns]; none if there was no step.
     fn nanoseconds(&self, nodes: usize) -> Option<f64> {
         let work = self.steps as f64 * nodes as f64;
         (work > 0.0).then(|| self.wall * 1e9 / work)

@@ -85,7 +85,7 @@ impl Run<'_> {
         self.table.columns().iter().position(|column| column == name)
     }
 
-    /// The lines of columns that are not zero throughout; the others carry no information.
+    /// The lines of columns that are not zero everywhere; the others contain no information.
     fn named(&self, names: &[&str]) -> Vec<Line> {
         let indices = names.iter().filter_map(|name| Some((self.index_of(name)?, name)));
         indices
@@ -99,8 +99,8 @@ impl Run<'_> {
         self.table.rows().map(|row| row[index]).fold(0.0, f64::max)
     }
 
-    /// The energies. An energy that hardly changes compared with its own size is drawn relative to its start, because its zero has no meaning and
-    /// would flatten the others.
+    /// The energies. An energy that hardly changes compared with its size is drawn relative to its initial value, because its zero has no meaning and
+    /// would flatten the other lines.
     fn energies(&self) -> Vec<Line> {
         let mut lines = self.named(&["kinetic", "elastic", "gas", "gravity"]);
         for line in &mut lines {
@@ -123,7 +123,7 @@ impl Run<'_> {
         for (axis, name) in ["x", "y", "z"].iter().zip(axes) {
             lines.extend(self.index_of(&format!("momentum.{axis}")).map(|index| self.line(index, name)));
         }
-        // The rounding error of cancelling forces is not a momentum: it is negligible compared with √(2 E).
+        // A rounding error of forces that cancel is not a momentum. It is negligible compared with √(2 E).
         let kinetic = self.index_of("kinetic").map_or(0.0, |index| self.largest(index));
         lines.retain(|line| line.points.iter().any(|point| point[1].abs() > 1e-9 * (2.0 * kinetic).sqrt()));
         lines

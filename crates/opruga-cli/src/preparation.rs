@@ -33,7 +33,7 @@ pub(crate) fn watched<T>(break_off: &BreakOff, work: impl FnOnce() -> T) -> T {
         drop(ended);
         done
     });
-    // A later request is handled by the next work.
+    // A request that comes later applies to the next work.
     break_off.ask(false);
     done
 }

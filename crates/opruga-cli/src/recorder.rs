@@ -18,7 +18,8 @@ const PICTURE_BYTES: u64 = 1 << 30;
 /// The largest number of bodies whose volume and pressure get their own columns.
 const MOST_BODY_COLUMNS: usize = 64;
 
-/// The largest number of nodes sampled within frames, over the whole run; it takes as long as stepping a few times that number.
+/// The largest number of nodes that are sampled within frames over the whole run. Sampling a node takes as long as stepping it
+/// a few times.
 const LOOKED_AT: u64 = 4_000_000;
 
 /// The largest number of rows from which plots are drawn.
@@ -120,7 +121,7 @@ pub(crate) struct Columns {
 }
 
 impl Recorder {
-    /// Prepares the columns, and pictures at the desired rate as far as memory allows; refuses a rate that no film can have.
+    /// Prepares the columns, and pictures at the desired rate if memory allows it; refuses a rate that no film can have.
     pub(crate) fn new(world: &mut dyn AnyWorld, wanted: Wanted, frames: u64) -> Result<Recorder, Failure> {
         let Wanted { fps: asked, pictures: drawn, arrows, springs, gif, notes, row_every } = wanted;
         let fps = asked.unwrap_or(USUAL_RATE);
@@ -214,7 +215,7 @@ impl Recorder {
         })
     }
 
-    /// Collects the data of the present frame, and of the time within it; returns how long that took.
+    /// Collects the data of the present frame, and of moments within it; returns how long this took.
     pub(crate) fn record(&mut self, world: &mut dyn AnyWorld) -> Duration {
         let begin = Instant::now();
         let (bodies, seen) = (&self.bodies, &mut self.seen);
@@ -247,7 +248,7 @@ impl Recorder {
         }
     }
 
-    /// The warning that frames have no row although nobody asked for that.
+    /// The warning that frames have no row although this was not requested.
     pub(crate) fn thinned(&self) -> Option<Warning> {
         let [megabytes, most] = [self.rows.too_many?, MOST_TABLE_BYTES].map(|bytes| bytes / 1_000_000);
         Some(Warning::new(CallWarning::Thinned { megabytes, most, apart: self.rows.apart }, self.rows.left_out))
@@ -300,7 +301,7 @@ fn row(world: &mut dyn AnyWorld, bodies: &[(String, usize)]) -> Vec<f64> {
         let body = world.body(name);
         let mut readings: Vec<f64> =
             body.map_or_else(Vec::new, |b| world.readings(b).iter().map(|(_, x)| *x).collect());
-        // A body that does not exist yet, or no longer, has empty columns.
+        // A body that does not exist yet, or no longer exists, has empty columns.
         readings.resize(*columns, f64::NAN);
         row.extend(readings);
     }

@@ -153,14 +153,14 @@ impl Job<'_> {
         if !self.call.verify {
             return self.show(&mut *build(blueprint)?, &mut play(recording)?, stop, None);
         }
-        // A folder that is not free is reported before the work.
+        // A folder that is in use is reported before the work begins.
         let writes = self.call.writes();
         let folder = if writes { Some(self.folder()?) } else { None };
         let verified = self.verify(&mut *build(blueprint.clone())?, &mut play(recording)?, stop)?;
         let same = verified["pass"] == true;
         match folder.filter(|_| same) {
             Some(folder) => {
-                // From its first frame again, in a world that does not depend on the last one.
+                // The recording is played from its first frame again, in a world that does not depend on the last one.
                 let (again, _) = recordings::open(&self.call.file, &self.source.registries)?;
                 self.show(&mut *build(blueprint)?, &mut play(again)?, stop, Some((folder, verified)))
             }
@@ -291,7 +291,7 @@ impl Job<'_> {
             if stop.load(Ordering::Relaxed) {
                 return Err(Failure::Interrupted);
             }
-            // The time within a frame can be seen only while it is computed, so this is done even if its state is kept.
+            // Moments within a frame are available only while it is computed, so it is computed even if its state is kept.
             let shown = if frame > first && recorder.looks_within && playback.keeps(frame) {
                 playback.step(world, frame).map_err(TapeError::from)
             } else {

@@ -269,7 +269,7 @@ fn bench_vertices(call: &BenchVertices, registries: &Registries) -> Result<u8, F
     }
     let chosen = call.only.as_deref().map(bench::row).transpose()?;
     if let Some(path) = &call.plot {
-        // Checked now rather than after minutes of measuring.
+        // This is checked now, and not after minutes of measuring.
         try_write(path, true)?;
     }
     let options = Options { threads: call.threads.into(), simd: simd_from_environment()?, ..Options::default() };

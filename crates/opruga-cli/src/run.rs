@@ -127,7 +127,7 @@ fn outputs_apart(call: &Run, source: &Source, reading: &scene::Options, files: &
 /// Opens the folder for the output, locked and known to be writable.
 fn output_folder(call: &Run, source: &Source) -> Result<OutputFolder, Failure> {
     let folder = folder_of(call, source);
-    // A resumed run writes only its own part, and must not replace the previous part unless asked to.
+    // A resumed run writes only its own part, and must not replace the previous part unless this is requested.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
     Ok(OutputFolder::open(&folder, existing)?)
 }
@@ -188,7 +188,7 @@ impl Job<'_> {
             world.restore(&saved.snapshot).map_err(|error| source.run_error(&error, saved.time))?;
         }
         let mut recorder = Recorder::new(&mut *world, call.wanted(), frames)?;
-        // Even before the first file is written, a signal ends the run with complete files.
+        // From now on, even before the first file is written, a signal ends the run with complete files.
         let stop = interrupt::asked_to_stop();
         let folder = output_folder(call, source)?;
         let calling = Calling {
@@ -212,7 +212,7 @@ impl Job<'_> {
         let first = world.frames();
         let mut progress = Progress::new(frames, first, call.json);
         let (mut failure, mut looked_at) = (None, false);
-        // The time for collecting data is not counted as time of the steps.
+        // The time for collecting data is not part of the time of the steps.
         let mut looking = recorder.record(&mut *world);
         keeper.begin(&recorder.table)?;
         while failure.is_none() && world.frames() < frames {
@@ -252,7 +252,7 @@ impl Job<'_> {
             stop,
             stress: call.stress,
         };
-        // The results up to a failure are written, too: they show how the failure came about.
+        // The results up to a failure are written too, because they show how the failure came about.
         let summary = outputs.write(&*world, recorder, &mut keeper)?;
         if let Some(failure) = failure {
             if !call.json {
@@ -278,7 +278,7 @@ struct Progress {
     first: u64,
     frames: u64,
     quiet: bool,
-    /// When the last line was written, relative to the start [s].
+    /// The time at which the last line was written, from the start [s].
     last_line: f64,
 }
 

@@ -24,7 +24,7 @@ pub(crate) struct Source {
     pub(crate) path: Option<PathBuf>,
     /// The bytes as they were read; the reader refuses invalid UTF-8 with its location.
     pub(crate) bytes: Vec<u8>,
-    /// Where the files that it names are.
+    /// The location of the files that it names.
     pub(crate) files: Files,
     /// The models and integrators that it can name.
     pub(crate) registries: Registries,
@@ -117,7 +117,7 @@ impl Source {
             if first == (WorldError::BrokenOff {}) {
                 return Failure::Interrupted;
             }
-            // The scene is read again, instead of being kept in case its world is refused.
+            // The scene is read again, so that it need not be kept just in case its world is refused.
             let reading = self.survey(options);
             match self.refused(reading, options, world) {
                 Failure::Scene(all) if !all.is_empty() => Failure::Scene(all),

@@ -11,7 +11,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How long a program may take to save its work after it was asked to end, on a busy machine.
+/// How long a program on a busy machine may take to save its work after it was asked to end.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The exit code of a studio that found no screen.
@@ -75,7 +75,7 @@ fn start(scene: Option<&str>) -> Result<u8, Failure> {
     };
     command.args(scene);
     let failed = |e: std::io::Error| Failure::call(CallFault::StudioNotStarted { reason: e.to_string() });
-    // Before it is started, so that an early signal is not lost.
+    // This is set before the program is started, so that an early signal is not lost.
     let stop = interrupt::asked_to_stop();
     interrupt::leave_the_word(true);
     let status = command.spawn().and_then(|child| wait(child, stop)).map_err(failed);
@@ -100,9 +100,9 @@ fn built(cargo: &OsStr, root: &Path) -> Command {
     command
 }
 
-/// Waits for the end of a program. As soon as this program is asked to end, the other one is, too: it saves its work even if this program does not
-/// wait for it, or if Ctrl-C has already asked it. If it then does not end, it is killed. The window of the studio ends by itself with the program
-/// that supervises it.
+/// Waits for the end of another program. As soon as this program is asked to end, it asks the other one to end too, so that it saves its work even if
+/// this program does not wait for it. Ctrl-C may already have asked it. If it does not end, it is killed. The window of the studio ends by itself
+/// with the program that supervises it.
 fn wait(mut child: Child, stop: &AtomicBool) -> std::io::Result<ExitStatus> {
     let mut asked: Option<Instant> = None;
     loop {
@@ -177,7 +177,8 @@ mod tests {
             assert_eq!(status.code(), None, "a signal has ended it");
         });
         assert!(asked.elapsed() < Duration::from_secs(300));
-        // It is asked and not killed, because it has something to save. It prints a line when it is ready.
+        // The program is asked to end instead of being killed, because it has something to save. It prints a line when it is
+        // ready.
         let words = ["-c", "trap 'exit 7' TERM; echo; while :; do sleep 0.1; done"];
         let mut child = Command::new("sh").args(words).stdout(std::process::Stdio::piped()).spawn().expect("a shell");
         let mut listens = [0];

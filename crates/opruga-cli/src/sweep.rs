@@ -83,7 +83,7 @@ pub(crate) fn sweep(call: &Call, registries: &Registries) -> Result<u8, Failure>
     Ok(exit_code(&rows))
 }
 
-/// The exit code that the worst point would have had as a separate run; all others are complete by then.
+/// The exit code that the worst point would have had as a separate run. All other points are complete.
 fn exit_code(rows: &[Row]) -> u8 {
     let code = |row: &Row| match &row.status {
         Status::Done => 0,
@@ -99,7 +99,7 @@ struct SceneInfo {
     length_unit: String,
     /// The authors of its drawings.
     credit: String,
-    /// The note that runs end at another time than requested, unless this differs between them.
+    /// The note that runs end at another time than requested, unless that time differs between them.
     ends: Option<CallNote>,
 }
 
@@ -143,7 +143,7 @@ fn question_of(call: &Call, registries: &Registries) -> Result<(Question, PathBu
         let nothing = opruga::io::scene::Options::default();
         Failure::Scene(source.survey(&nothing).errors)
     })?;
-    // The files belong to the question: a sweep is resumed with the files with which it began.
+    // The files belong to the question, so a sweep is resumed with the files with which it began.
     let options = opruga::io::scene::Options {
         lenient: true,
         files: source.files.clone().allow_outside(call.allow_outside),

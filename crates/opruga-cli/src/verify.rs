@@ -31,7 +31,7 @@ pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failu
     // Checks before the work whether the report can be written.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
     let folder = call.report.as_ref().map(|path| OutputFolder::open(path, existing)).transpose();
-    // The option for folders has another name here.
+    // The option for folders has another name in this command.
     let folder = folder.map_err(|e| {
         let about = e.about.renamed(&str::to_string, &|text| text.replace("--out", "--report"));
         WriteError { about, ..e }

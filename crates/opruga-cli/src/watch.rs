@@ -16,7 +16,7 @@ use std::time::{Duration, SystemTime};
 const EVERY: Duration = Duration::from_millis(100);
 /// The number of consecutive checks that must show the same files, because editors write in several steps.
 const SETTLED: u32 = 2;
-/// After this many checks, a missing file is not just being replaced.
+/// After this many checks, a missing file is considered removed, and not just being replaced.
 const GONE: u32 = 5;
 
 /// Runs a scene, and with `--watch` again whenever it changes.
@@ -28,7 +28,8 @@ pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     let scene = call.scene.clone().unwrap_or_else(|| "ball".into());
     again_and_again(&scene, registries, call.allow_outside, call.json, || {
         let outcome = crate::run::run(&call, registries);
-        // From now on the files in the folder are ours, and may be replaced. After a refusal they may belong to somebody else.
+        // From now on the files in the folder belong to this call and may be replaced. After a refusal they may belong to
+        // someone else.
         if matches!(outcome, Ok(_) | Err(Failure::Run(_) | Failure::Interrupted)) {
             call.force = true;
         }
@@ -61,7 +62,7 @@ fn again_and_again(
     }
     interrupt::asked_to_stop();
     loop {
-        // A change while the files are looked up counts.
+        // A change while the files are being found counts.
         let stamp = Stamp::of(path);
         let (files, mut stamps) = named_files(scene, registries, outside);
         stamps[0] = stamp;

@@ -11,7 +11,7 @@
 //! Only the second derivatives of b are used, κ m b″ ∇g ∇gᵀ: they have no negative eigenvalues, and the next iteration accounts
 //! for the curvature of the distance.
 //!
-//! The friction of a pair with the normal force N = −κ m b′ depends on its slip s in the step, across the normal:
+//! The friction of a pair with the normal force N = −κ m b′ depends on its slip s in the step, perpendicular to the normal:
 //!
 //! ```text
 //! t = λ + k s,   D = |t|²/(2 k) where |t| ≤ µ N, else µ N |t|/k − (µ N)²/(2 k)
@@ -37,7 +37,7 @@ use crate::touching::{Touching, Trouble};
 use crate::vector::{add, dot, length, scaled, subtract};
 use opruga_math::{Lane, Simd};
 
-/// The smallest fraction of its gap that a pair keeps in one iteration: the value of the source (2020, section 5).
+/// The smallest fraction of its gap that a pair keeps in one iteration; the value is that of the source (2020, section 5).
 const KEPT: f64 = 0.1;
 
 /// The fade-out of nearly parallel edges: the squared sine of their angle, as in the source (2020, section 5.3).
@@ -94,7 +94,7 @@ pub struct Rubbing<const D: usize> {
 }
 
 impl<const D: usize> Pressed<D> {
-    /// The friction of the pair, with a multiplier across its normal.
+    /// The friction of the pair, with a multiplier perpendicular to its normal.
     pub fn rubbing(&self, multiplier: [f64; D]) -> Rubbing<D> {
         let Pressed { id, points, weights, normal, .. } = *self;
         let across = subtract(&multiplier, &scaled(&normal, dot(&multiplier, &normal)));
@@ -129,7 +129,7 @@ impl<const D: usize> Rubbing<D> {
         let (pull, size) = self.pull(slip);
         scaled(&pull, -if size > self.most { self.most / size } else { 1.0 })
     }
-    /// ∂²D/∂s² as its values along t, and across t and the normal [N/m], with the direction of t.
+    /// ∂²D/∂s², as the direction of t and two values [N/m]: along t, and perpendicular to both t and the normal.
     fn curvature(&self, slip: &[f64; D]) -> ([f64; D], [f64; 2]) {
         let (pull, size) = self.pull(slip);
         if size <= self.most {
@@ -150,7 +150,7 @@ impl<const D: usize> Rubbing<D> {
 pub struct Barrier<const D: usize> {
     /// The reach r [m].
     reach: f64,
-    /// The compliance of every point, 1/k of its body there [m/N]; 0 if the point is pinned.
+    /// The compliance 1/k of every point [m/N], where k is the stiffness of its body at that point; 0 if the point is pinned.
     pub softness: Vec<f64>,
     candidates: Candidates<D>,
     /// Boxes around the paths of the points, and the boxes for which the present candidates are valid; empty if there are none.
@@ -160,9 +160,9 @@ pub struct Barrier<const D: usize> {
     close: Vec<([u32; 2], bool)>,
 }
 
-/// The margin around the paths of points within which candidates remain valid, as a fraction of the longest path: corrections
-/// become shorter from one to the next. Without it, every correction needs a search. The pairs found within reach do not depend
-/// on it.
+/// The margin around the paths of points within which candidates remain valid, as a fraction of the longest path. Each
+/// correction is shorter than the one before, so that the margin often saves a search; without it, every correction would need
+/// one. The pairs found within reach do not depend on it.
 const MARGIN: f64 = 0.25;
 
 impl<const D: usize> Barrier<D> {
@@ -173,7 +173,7 @@ impl<const D: usize> Barrier<D> {
         barrier
     }
 
-    /// Discards the pairs that may come within reach, because the surface may be another one.
+    /// Discards the pairs that may come within reach, because the surface may have changed.
     pub fn forget(&mut self) {
         self.searched.clear();
     }
@@ -346,8 +346,8 @@ impl<const D: usize> Barrier<D> {
         if softness > 0.0 { 1.0 / softness } else { 0.0 }
     }
 
-    /// The fraction of the paths from x to y, the last ones examined, that all pairs may take while each keeps a tenth of its
-    /// gap; 1 if nothing is in their path.
+    /// The fraction of the paths from x to y, which were examined last, that all points may move while each pair keeps a tenth
+    /// of its gap; 1 if nothing is in their way.
     pub fn free_part(&self, surface: &Surface<D>, laws: &Laws, [x, y]: [&[[f64; D]]; 2]) -> f64 {
         let mut part: f64 = 1.0;
         for (features, with_facet) in self.close.iter().copied() {

@@ -150,7 +150,7 @@ impl<const D: usize> Collider<D> {
         let still = motion.is_still().then(|| Frame::new(&motion, 0.0, 0.0));
         Ok(Collider { law, motion, still, form, parts, bounds })
     }
-    /// The distance that nodes keep from it because of rounding [m].
+    /// The distance that nodes keep from the collider because of rounding [m].
     pub(crate) fn margin_of_rounding(&self) -> f64 {
         let margin = |part: &Part<D>| if let Part::Facets(facets) = part { facets.skin() } else { 0.0 };
         self.parts.iter().map(margin).fold(0.0, |most, margin| margin.larger(most))
@@ -285,7 +285,7 @@ fn half_space<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     let mut unit = normal;
     let mut size = length(&unit);
     if !size.is_finite() {
-        // The squares of such numbers may overflow or underflow, but they have a direction.
+        // The squares of these components may overflow or underflow, but the vector still has a direction.
         let most = normal.iter().fold(0.0, |most: f64, n| if n.abs() > most { n.abs() } else { most });
         unit = normal.map(|n| n / most);
         size = length(&unit);
@@ -326,7 +326,7 @@ fn cuboid<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     let shape = Cuboid { center, axes: if given("rotation") { turn } else { identity() }, half };
     let inside = values.flag("inside");
     let parts = if inside {
-        // A container is the half-spaces behind its walls, so that a node in a corner meets each of them.
+        // A container consists of the half-spaces behind its walls, so that a node in a corner meets each of them.
         let mut walls = Vec::with_capacity(2 * D);
         for d in 0..D {
             for side in [-1.0, 1.0] {

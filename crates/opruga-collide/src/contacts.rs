@@ -16,7 +16,7 @@ use opruga_core::tile::TILE;
 use opruga_math::{Lane, Simd, WIDTH};
 use std::sync::Arc;
 
-// Never inlined into other crates, which would then compile all passes again.
+// This is never inlined into other crates, because they would then compile all passes again.
 #[inline(never)]
 fn of_the_plane(colliders: Arc<Colliders<2>>) -> Arc<dyn Contacts<2>> {
     colliders
@@ -30,12 +30,12 @@ fn of_space(colliders: Arc<Colliders<3>>) -> Arc<dyn Contacts<3>> {
 #[derive(Clone, Debug)]
 pub struct Colliders<const D: usize> {
     all: Arc<[Collider<D>]>,
-    /// Whether colliders with faces do not hold nodes: bodies then meet their faces like those of other bodies.
+    /// Whether colliders with faces do not hold nodes, so that bodies meet their faces like the faces of other bodies.
     without_faces: bool,
 }
 
 impl<const D: usize> Colliders<D> {
-    /// Builds colliders from their parameters, in order; the kind of each is that of its [`Values`].
+    /// Builds colliders from their parameters, in order; their [`Values`] determine the kind of each.
     ///
     /// # Errors
     /// [`Refused`] with the index of the collider, the offending value and the allowed values: a normal or capsule without
@@ -58,7 +58,7 @@ impl<const D: usize> Colliders<D> {
     }
     /// The colliders as the contacts of a system.
     pub fn into_contacts(self: Arc<Self>) -> Arc<dyn Contacts<D>> {
-        // Through functions that are not generic, so that the passes are compiled once, with this crate.
+        // This calls functions that are not generic, so that the passes are compiled once, with this crate.
         let any: Arc<dyn Any + Send + Sync> = self.clone();
         let contacts: Option<Box<dyn Any>> = match any.downcast::<Colliders<2>>() {
             Ok(plane) => Some(Box::new(of_the_plane(plane))),
@@ -114,7 +114,7 @@ impl<const D: usize> Colliders<D> {
         let parts = || self.all.iter().filter(|collider| self.holds(collider)).flat_map(|collider| &collider.parts);
         parts().nth(1).is_some() && parts().any(Part::has_edges)
     }
-    /// Whether they are so close to the nodes of a tile that these may move from one to another.
+    /// Whether such solids are so close to the nodes of a tile that nodes may move from one solid to another.
     fn has_seams_in(&self, moved: &Moved<D>, space: &[[f64; D]; 2]) -> bool {
         let (mut count, mut edges) = (0, false);
         for collider in self.all.iter().filter(|collider| self.holds(collider)) {
@@ -126,7 +126,8 @@ impl<const D: usize> Colliders<D> {
         }
         count > 1 && edges
     }
-    /// One plane or ball has no corners: then one pass over all nodes is enough, and no bounds are needed first.
+    /// Whether it is one plane or ball, which has no corners. In this case one pass over all nodes is enough, and no bounds are
+    /// needed.
     fn is_simple(&self) -> bool {
         matches!(&*self.all, [one] if matches!(&*one.parts, [Part::HalfSpace(_)]))
     }
@@ -167,9 +168,9 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
         let simple = self.is_simple();
         let mut space = if simple { None } else { Some(simd.run(Bounds { moved, used })) };
         let (mut active, mut ever) = (ActiveNodes([0; TILE / WIDTH]), false);
-        // First the surfaces on which nodes were: a node that slides from one solid onto another is held by the first one until
-        // it is on the second, and does not hit the side of the second. Then more than once, since one collider may push a node
-        // into another.
+        // First apply the surfaces on which nodes were: a node that slides from one solid onto another is held by the first one
+        // until it is on the second, and does not hit the side of the second. Then apply all colliders more than once, since
+        // one may push a node into another.
         let seams = self.has_seams() && space.as_ref().is_some_and(|space| self.has_seams_in(moved, space));
         let first = seams.then_some(Meets::WhatItLiesOn);
         for meets in first.into_iter().chain([Meets::Everything; ROUNDS]) {

@@ -1,4 +1,4 @@
-//! Bodies whose points respond to impulses together: those of integrators that solve for the end of a step.
+//! Bodies whose points respond to impulses together, as with integrators that solve for the end of a step.
 //!
 //! An impulse on one point moves all of them, Δv = Y p. Columns of Y are requested when contacts need them, and are kept as long
 //! as the body responds with the same matrix.
@@ -13,8 +13,8 @@ pub trait Respond<const D: usize> {
     /// respond.
     fn matrix(&mut self, body: usize) -> Option<u64>;
     /// Computes the mean velocities over the step of all points of the body due to unit impulses along every axis at one point
-    /// [1/kg]: of point q along axis i due to an impulse along axis d, `out[q][d][i]`. Bodies and their points are numbered in
-    /// the order in which they were added. Returns whether this is known.
+    /// [1/kg]. `out[q][d][i]` is that of point q along axis i due to an impulse along axis d. Bodies and their points are
+    /// numbered in the order in which they were added. Returns whether this is known.
     fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool;
 }
 
@@ -81,7 +81,7 @@ impl<const D: usize> Coupled<D> {
         (body != NONE).then_some(body as usize)
     }
 
-    /// Whether a point belongs to such a body, however it responds in this step.
+    /// Whether a point belongs to such a body, regardless of how it responds in this step.
     pub(crate) fn has(&self, point: u32) -> bool {
         self.of_point.get(point as usize).is_some_and(|body| *body != NONE)
     }

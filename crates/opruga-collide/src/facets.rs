@@ -51,7 +51,7 @@ macro_rules! tree {
                 Some((out, facet as usize))
             }
             fn visit(&self, low: &[f64; D], high: &[f64; D], call: &mut dyn FnMut(usize)) {
-                // Compared here, so that the loop is compiled with the kernels of this crate.
+                // The comparison is made in this crate, so that the loop is compiled with its kernels.
                 let meets = |node: &$parry::partitioning::BvhNode| {
                     let (least, greatest) = (node.mins(), node.maxs());
                     $((least[$axis] <= high[$axis % D]) & (low[$axis % D] <= greatest[$axis]))&*
@@ -87,7 +87,7 @@ pub(crate) struct Facets<const D: usize> {
     /// The largest coordinates.
     pub(crate) high: [f64; D],
     half_width: f64,
-    /// The distance from the surface below which its direction is rounding [m]: nearer nodes are on the surface.
+    /// The distance from the surface [m] below which the direction to it is only rounding; nearer nodes are on the surface.
     grain: f64,
 }
 
@@ -143,7 +143,7 @@ impl<const D: usize> Facets<D> {
         out.grain = 0.01 * out.resolved();
         Ok(out)
     }
-    /// A distance whose direction is not rounding [m].
+    /// A distance that is large enough for its direction not to be rounding [m].
     fn resolved(&self) -> f64 {
         let mut far = 0.0;
         for d in 0..D {
@@ -188,7 +188,7 @@ impl<const D: usize> Facets<D> {
         {
             return found;
         }
-        // For a node on the surface, no direction leads to it.
+        // For a node on the surface, there is no direction to the surface.
         if gap <= self.grain || gap >= margin + reach {
             return (gap - margin, normal);
         }
@@ -207,7 +207,7 @@ impl<const D: usize> Facets<D> {
         };
         let away = subtract(x, &point);
         let distance = length(&away);
-        // On the surface itself its normal is used, towards the previous position of the node.
+        // On the surface itself, the normal of the surface is used, towards the previous position of the node.
         if distance <= self.grain {
             let facet = &self.facets[facet];
             let side = dot(&subtract(before, &facet.corner), &facet.normal);

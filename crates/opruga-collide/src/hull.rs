@@ -2,8 +2,8 @@
 
 use crate::vector::{dot, length, scaled, subtract};
 
-/// The faces of the convex hull as indices of points, with outward normals (2D: points counterclockwise, with the normal to the
-/// *left* of the direction of each face, so faces run clockwise). None if the hull has no area or volume.
+/// The faces of the convex hull as indices of points, with outward normals. In 2D the normal is to the *left* of the direction
+/// of each face, so faces run clockwise. None if the hull has no area or volume.
 pub(crate) fn faces<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; D]>> {
     let faces = if D == 2 { polygon(points)? } else { polyhedron(points)? };
     Some(
@@ -66,7 +66,8 @@ struct Face<const D: usize> {
     alive: bool,
 }
 
-/// The incremental hull: every point outside replaces the faces that are visible from it by faces to their rim.
+/// The incremental hull: for every point outside, the faces that are visible from it are replaced by faces between the point
+/// and their rim.
 fn polyhedron<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     let tolerance = 1e-10 * size(points);
     let farthest = |score: &dyn Fn(&[f64; D]) -> f64| {

@@ -20,7 +20,7 @@ pub struct Laws {
     pub class: Vec<u32>,
     /// The number of classes.
     pub classes: usize,
-    /// The number of these, the last ones, that are obstacles.
+    /// The number of classes that are obstacles; they are the last ones.
     pub obstacles: usize,
     /// The law of every pair of classes, row by row.
     pub table: Vec<PairLaw>,
@@ -30,8 +30,8 @@ pub struct Laws {
     pub rest_speed: f64,
     /// The speed at which overlapping bodies are separated [m/s].
     pub recovery_speed: f64,
-    /// The largest distance that surfaces of other bodies of the scene keep in contact [m], and the same with obstacles: so
-    /// bodies behave the same whichever other bodies exist.
+    /// The largest distance that surfaces of other bodies of the scene keep in contact [m], from bodies and from obstacles.
+    /// Because of these, the bodies behave in the same way whichever other bodies are present.
     pub thickest_elsewhere: [f64; 2],
 }
 
@@ -81,8 +81,8 @@ impl Laws {
         }
     }
 
-    /// Adds an obstacle: all bodies touch it with its law, at half of their own distance more; obstacles do not touch one
-    /// another.
+    /// Adds an obstacle. All bodies touch it with its law, at a distance that is increased by half of their own; obstacles do
+    /// not touch one another.
     pub fn add_obstacle(&mut self, law: PairLaw) {
         let (before, bodies) = (self.classes, self.classes - self.obstacles);
         let apart = PairLaw { touch: false, ..law };

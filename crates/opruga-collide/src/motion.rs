@@ -45,7 +45,7 @@ pub(crate) struct Carry<const D: usize> {
     to: [f64; D],
 }
 
-/// The pose of a collider at the end of a step, and its motion to there.
+/// The pose of a collider at the end of a step, and its motion during the step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<const D: usize> {
     pub(crate) pose: Pose<D>,

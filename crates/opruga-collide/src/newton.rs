@@ -1,4 +1,4 @@
-//! Impulses of contacts of coupled bodies, all at once: a semismooth Newton method.
+//! The impulses of all contacts of coupled bodies at once, by a semismooth Newton method.
 //!
 //! ```text
 //! motion    u = free + W λ                         W = G Y Gᵀ, the velocities of gaps by impulses
@@ -7,10 +7,11 @@
 //! ```
 //!
 //! A contact that is apart (a ≤ 0) has no impulse, one that sticks (|b| ≤ µ a) does not move, and one that slides has the full
-//! friction along b. The residuals of these laws are linear except at the borders between the cases, so Newton's method converges
-//! where sweeps let contacts alternate between sticking and sliding. Contacts are redundant, and W has no inverse: adding a
-//! fraction of its diagonal, on the change of the impulses, makes the solution unique (a proximal point). The next attempt
-//! removes the error of this term, with a smaller fraction if the present attempt has converged and with a larger one if not.
+//! friction along b. The residuals of these laws are linear except at the borders between the cases. So Newton's method
+//! converges even if sweeps let contacts alternate between sticking and sliding. Contacts are redundant, so W has no inverse. A
+//! fraction of its diagonal is added, which acts on the change of the impulses and makes the solution unique (a proximal
+//! point). The next attempt removes the error of this term, with a smaller fraction if the present attempt has converged and
+//! with a larger one if not.
 //!
 //! Source: P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, Computer Methods in
 //! Applied Mechanics and Engineering 92 (1991) 353–375; V. Acary, M. Brémond, O. Huber, On solving contact problems with Coulomb friction:
@@ -27,9 +28,10 @@ use opruga_math::{Lane, Simd, WIDTH};
 /// bodies with as many points.
 pub(crate) const MOST_UNKNOWNS: usize = 900;
 
-/// The fraction of the diagonal of W that restrains changes of impulses: initially and at least, and at most. It is increased if
-/// Newton's method did not converge, which makes the problem easier, and decreased if it did, so that the next impulses are
-/// closer to the solution. With a constant fraction, `a_cube_of_space_comes_to_its_balance_on_a_slab` does not converge.
+/// The fraction of the diagonal of W that restrains changes of impulses: its initial value, which is also its smallest one, and
+/// its largest value. It is increased if Newton's method did not converge, which makes the problem easier, and decreased if it
+/// did, so that the next impulses are closer to the solution. With a constant fraction,
+/// `a_cube_of_space_comes_to_its_balance_on_a_slab` does not converge.
 const LEAST_PROXIMAL: f64 = 1e-7;
 const MOST_PROXIMAL: f64 = 1.0;
 const FIRMER: f64 = 10.0;
@@ -46,13 +48,13 @@ const MOST_IN_VAIN: usize = 10;
 const MOST_ITERATIONS: usize = 30;
 const MOST_UPHILL: usize = 1;
 
-/// The largest number of halvings of a correction. If nothing helps, a tenth of it is taken: cases then change, and the residual
-/// may rise temporarily.
+/// The largest number of halvings of a correction. If none of them reduces the residual, a tenth of the correction is taken.
+/// Cases then change, and the residual may rise temporarily.
 const MOST_HALVINGS: usize = 12;
 const UPHILL: f64 = 0.1;
 
-/// The fraction of the tolerance to which Newton's method solves, so that the following sweep finds nothing to change. And the
-/// fraction of the initial squared residual below which the rest is rounding.
+/// The fraction of the tolerance to which Newton's method solves, so that the following sweep finds nothing to change; and the
+/// fraction of the initial squared residual below which the residual is rounding.
 const ENOUGH: f64 = 0.1;
 const ROUNDING: f64 = 1e-12;
 
@@ -71,7 +73,7 @@ struct Contact<const D: usize> {
 enum Case<const D: usize> {
     Apart,
     Sticks,
-    /// Along a direction; with the radius of the disc over the length of b.
+    /// It slides along a direction; also contains the ratio of the radius of the disc to the length of b.
     Slides([f64; D], f64),
 }
 
@@ -108,16 +110,16 @@ pub(crate) fn count_of<const D: usize>(row: &Row<D>) -> usize {
 /// The required accuracy of a solution.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
-    /// The largest change of its velocity by a turn of a contact at the end [m/s].
+    /// The largest change of velocity that a turn of a contact may make at the end [m/s].
     pub(crate) enough: f64,
-    /// Whether only sweeps continue if they have not converged at once, and how many at most; otherwise Newton's method completes
-    /// the solution.
+    /// The largest number of further sweeps, if only sweeps are used after they have not converged at once; if it is none,
+    /// Newton's method completes the solution.
     pub(crate) sweeps: Option<usize>,
 }
 
 /// Finds the impulses with which all contacts obey their laws: sweeps over all contacts, and Newton's method if these have not
-/// converged. Ends when no turn of a contact changes its velocity by more than `enough` [m/s], or when many consecutive attempts
-/// have hardly changed that. Returns the number of turns.
+/// converged. Ends when no turn of a contact changes its velocity by more than `enough` [m/s], or when many consecutive
+/// attempts have hardly reduced this change. Returns the number of turns.
 pub(crate) fn solve<const D: usize>(
     rows: &mut [Row<D>],
     spread: &Spread,
@@ -211,8 +213,8 @@ impl<const D: usize> Equations<D> {
         equations
     }
 
-    /// One turn of every contact: the normal impulse that its bound needs, then the friction that this allows. Velocities do not
-    /// include the restraining term. Returns the largest change of a velocity [m/s].
+    /// One turn of every contact: the normal impulse that its bound requires, then the friction that this impulse allows.
+    /// Velocities do not include the restraining term. Returns the largest change of a velocity [m/s].
     fn sweep(&self, impulses: &mut [f64], u: &mut [f64], back: bool) -> f64 {
         let change = |k: usize, by: f64, impulses: &mut [f64], u: &mut [f64]| {
             if by != 0.0 {
@@ -412,8 +414,8 @@ impl<const D: usize> Equations<D> {
         out.iter().all(|x| x.is_finite()).then_some(out)
     }
 
-    /// The impulses along a correction with a smaller residual, with halving; if none has, a tenth of the correction, with a
-    /// larger residual.
+    /// Finds impulses along a correction with a smaller residual by halving the correction. If there are none, takes a tenth of
+    /// the correction, with a larger residual.
     fn search(&self, from: &Trial, correction: &[f64]) -> (Trial, bool) {
         let change = self.by_changes(correction);
         let along = |x: &[f64], c: &[f64], part: f64| x.iter().zip(c).map(|(x, c)| x + part * c).collect();
@@ -512,7 +514,7 @@ mod tests {
         let mut v = vec![[0.0; 3], [1.0, 0.0, 5.0]];
         solved(&mut rows, &inverse_mass, &mut v);
         assert!(rows.iter().all(|row| row.impulse() == [0.0; 3]), "{rows:?}");
-        // The effect of the two impulses is taken back.
+        // The effect of the two impulses is undone.
         assert!((v[1][2] - 3.0).abs() < 1e-12 && v[1][0] == 1.0, "{v:?}");
     }
 }

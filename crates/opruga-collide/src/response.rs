@@ -32,7 +32,7 @@ pub(crate) struct Meeting<S, const D: usize> {
     pub(crate) x: [S; D],
     /// Velocity after it [m/s].
     pub(crate) v: [S; D],
-    /// Position before it, carried along with the collider [m].
+    /// Position before the free motion, carried along with the collider [m].
     pub(crate) before: [S; D],
     /// Position before it [m].
     pub(crate) from: [S; D],
@@ -46,7 +46,7 @@ pub(crate) struct Meeting<S, const D: usize> {
     pub(crate) normal: [S; D],
     /// Velocity of the collider at the node [m/s].
     pub(crate) obstacle: [S; D],
-    /// Whether another contact is already active at the node in this step: above 0.
+    /// Above 0 if another contact is already active at the node in this step.
     pub(crate) active: S,
     /// The substep [s].
     pub(crate) h: S,
@@ -54,10 +54,10 @@ pub(crate) struct Meeting<S, const D: usize> {
 
 /// The node after contact, and its energy balance.
 ///
-/// The obstacle gives an impulse J, and the force F has given hF. With v₀ before the step, v₁ after it and v̄ = ½(v₀ + v₁), the
-/// kinetic energy changes by exactly (J + hF)·v̄; J·v̄ is the work of the motion of the obstacle minus the two losses. The
-/// potential energy changes by −F·(x₁ − x₀), of which hF·v̄ has become kinetic energy; the rest is the effect of moving the node
-/// back to the surface. So a node at rest exchanges no energy, however large the step.
+/// The obstacle gives an impulse J, and the force F has given the impulse hF. With v₀ before the step, v₁ after it and v̄ =
+/// ½(v₀ + v₁), the kinetic energy changes by exactly (J + hF)·v̄; J·v̄ is the work of the motion of the obstacle minus the two
+/// losses. The potential energy changes by −F·(x₁ − x₀), of which hF·v̄ has become kinetic energy; the rest is the effect of
+/// moving the node back to the surface. So a node at rest exchanges no energy, however large the step.
 pub(crate) struct Parting<S, const D: usize> {
     /// Position [m].
     pub(crate) x: [S; D],
@@ -73,7 +73,7 @@ pub(crate) struct Parting<S, const D: usize> {
     pub(crate) correction: S,
 }
 
-/// The distance [m] below which a gap is only rounding.
+/// The distance [m] below which a gap consists of rounding errors.
 ///
 /// It has an upper bound that does not depend on the node, so that a whole tile can be skipped with one comparison.
 #[inline(always)]
@@ -95,10 +95,10 @@ pub(crate) fn largest_rounding(law: &Law) -> f64 {
 
 /// Whether there is contact: the node is inside, or on the surface and approaching, in both cases by more than rounding.
 ///
-/// So a node that reaches the surface exactly meets it in this step, and not as a resting node in the next.
+/// So a node that reaches the surface exactly meets it in this step, and not in the next step as a node at rest.
 #[inline(always)]
 pub(crate) fn meets<S: Lane, const D: usize>(law: &Law, node: &Meeting<S, D>) -> S::Mask {
-    // At the origin a node has the rounding of its previous position.
+    // A node at the origin has the rounding error of its previous position.
     let small = rounding(law, &node.x).larger(rounding(law, &node.before));
     let coming = -dot(&subtract(&node.v, &node.obstacle), &node.normal) * node.h;
     let inside = node.gap.less(S::select(small.less(coming), small, -small));
@@ -129,8 +129,8 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     if law.restitution > 0.0 {
         let mut bounces = S::splat(law.rest_speed).less(speed);
         if law.rest_speed > 0.0 {
-            // The force acts for the whole step, but the node meets the surface within it: an obstacle returns no more than came
-            // in, u² + 2 a g with the speed u and the gap g before the step.
+            // The force acts for the whole step, but the node meets the surface within it: an obstacle returns no more than the
+            // square of the incoming speed, u² + 2 a g, with the speed u and the gap g before the step.
             let pull = S::select(weighs, -dot(&node.force, &node.normal) / node.mass, zero);
             let came = speed - pull * node.h;
             let reach = node.h * came.larger(speed).larger(zero) + (small + small);
@@ -144,14 +144,14 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     let back = e * met;
     let change = back + speed;
 
-    // Out along the normal; without friction the motion along the surface does not change in any bit.
+    // Moves the node out along the normal. Without friction the motion along the surface does not change in any bit.
     let mut x = choose(hit, &subtract(&node.x, &scaled(&node.normal, node.gap)), &node.x);
     let mut v = add(&node.v, &scaled(&node.normal, change));
     // Half of the velocity due to the force.
     let given = scaled(&node.force, S::select(weighs, half * node.h / node.mass, zero));
     let mut loss_friction = zero;
     if law.friction > 0.0 {
-        // Coulomb: the tangential change is at most µ times the normal one, and at most stops the sliding.
+        // Coulomb's law: the tangential change is at most µ times the normal one, and at most stops the sliding.
         let slide = lanes!(S, d => u[d] - un * node.normal[d]);
         let pace = length(&slide);
         let most = S::splat(law.friction) * change;

@@ -4,7 +4,7 @@ use crate::motion::Pose;
 use crate::vector::{add, choose, dot, length, scaled, splat, subtract, turned};
 use opruga_math::{Lane, lanes};
 
-/// A solid with a signed distance, negative inside.
+/// A solid with a signed distance, which is negative inside.
 pub(crate) trait Shape<const D: usize>: Sized {
     /// Half of the smallest width [m]; a node that moves farther in one step could come out on the far side.
     fn half_width(&self) -> f64;
@@ -15,7 +15,7 @@ pub(crate) trait Shape<const D: usize>: Sized {
     /// Whether it is bounded by flat faces, which meet in edges.
     const FACES: bool = false;
     /// Calls back with the flat faces on which a point on the surface is, to within `grain` [m]: its height above each, and the
-    /// normal; with none if there are no flat faces.
+    /// normal; if there are no flat faces, it does not call back.
     fn visit_faces(&self, _x: &[f64; D], _grain: f64, _visit: &mut dyn FnMut(f64, [f64; D])) {}
 }
 
@@ -28,12 +28,12 @@ pub(crate) struct Met<const D: usize> {
     pub(crate) behind: f64,
     /// The number of faces on which the node is.
     pub(crate) faces: usize,
-    /// The number of these behind which its path leads.
+    /// The number of these faces behind which its path leads.
     pub(crate) entered: usize,
 }
 
 impl<const D: usize> Met<D> {
-    /// The face that a node meets on its path from `x`, which keeps the distance `margin` from a shape to within `close`.
+    /// The face that a node meets on its path from `x`. The node keeps the distance `margin` from a shape, to within `close`.
     fn of<T: Shape<D>>(shape: &T, margin: f64, x: &[f64; D], displacement: &[f64; D], close: f64) -> Met<D> {
         let (height, normal) = shape.gap_and_normal(x);
         let nearest = Met { height: height - margin, normal, behind: f64::INFINITY, faces: 0, entered: 0 };
@@ -47,7 +47,7 @@ impl<const D: usize> Met<D> {
             met.faces += 1;
             met.entered += usize::from(along < 0.0);
         };
-        // At a distance there are no edges: a margin rounds them.
+        // If there is a margin, it rounds the edges, so there are none.
         if margin <= close {
             shape.visit_faces(x, 2.0 * close, &mut add);
         }
@@ -206,7 +206,7 @@ impl<const D: usize> Cuboid<D> {
         }
         Cuboid { center: pose.transform(&self.center), axes, half: self.half }
     }
-    /// The corner in the directions that the bits of a number select.
+    /// The corner that the bits of a number select, one bit for each axis.
     pub(crate) fn corner(&self, bits: usize) -> [f64; D] {
         let mut out = self.center;
         for d in 0..D {
@@ -266,7 +266,7 @@ impl<const D: usize> Shape<D> for Cuboid<D> {
         }
         let distance = length(&outside);
         outside = scaled(&outside, S::one() / distance);
-        // A distance too short for a direction counts as one from the face.
+        // A distance that is too short to have a direction counts as a distance from the face.
         let is_outside = S::splat(1e-150).less(distance);
         let mut normal = [S::zero(); D];
         for d in 0..D {
@@ -292,8 +292,8 @@ pub(crate) fn is_on_edge<T: Shape<D>, const D: usize>(shape: &T, margin: f64, x:
 }
 
 /// The contact on its path to `b` of a node that was on a surface at `a`, to within `small` [m]: the distance of `b` behind the
-/// tangent plane (negative) and the normal. None if the node was elsewhere or does not enter; nor on an edge, if more than one
-/// face is in its way, or if another contact, already `active`, leads it along one of the faces.
+/// tangent plane (negative) and the normal. None if the node was not on the surface or does not enter. Also none on an edge, if
+/// more than one face is in its way, or if another contact that is already `active` moves it along one of the faces.
 #[inline(never)]
 pub(crate) fn support<T: Shape<D>, const D: usize>(
     shape: &T,

@@ -7,7 +7,7 @@ use opruga_core::spec::{Allowed, Condition, Default, Field, Role, Spec};
 const NO: Default = Default::Boolean(false);
 const ZERO: Default = Default::Number(0.0);
 
-/// Writes the specification of one kind for one dimension: its own fields, then those that every collider has.
+/// Writes the specification of one kind for one dimension: its own fields, then the fields that every collider has.
 macro_rules! collider {
     ($(#[$note:meta])* $name:ident, $kind:literal, $dimension:literal, $turn:expr, $roles:expr, $summary:literal, $documentation:expr; $($own:expr),+ $(,)?) => {
         $(#[$note])*

@@ -1,4 +1,4 @@
-//! Impulses of the active contacts, all at once: conjugate gradients between sweeps.
+//! The impulses of all active contacts at once, by conjugate gradients between sweeps.
 //!
 //! A sweep passes an impulse on from contact to contact. For coupled bodies, such as those of implicit integrators, a sweep
 //! removes only a part of slow errors, such as a pressure that varies along a side. As long as the same contacts are active, the
@@ -15,16 +15,18 @@ use core::ops::Range;
 use opruga_core::dense::Dense;
 use opruga_math::{Lane, Simd, WIDTH, sum_in_fixed_order};
 
-/// The fraction of the velocities that conjugate gradients leave. With 1e-3 the rows `contact-patch-…` miss 1e-6.
+/// The fraction of the velocities that conjugate gradients leave. With 1e-3, the errors of the rows `contact-patch-…` exceed
+/// 1e-6.
 const LEFT: f64 = 1e-4;
 
-/// An active contact. Its unknowns are the changes of its impulse along its normal and, if it sticks, along the axes across it.
+/// An active contact. Its unknowns are the changes of its impulse along its normal and, if it sticks, along the axes
+/// perpendicular to it.
 struct Active {
     row: usize,
     unknowns: Range<usize>,
 }
 
-/// The fractions of a change of the impulse up to which a contact presses and sticks; infinite if it does so throughout.
+/// The fractions of a change of the impulse up to which a contact presses and sticks; infinite if it does so for any fraction.
 fn reach<const D: usize>(row: &Row<D>, sticks: bool, change: &[f64; D]) -> (f64, f64) {
     let more = dot(change, &row.normal);
     let presses = if more < 0.0 { -row.normal_impulse / more } else { f64::INFINITY };
@@ -241,7 +243,7 @@ pub(crate) mod tests {
         v[0] = [0.0; 2];
         step(&mut rows, &Spread::default(), &inverse_mass, &mut Coupled::default(), &mut v);
         assert!(v.iter().flatten().all(|v| v.abs() < 1e-3), "{v:?}");
-        // Each carries those above it, in addition to its previous impulse.
+        // Each contact carries the points above it, in addition to its previous impulse.
         assert!(rows.iter().enumerate().all(|(k, row)| (row.normal_impulse - 1.0 - (39 - k) as f64).abs() < 0.1));
     }
 

@@ -1,4 +1,4 @@
-//! The surface of deformable bodies: the features that touch.
+//! The surface of deformable bodies: the features that take part in contact.
 
 use crate::outline::Outline;
 use opruga_mesh::{Carrier, Mesh, TouchingSurface};
@@ -22,10 +22,11 @@ pub struct Surface<const D: usize> {
     pub sides: Vec<[u32; 2]>,
     /// The start of the points, facets, edges and vertices of each body. Points before its vertices only carry others.
     starts: Vec<[u32; 4]>,
-    /// The points that others carry, ascending, and their carriers: points that move by themselves.
+    /// The points that are carried by others, ascending, and their carriers, which are points that move by themselves.
     carried: Vec<u32>,
     carriers: Vec<Carrier>,
-    /// Which bodies touch faces of obstacles, by their number in the order of addition; in the others, obstacles hold the nodes.
+    /// Whether each body, in the order of addition, touches faces of obstacles with its vertices; otherwise obstacles hold its
+    /// nodes.
     touch_faces: Vec<bool>,
     /// The first body that is an obstacle, and its first point.
     obstacles: Option<[u32; 2]>,
@@ -45,7 +46,7 @@ impl<const D: usize> Surface<D> {
         self.range(number, 0, self.points())
     }
 
-    /// The touching points of a body: all but those that only carry others.
+    /// The points of a body that take part in contact: all except those that only carry others.
     pub fn vertices_of(&self, number: usize) -> core::ops::Range<usize> {
         let points = self.points_of(number);
         self.starts.get(number).map_or(points.end, |start| start[3] as usize)..points.end

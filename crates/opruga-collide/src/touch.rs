@@ -14,9 +14,10 @@ use opruga_math::Lane;
 pub(crate) struct NodePath<'a, const D: usize> {
     pub(crate) from: &'a [f64; D],
     pub(crate) to: &'a [f64; D],
-    /// Its end position if the surface on which it was holds it: this determines the face through which it meets another solid.
+    /// Its end position if it is held by the surface on which it was. This determines the face through which it meets another
+    /// solid.
     pub(crate) kept: [f64; D],
-    /// The faces of solids on which it would be: where two solids meet, these include opposite faces.
+    /// The faces of solids on which it would be. If two solids meet, these include opposite faces.
     pub(crate) faces: Faces<D>,
     pub(crate) time: f64,
     pub(crate) h: f64,
@@ -31,7 +32,7 @@ pub(crate) struct Faces<const D: usize> {
     count: usize,
 }
 
-/// The largest number of faces that are examined, more than meet in a corner of several boxes.
+/// The largest number of faces that are examined, which is more than meet in a corner of several boxes.
 const MOST_FACES: usize = 16;
 
 impl<const D: usize> Faces<D> {
@@ -65,7 +66,7 @@ struct Seen<'a, const D: usize> {
 }
 
 impl<const D: usize> NodePath<'_, D> {
-    /// Lets a collider hold the node if it was on it at the start.
+    /// Lets a collider hold the node if the node was on it at the start.
     pub(crate) fn keep(&mut self, collider: &Collider<D>) {
         let frame = collider.still.unwrap_or_else(|| Frame::new(&collider.motion, self.time, self.h));
         let Frame { pose, carry } = &frame;
@@ -189,8 +190,8 @@ impl<const D: usize> Seen<'_, D> {
         (found.0 <= self.reach).then_some((found.0, before, found.1))
     }
 
-    /// Where solids meet: of the faces at a point that no other solid adjoins, the height above the one that the path opposes
-    /// most, and its normal.
+    /// If solids meet: considers the faces at a point that no other solid adjoins, and returns the height above the face that
+    /// the path opposes most, and its normal.
     fn open_face<T: Shape<D>>(
         &self,
         shape: &T,

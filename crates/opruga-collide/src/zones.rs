@@ -46,7 +46,7 @@ impl<const D: usize> Led<D> {
 pub(crate) struct Zone<const D: usize> {
     center: [f64; D],
     velocity: [f64; D],
-    /// About the three axes; in the plane only about the third.
+    /// The angular velocity about the three axes; in the plane only about the third.
     spin: [f64; 3],
     pub(crate) led: Led<D>,
 }
@@ -60,8 +60,8 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 impl<const D: usize> Zone<D> {
-    /// The motion with the momentum of the points along all axes that are not prescribed and, if none is, with their angular
-    /// momentum.
+    /// The motion that has the momentum of the points along all axes that are not prescribed and, if no axis is prescribed,
+    /// their angular momentum.
     pub(crate) fn of(
         points: &[u32],
         x: &[[f64; D]],
@@ -93,7 +93,7 @@ impl<const D: usize> Zone<D> {
         out
     }
 
-    /// ω from the angular momentum; zero about an axis through all points.
+    /// ω from the angular momentum; its component about an axis through all points is zero.
     fn spin_of(&self, points: &[u32], x: &[[f64; D]], v: &[[f64; D]], inverse_mass: &[[f64; D]]) -> [f64; 3] {
         let (mut inertia, mut momentum) = ([[0.0; 3]; 3], [0.0; 3]);
         for p in points {

@@ -53,7 +53,7 @@ impl<W: Write> core::fmt::Debug for GifWriter<W> {
 }
 
 impl<W: Write> GifWriter<W> {
-    /// Begins an animation that repeats forever, with a palette made from sample frames.
+    /// Begins an animation that repeats for ever, with a palette made from sample frames.
     ///
     /// # Errors
     /// [`DrawError`] if there is no sample, if an image is larger than a GIF may be, or if `out` cannot be written.

@@ -184,7 +184,7 @@ impl Studio {
         self.canvas.on_screen(&self.link.shown(), point)
     }
 
-    /// Whether a picture of space is still being drawn.
+    /// Whether a picture in space is still being drawn.
     pub fn is_drawing(&self) -> bool {
         self.canvas.is_drawing() || self.gallery.is_drawing() || self.keeping.is_working()
     }

@@ -162,7 +162,7 @@ fn window(arguments: &[OsString], kept: Option<&Path>, saved: Option<&str>) -> s
 
 /// Waits for the end of a window. A window that does not end when it is asked to is killed.
 fn wait(mut child: Child, end: &AtomicBool) -> std::io::Result<ExitStatus> {
-    // Waiting on the child would close its input, and thus end it.
+    // Waiting for the child would close its input, and thus end it.
     let mut input = child.stdin.take();
     let mut asked: Option<Instant> = None;
     loop {
@@ -191,7 +191,7 @@ fn save(kept: &Path, registries: &Registries) -> Option<String> {
     written.ok()?.first().map(|path| path.display().to_string())
 }
 
-/// A folder that nobody else can have made, with the file in it. It is removed with this value if it contains nothing else.
+/// A folder that no one else can have made, with the file in it. It is removed with this value if it contains nothing else.
 struct Kept(PathBuf);
 
 impl Kept {
@@ -243,7 +243,7 @@ mod tests {
             (Some(0), None, Next::End(0)),
             (Some(2), None, Next::End(2)),
             (Some(5), None, Next::End(5)),
-            // The screen is gone, a panic, a driver that aborts, a driver that reads an invalid address.
+            // The screen is gone, the program panics, a driver aborts, or a driver reads an invalid address.
             (Some(1), None, Next::Lost),
             (Some(101), None, Next::Lost),
             (Some(i32::from(LOST)), None, Next::Lost),

@@ -1,5 +1,5 @@
-//! Work in the background, such as films and thumbnails: on a thread of its own or, in a browser, which has none, in slices between two pictures of
-//! the window.
+//! Work in the background, such as films and thumbnails. It is done on its own thread or, in a browser, which has no threads, in slices between two
+//! pictures of the window.
 
 use std::sync::mpsc::Receiver;
 
@@ -24,13 +24,13 @@ mod threaded {
     pub fn spawn<T: Send + 'static>(work: impl Future<Output = T> + Send + 'static) -> Receiver<T> {
         let (sender, receiver) = channel();
         std::thread::spawn(move || {
-            // Nobody waits any more if the window was closed.
+            // If the window was closed, the result is no longer needed.
             let _ = sender.send(finish(work));
         });
         receiver
     }
 
-    /// Does the work completely. It never waits here, because [`breathe`] returns at once.
+    /// Does the work completely. It never waits, because [`breathe`] returns at once.
     pub fn finish<T>(work: impl Future<Output = T>) -> T {
         let mut work = pin!(work);
         let mut context = Context::from_waker(Waker::noop());
@@ -42,7 +42,7 @@ mod threaded {
         }
     }
 
-    /// A point in long work at which the interface has its turn; nothing happens here, because the work has its own thread.
+    /// A point in long work at which the interface has its turn. It does nothing, because the work has its own thread.
     pub async fn breathe() {}
 }
 

@@ -72,7 +72,7 @@ pub(crate) fn octant<const D: usize>(
         t.map(|c| c / length)
     };
     let core = |s: &[f64; D]| -> [f64; D] {
-        // Halfway between a cube and a ball, so that no angle becomes flat.
+        // The shape is halfway between a cube and a ball, so that no angle becomes flat.
         let most = s.iter().copied().fold(0.0, f64::max);
         let round = if most > 0.0 { direction(&s.map(|c| c / most)) } else { [0.0; D] };
         core::array::from_fn(|d| 0.5 * outer * (0.6 * s[d] / (D as f64).sqrt() * 1.4 + 0.4 * most * round[d]))
@@ -174,7 +174,7 @@ pub(crate) fn symmetric<const D: usize>(mesh: &Mesh<D>) -> String {
     format!("pin = [{}]", rows.join(", "))
 }
 
-/// The displacement of the node of body 0 that is nearest to a rest position.
+/// The displacement of the node of body 0 that is nearest to a given rest position.
 pub(crate) fn displacement<const D: usize>(world: &World<D>, at: [f64; D]) -> [f64; D] {
     let rest = &world.blueprint().bodies[0].mesh.positions;
     let far = |x: &[f64; D]| (0..D).map(|d| (x[d] - at[d]) * (x[d] - at[d])).sum::<f64>();

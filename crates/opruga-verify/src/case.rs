@@ -2,7 +2,7 @@
 
 use crate::lab::{Lab, Trouble};
 
-/// The largest difference by which the observed order may fall below the theoretical one.
+/// The largest amount by which the observed order may be below the theoretical one.
 pub(crate) const ORDER_MARGIN: f64 = 0.2;
 
 /// The area of mechanics to which a case belongs.
@@ -107,7 +107,7 @@ pub struct Case {
     pub check: Check,
     /// Whether it takes only a moment, so that the tests of the program run it.
     pub quick: bool,
-    /// Runs a scene at a level and measures.
+    /// Runs a scene at a level and measures the quantity.
     pub measure: fn(&Lab, f64) -> Result<f64, Trouble>,
 }
 

@@ -103,7 +103,7 @@ fn over_parameter(row: &Row) -> Result<String, DrawError> {
             },
             Line {
                 name: "measured".into(),
-                // A gap after each point: the line shows the expected values.
+                // There is a gap after each point, because the line shows the expected values.
                 points: of(|p| p.computed).into_iter().flat_map(|point| [point, [f64::NAN; 2]]).collect(),
                 marker: Some(Marker::Circle),
                 ..Line::default()

@@ -107,7 +107,7 @@ mod tests {
         let held = GATE.lock().unwrap_or_else(PoisonError::into_inner);
         let cases: Vec<&'static Case> = CASES.iter().collect();
         let stop = AtomicBool::new(false);
-        // Would wait forever for the second case, which ends only when the gate is open.
+        // Without the request to stop, this would wait for ever for the second case, which ends only when the gate is open.
         let rows = run_all(&cases, &Lab::default(), 1, &stop, &|_| stop.store(true, Ordering::Relaxed));
         assert_eq!(rows.iter().map(|row| row.case.name).collect::<Vec<_>>(), ["quick"]);
         drop(held);

@@ -1,4 +1,5 @@
-//! Encodes images as the pictures of a stream. The encoder also draws what a decoder draws, so that errors do not accumulate.
+//! Encodes images as the pictures of a stream. The encoder also reconstructs the pictures that a decoder shows, so that errors
+//! do not accumulate.
 
 use super::bits::{Bits, Unit, pack, se_bits};
 use super::frame::{BLOCK, Frame};
@@ -31,7 +32,7 @@ pub(crate) struct Encoder {
     /// The pixels of the last image.
     last: Vec<u8>,
     source: Frame,
-    /// The previous frame as a decoder has drawn it, and the present one as it draws it.
+    /// The previous frame and the present one, as a decoder reconstructs them.
     before: Frame,
     drawn: Frame,
     quantisers: Quantisers,
@@ -131,7 +132,7 @@ impl Encoder {
                 for (x, (part, last)) in line.chunks(4 * BLOCK).zip(last.chunks(4 * BLOCK)).enumerate() {
                     if part != last {
                         flags[x] = true;
-                        // The chroma at the left edge of a macroblock depends on the pixel to the left of it.
+                        // The chroma at the left edge of a macroblock depends on the pixel to the left of the macroblock.
                         if let Some(next) = flags.get_mut(x + 1) {
                             *next = true;
                         }
@@ -159,13 +160,13 @@ impl Encoder {
             bits.flag(false);
             bits.flag(false);
         } else {
-            // One earlier picture, in default order, and the oldest one is dropped.
+            // There is one earlier picture, in default order, and the oldest one is dropped.
             bits.flag(false);
             bits.flag(false);
             bits.flag(false);
         }
         bits.se(0);
-        // No deblocking: lines and letters stay sharp.
+        // There is no deblocking, so lines and letters stay sharp.
         bits.ue(1);
     }
 

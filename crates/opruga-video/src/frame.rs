@@ -58,8 +58,8 @@ impl Frame {
 
     /// Copies a macroblock from an image, whose last column and row are repeated beyond its edge.
     ///
-    /// The colours are converted to BT.709 in the limited range. As decoders expect, a chroma sample is at the left one of its two columns, and
-    /// between its two rows.
+    /// The colours are converted to BT.709 in the limited range. As decoders expect, a chroma sample is at the left of its two columns, and between
+    /// its two rows.
     pub(crate) fn take(&mut self, image: Image<'_>, [x, y]: [usize; 2]) {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let pixels = image.pixels();

@@ -14,7 +14,7 @@ const fn join<const N: usize>(lengths: [u8; N], values: [u8; N]) -> [Code; N] {
     codes
 }
 
-/// The number of levels by the number of trailing ones, for neighbours with few, some and many levels.
+/// Codes of the number of levels, by the number of trailing ones, for neighbours with few, some and many levels.
 pub(crate) const COUNTS: [[[Code; 17]; 4]; 3] = [
     [
         join(

@@ -6,10 +6,10 @@ pub(crate) type Block = [i32; 16];
 /// The order in which the numbers of a block are coded.
 pub(crate) const ZIGZAG: [usize; 16] = [0, 1, 4, 8, 5, 2, 3, 6, 9, 12, 13, 10, 7, 11, 14, 15];
 
-/// The largest level: larger ones have no code in this profile.
+/// The largest level. Larger levels have no code in this profile.
 const LARGEST: i32 = 2063;
 
-/// Multipliers of the quantiser: at even rows and columns, at odd ones, and for one even and one odd.
+/// Multipliers of the quantiser: if row and column are both even, if both are odd, and if one is even and one is odd.
 const SCALES: [[i32; 3]; 6] = [
     [13107, 5243, 8066],
     [11916, 4660, 7490],
@@ -87,7 +87,7 @@ impl Quantiser {
         }
     }
 
-    /// Replaces the levels of sixteen DC values by the first numbers of the blocks.
+    /// Replaces the sixteen quantised DC levels by the first coefficients of the sixteen blocks.
     pub(crate) fn restore_sixteen(&self, sums: &mut Block) {
         hadamard(sums);
         for sum in sums.iter_mut() {
@@ -96,7 +96,7 @@ impl Quantiser {
         }
     }
 
-    /// Replaces the levels of four DC values by the first numbers of the blocks.
+    /// Replaces the four quantised DC levels by the first coefficients of the four blocks.
     pub(crate) fn restore_four(&self, sums: &mut [i32; 4]) {
         hadamard_four(sums);
         for sum in sums.iter_mut() {

@@ -21,7 +21,7 @@ fn damped(damping: f64) -> String {
     if damping == 0.0 { String::new() } else { format!(", damping {} 1/s", number(damping)) }
 }
 
-/// A hint for a body that may fall forever.
+/// A hint for a body that may fall for ever.
 fn falls(range: Option<f64>) -> &'static str {
     match range {
         Some(_) => "; `world.largest_distance` removes bodies that fall for ever",

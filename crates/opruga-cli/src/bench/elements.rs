@@ -1,8 +1,8 @@
 //! `opruga bench elements`: forces and Hessians of every method of the survey.
 //!
-//! The subject is a bent cube of tetrahedra, hexahedra or quadratic tetrahedra, or a bent ring; one thread. Hessians are added to the matrix of a
-//! solver, in which the positions of their blocks are known after the first time. Finite volumes, finite differences and shape matching are shown
-//! next to the existing model with which they are compared, measured in the same run.
+//! The body is a bent cube of tetrahedra, hexahedra or quadratic tetrahedra, or a bent ring, on one thread. Hessians are added to the matrix of a
+//! solver, which knows the positions of their blocks after the first time. Finite volumes, finite differences and shape matching are shown next to
+//! the existing model with which they are compared, measured in the same run.
 
 use super::{Machine, best};
 use crate::arguments::BenchElements;
@@ -25,7 +25,7 @@ struct Row {
     element: &'static str,
     elements: usize,
     material: &'static str,
-    /// For each set of vector instructions.
+    /// Times of the forces for each set of vector instructions.
     forces: Vec<(&'static str, f64)>,
     hessian: f64,
     clamped_hessian: f64,
@@ -70,7 +70,7 @@ pub(crate) fn bench(call: &BenchElements, registries: &Registries) -> Result<u8,
     for (element, mesh) in [("tetrahedron", &tetrahedra), ("hexahedron", &boxes), ("quadratic tetrahedron", &quadratic)]
     {
         for &material in names {
-            // The other elements only once: they evaluate the same material at more points.
+            // Other elements are measured with one material only, because they evaluate the same material at more points.
             let wanted = call.material.as_deref().unwrap_or("neo_hookean");
             if material != wanted && (element != "tetrahedron" || call.material.is_some()) {
                 continue;
@@ -112,7 +112,7 @@ fn modulus() -> (&'static str, Value) {
 /// Vertices of the rings.
 const RING: u32 = 4096;
 
-/// The other methods, each with the existing model with which it is compared.
+/// Measures the other methods, each with the existing model with which it is compared.
 fn survey(registries: &Registries, boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<(), Failure> {
     let Registries { plane, space } = registries;
     let refused = |error: opruga::mesh::MeshError| Failure::call(error);

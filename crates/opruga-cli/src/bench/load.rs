@@ -1,5 +1,5 @@
-//! `opruga bench load`: how long it takes to make a body from a file with many triangles, compared with reading its bytes, and to make a world of it,
-//! with springs along its edges and the estimate of the stable step.
+//! `opruga bench load`: measures how long it takes to make a body from a file with many triangles, compared with reading the bytes of the file, and
+//! to make a world with this body, including springs along its edges and the estimate of the stable step.
 
 use super::{Machine, median, processor_time};
 use crate::arguments::BenchLoad;

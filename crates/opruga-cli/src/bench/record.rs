@@ -40,7 +40,7 @@ fn of_scene(call: &BenchRecord, opened: &Opened, path: &Path) -> Result<u8, Fail
         let mut world = new()?;
         let failed = |error: WorldError, world: &dyn AnyWorld| source.frame_error(&error, world, reading);
         let start = now();
-        // Each of a pair comes first equally often.
+        // Each run of a pair comes first equally often.
         if round % 4 == 0 || round % 4 == 3 {
             for _ in 0..frames {
                 world.frame().map_err(|error| failed(error, &*world))?;

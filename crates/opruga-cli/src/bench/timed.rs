@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub(crate) struct Spent {
     /// Forces and energies.
     pub(crate) forces: AtomicU64,
-    /// Second derivatives and their addition to the matrix.
+    /// The time of second derivatives and of their addition to the matrix.
     pub(crate) matrices: AtomicU64,
 }
 

@@ -20,7 +20,7 @@ pub(crate) struct Row {
     threads: usize,
     simd: &'static str,
     integrator: String,
-    /// Median over the repetitions: processor time with one thread, wall time with several.
+    /// The median over the repetitions: processor time with one thread, wall-clock time with several.
     nanoseconds_per_vertex_step: f64,
     steps_per_second: f64,
     /// Frames of 16 steps, including drawing if it was requested.
@@ -69,8 +69,8 @@ fn values(spec: &'static opruga::core::spec::Spec, fields: &[(&str, Value)]) -> 
     values
 }
 
-/// Rings as in the baseline: masses of 1 kg, edges of 0.1 m, k = 1600 N/m, c = 40 N·s/m, a gas that pulls every edge with 160 N at rest, and a floor
-/// below. They start 60 m above it and are in flight while they are measured.
+/// Rings as in the baseline: masses of 1 kg, edges of 0.1 m, k = 1600 N/m, c = 40 N·s/m, a gas that stretches every edge with 160 N at rest, and a
+/// floor below. They start 60 m above it and are in flight while they are measured.
 pub(crate) fn rings(
     (bodies, vertices): (usize, usize),
     registry: &Registry<2>,

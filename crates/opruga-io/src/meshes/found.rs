@@ -216,7 +216,7 @@ impl Found {
     }
 }
 
-/// Whether values with this number of components are kept for every node: numbers, and vectors of the plane and of space. Tensors are not used.
+/// Whether values with this number of components are kept for every node: numbers, and vectors in the plane and in space. Tensors are not used.
 pub(super) fn is_kept(components: u64) -> bool {
     (1..=3).contains(&components)
 }

@@ -183,7 +183,7 @@ impl Drop for RecordingFile {
     }
 }
 
-/// Syncs a file to the disk every five seconds, on a thread of its own, because disks may take long for it.
+/// Syncs a file to the disk every five seconds, on its own thread, because disks may take long for it.
 struct Syncing {
     stop: Sender<()>,
     thread: JoinHandle<io::Result<()>>,

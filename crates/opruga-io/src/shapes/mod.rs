@@ -102,9 +102,9 @@ enum Content {
     Outline(drawing::Outline),
     /// A surface at its final size, the edge length to which it is remeshed, and its filling.
     Surface { mesh: Box<Mesh<3>>, remesh: Option<f64>, filling: Option<Filling> },
-    /// Cells of the plane.
+    /// Cells in the plane.
     Plane(Box<Mesh<2>>),
-    /// Cells of space.
+    /// Cells in space.
     Space(Box<Mesh<3>>),
 }
 

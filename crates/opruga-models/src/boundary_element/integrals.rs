@@ -1,4 +1,4 @@
-//! Integrals of Kelvin's solution over one side: an edge of the plane, a triangle of space.
+//! Integrals of Kelvin's solution over one side: an edge in the plane, a triangle in space.
 //!
 //! If the source lies on the side, the side is divided into parts with their apex at the source, r = s ρ(t). Then neither U dS
 //! nor T (u(y) − u(ξ)) dS depends on s, and the integral over s is computed analytically. The remaining integrand is smooth in
@@ -43,7 +43,7 @@ struct Piece<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Integrator<const D: usize> {
     pub(super) kelvin: Kelvin,
-    /// The distance, in sizes of a piece, from which a rule is accurate enough; descending.
+    /// The distance, relative to the size of the piece, from which a rule is accurate enough; descending.
     rules: Vec<(f64, SimplexRule<D>)>,
     along: Rule,
 }
@@ -204,7 +204,7 @@ impl<const D: usize> Integrator<D> {
     }
 }
 
-/// A lower bound of the distance of a source from a piece, in sizes of the piece.
+/// A lower bound of the distance of a source from a piece, relative to the size of the piece.
 fn distance<const D: usize>(source: &[f64; D], piece: &Piece<D>) -> f64 {
     let center: [f64; D] =
         core::array::from_fn(|d| piece.corners.iter().map(|corner| corner[d]).sum::<f64>() / D as f64);

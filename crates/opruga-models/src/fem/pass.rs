@@ -389,7 +389,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> StencilPacks<D> for Matrice
     }
 }
 
-/// Deformation gradients in space without motion across the plane.
+/// Deformation gradients in space without motion out of the plane.
 fn raise<const D: usize>(plane: &[f64], points: usize, space: &mut [f64]) {
     space.fill(0.0);
     for q in 0..points {

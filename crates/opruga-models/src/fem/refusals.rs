@@ -73,7 +73,7 @@ messages! {
         /// A body without volume or area.
         "model.mass" #[error("{problem}")]
         Measure { problem: MeshError },
-        /// No thickness for which the stress across the plane is zero.
+        /// No thickness for which the out-of-plane stress is zero.
         "run.no_thickness"
         #[error("cell {cell} has no positive thickness with zero stress across the plane at t = {} s: it is stretched or inverted beyond what its material can follow in plane stress", number(*time))]
         NoThicknessLeft { cell: u32, time: f64 },

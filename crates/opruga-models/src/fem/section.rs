@@ -83,7 +83,7 @@ pub(super) struct Plan<'a, const D: usize> {
     pub(super) positions: &'a [[f64; D]],
     /// Depth out of the plane [m]; 1 in space.
     pub(super) thickness: f64,
-    /// Whether the stress across the plane is zero.
+    /// Whether the out-of-plane stress is zero.
     pub(super) plane_stress: bool,
     /// Whether the nodes resist changes of volume beyond λ′.
     pub(super) nodal: bool,

@@ -221,7 +221,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
     }
 }
 
-/// Deformation gradients in space, without motion across the plane.
+/// Deformation gradients in space, without motion out of the plane.
 fn raise<const D: usize>(plane: &[f64], points: usize, space: &mut [f64]) {
     for point in 0..points {
         for i in 0..3 {

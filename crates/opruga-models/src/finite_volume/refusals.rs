@@ -39,7 +39,7 @@ messages! {
         "part.no_potential"
         #[error("forces of quadrilaterals and hexahedra, with F at the middle of each dual face, are not the gradient of an energy; triangles and tetrahedra have one (`simplices = true`, `order = 1`)")]
         NoPotentialOfFaces {},
-        /// No thickness for which the stress across the plane is zero.
+        /// No thickness for which the out-of-plane stress is zero.
         "run.no_thickness"
         #[error("cell {cell} has no positive thickness with zero stress across the plane at t = {} s: it is stretched or inverted beyond what its material can follow in plane stress", number(*time))]
         NoThickness { cell: usize, time: f64 },

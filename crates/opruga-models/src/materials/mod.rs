@@ -1,10 +1,10 @@
 //! # Materials
 //!
 //! Functions of the deformation gradient F, one file each, for every model of a solid: [`Linear`], [`StVenantKirchhoff`],
-//! [`Corotated`], [`FixedCorotated`], [`NeoHookean`], [`StableNeoHookean`], [`MooneyRivlin`]. Each has an energy density ψ(F), P
-//! = ∂ψ/∂F and ∂P/∂F, in space and in plane strain. Plane stress derives a law in the plane from the law in space: at every point
-//! the thickness has the stretch for which the stress across the plane is zero, and this stretch is condensed out of the tangent.
-//! Thermal expansion applies any of these laws to F/g (file `heat`).
+//! [`Corotated`], [`FixedCorotated`], [`NeoHookean`], [`StableNeoHookean`], [`MooneyRivlin`]. Each has an energy density ψ(F),
+//! P = ∂ψ/∂F and ∂P/∂F, in space and in plane strain. Plane stress derives a law in the plane from the law in space: at every
+//! point the thickness has the stretch for which the out-of-plane stress is zero, and this stretch is condensed out of the
+//! tangent. Thermal expansion applies any of these laws to F/g (file `heat`).
 //!
 //! Clamped tangents come from the analytic eigensystem of isotropic energies ([`material::Principal`]; Smith et al. 2019).
 

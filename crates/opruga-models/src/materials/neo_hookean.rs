@@ -6,8 +6,8 @@ use opruga_math::matrix::{self, Matrix};
 
 /// ψ = μ/2 (I₁ − D) − μ ln J + λ/2 ln² J with I₁ = tr FᵀF and J = det F; P = μF + (λ ln J − μ) J⁻¹ cof F.
 ///
-/// The law is meant for rubber at moderate stretch. Below J = 0.01 the logarithm is continued as a parabola, so that flat or
-/// inverted elements have a finite energy and are pushed back.
+/// The law is meant for rubber at moderate stretch. Below J = 0.01 the logarithm is continued as a parabola, so that degenerate
+/// or inverted elements have a finite energy and are pushed back.
 ///
 /// # Source
 /// Bonet, Wood, *Nonlinear continuum mechanics for finite element analysis*, eq. 6.27; in the plane J and I₁ of plane strain.

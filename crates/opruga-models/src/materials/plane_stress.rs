@@ -152,7 +152,7 @@ impl Work for Thin<'_> {
     }
 }
 
-/// Condenses tangents in space for zero stress across the plane.
+/// Condenses tangents in space for zero out-of-plane stress.
 struct Condense<'a> {
     count: usize,
     keep: Definiteness,

@@ -1,4 +1,4 @@
-//! The view of a scene of the plane in the window.
+//! The view of a scene in the plane in the window.
 
 use crate::shown::Shown;
 use egui::{Pos2, Rect, Vec2};

@@ -111,7 +111,7 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// Whether pictures of space are still being drawn.
+    /// Whether pictures in space are still being drawn.
     pub fn is_drawing(&self) -> bool {
         self.space.is_drawing() || self.beside.is_drawing()
     }
@@ -231,7 +231,7 @@ impl Canvas {
         self.navigate(ui, hover.map(|(at, _)| at), shown, rect);
         self.space.receive(ui);
         self.beside.receive(ui);
-        // Pictures of space are slightly delayed: a press acts on the picture that is seen.
+        // Pictures in space are slightly delayed: a press acts on the picture that is seen.
         let seen = self.space.seen().filter(|seen| shown.dimension == 3 && seen.opened == shown.opened).cloned();
         // Before the first picture, nothing is drawn over it.
         let is_seen = shown.dimension != 3 || seen.is_some();

@@ -23,7 +23,8 @@ pub(crate) struct Under {
     pub(crate) pixel: f64,
 }
 
-/// The body of the plane under the pointer: that of the nearest node within reach, or the one whose outline contains the pointer.
+/// The body in the plane under the pointer: that of the nearest node within reach, or the one whose outline contains the
+/// pointer.
 pub(crate) fn in_plane(shown: &Shown, flat: &Flat, rect: Rect, at: Pos2) -> Option<Under> {
     let [x, y] = flat.to_world(rect, at, shown.picture.y_down);
     let pixel = flat.metres(1.0);
@@ -64,7 +65,7 @@ fn around(body: &opruga::draw::BodyPicture, x: f64, y: f64) -> bool {
     edges.iter().filter(crosses).count() % 2 == 1
 }
 
-/// The body of space under the pointer: that of the frontmost node within reach, or of a triangle under the pointer.
+/// The body in space under the pointer: that of the frontmost node within reach, or of a triangle under the pointer.
 pub(crate) fn in_space(shown: &Shown, lens: &Lens, rect: Rect, at: Pos2) -> Option<Under> {
     let at = at - rect.min;
     let mut best: Option<(f64, usize, [f64; 3])> = None;

@@ -18,7 +18,7 @@ const BALLOON: &str =
     "{ kind = \"mass_spring\", modulus = 300.0, damping = 0.02 }, { kind = \"pressure\", nRT = 40.0 }";
 const CLOTH: &str = "{ kind = \"mass_spring\", modulus = 60.0, damping = 0.02 }";
 
-/// Bodies of the plane.
+/// Bodies in the plane.
 const PLANE: [Sample; 6] = [
     (Language::of_ball, "{ kind = \"ring\", radius = 0.4, vertices = 36 }", 0.6, GAS),
     (

@@ -284,7 +284,7 @@ fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
     let wide = 10f64.powf((20.0 * size).log10().ceil());
     match field.range {
         Allowed::Number { least, greatest } => {
-            // Distant limits are what is possible, and not what is usual.
+            // A distant limit is not used as an end, because it says what is possible and not what is usual.
             let low = match least {
                 Bound::Closed(x) | Bound::Open(x) if x >= -FAR => x,
                 _ if whole => 0.0,

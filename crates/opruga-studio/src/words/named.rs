@@ -1,6 +1,6 @@
 //! The names of integrators, models, shapes, obstacles and their parameters, and their descriptions. In English these come from the specifications.
 //! In other languages they come from the translation, to which a program adds the names of its own kinds (`Translation::add_names`). A kind without a
-//! name there has its name from the scene file, and its English description is marked as such.
+//! name in the translation has its name from the scene file, and its English description is marked as such.
 
 use super::{Language, scene_titles};
 use opruga::Warning;

@@ -154,7 +154,7 @@ fn roll_up(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     roll_up_by(lab, n, &models)
 }
 
-/// The same with models of EI = 1 N m² that hardly stretch.
+/// Rolls up a chain with other models of EI = 1 N m² that hardly stretch.
 pub(super) fn roll_up_by(lab: &Lab, n: f64, models: &str) -> Result<f64, Trouble> {
     let (count, l) = (n as usize, 1.0 / (n - 1.0));
     let position_at = |angle: f64, node: usize| {

@@ -39,7 +39,7 @@ pub(super) const CASES: &[Case] = &[
 /// pulled end to 10 N.
 fn belt(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let (thickness, tail, held_back, stiffness, speed) = (1e-3, 0.5, 10.0, 1e4, 0.0025);
-    // Light, so that waves along it have little effect: ρ c v is 0.08 N.
+    // The belt is light, so that waves along it have little effect: ρ c v is 0.08 N.
     let density = 0.1;
     let (angle, count) = (PI / n, n as usize);
     let radius = (1.0 + thickness) / (0.5 * angle).cos();

@@ -262,7 +262,7 @@ fn hole(lab: &Lab, vertices: f64) -> Result<f64, Trouble> {
     let mut pulls = vec![[0.0; 2]; mesh.positions.len()];
     for [a, b] in &mesh.facets {
         let (p, q) = (mesh.positions[*a as usize], mesh.positions[*b as usize]);
-        // σ n of the tension, half for each end; n = (Δy, −Δx)/ℓ points into the medium.
+        // σ n of the tension, half of it for each end; n = (Δy, −Δx)/ℓ points into the medium.
         [*a, *b].iter().for_each(|node| pulls[*node as usize][1] += 0.5 * SMALL * (p[0] - q[0]));
     }
     let scene = Scene::statics(2, 1e-13)

@@ -275,7 +275,7 @@ fn ring_buckles(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     })
 }
 
-/// Pins along the circle at four points of the axes: the ring cannot rotate, and its oval motion has no tangential component there.
+/// Pins along the circle at its four points on the axes. The ring cannot rotate, and its oval motion has no tangential component at these points.
 fn tangential_pins(n: f64) -> String {
     let count = n as u32;
     format!(
@@ -340,7 +340,7 @@ fn plate(lab: &Lab, [n, across]: [f64; 2], square: bool) -> Result<f64, Trouble>
     let sides = if square { &["left", "right", "bottom", "top"][..] } else { &["left", "right"] };
     let mut pins: Vec<String> =
         sides.iter().map(|side| format!("{{ select = {{ group = \"{side}\" }}, axes = \"z\" }}")).collect();
-    // In its plane only rigid motions are pinned.
+    // In the plane of the plate, only rigid motions are pinned.
     pins.push("{ select = { node = 0 }, axes = \"xy\" }".into());
     pins.push(format!("{{ select = {{ node = {n} }}, axes = \"y\" }}"));
     let scene = Scene::statics(3, 1e-11).add(&format!(

@@ -60,7 +60,7 @@ struct Press {
 }
 
 impl Round {
-    /// A half of it (in space a quarter) about the origin, with its pole up or down. Cells near the pole are small.
+    /// Half of it (in space a quarter) about the origin, with its pole up or down. Cells near the pole are small.
     fn mesh<const D: usize>(self, up: bool) -> Result<Mesh<D>, Trouble> {
         // Bodies touch at half of the thickness outside their meshes.
         let radius = self.radius - 0.5 * THICKNESS;
@@ -83,7 +83,8 @@ impl Round {
         })
     }
 
-    /// The lines of its body, whose centre is at the given height, with the plane through the centre displaced by `by`.
+    /// The lines of the scene for its body. The centre is at the given height, and the plane through the centre is displaced by
+    /// `by`.
     fn text<const D: usize>(self, mesh: &Mesh<D>, height: f64, by: f64) -> String {
         let upward =
             |y: f64| (0..D).map(|d| if d == 1 { format!("{y:?}") } else { "0".into() }).collect::<Vec<_>>().join(", ");

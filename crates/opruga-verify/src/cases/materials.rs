@@ -31,7 +31,7 @@ const SIDE: Case =
 pub(super) const PULLED_STRAIGHT: &[f64] = &[-50_000.0, -20_000.0, 20_000.0, 50_000.0, 100_000.0, 200_000.0];
 const NARROWED_STRAIGHT: &[f64] = &[1.225, 1.09, 0.91, 0.775, 0.55, 0.1];
 
-/// Including the largest compressive stress of the law, at 1/√3.
+/// The stretches include that of the largest compressive stress of the law, 1/√3.
 pub(super) const KIRCHHOFF: &[f64] = &[0.577_350_269_189_625_8, 0.6, 0.8, 1.2, 1.5];
 
 /// The values of the laws in the quantity of [`STRESS`]; finite volumes are compared with the same numbers.
@@ -260,8 +260,8 @@ fn shear(lab: &Lab, angle: f64) -> Result<f64, Trouble> {
     ))?;
     let mut world = lab.space(scene)?;
     world.frame()?;
-    // Forces on nodes at the top that also belong to the sides include the stress of the sides. The work of an additional shear weights each
-    // correctly: Σ fₓ y over the volume.
+    // Forces on nodes at the top that also belong to the sides include the stress of the sides. The work of an additional shear gives each force its
+    // correct weight: Σ fₓ y over the volume.
     let forces: Vec<(f64, f64)> =
         outside.iter().map(|k| (world.reaction(0, &[*k])[0], mesh.positions[*k as usize][1])).collect();
     Ok(forces.iter().map(|(force, y)| force * y).sum())

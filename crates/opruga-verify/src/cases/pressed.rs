@@ -58,7 +58,7 @@ pub(super) const CASES: &[Case] = &[
         quantity: "height of a block that presses on another one: with a barrier minus with a constraint",
         source: "limit of a vanishing reach: the constraint",
         unit: "m",
-        // The reduction of the height of each by the pressure.
+        // The amount by which the pressure reduces the height of each block.
         scale: Scale::Of(1e-3),
         measure: |lab, reach| {
             let by = |reach| Ok::<f64, Trouble>(patch::<2>(lab, 3.0, Cells::Linear, reach, DAMPED)?.height);
@@ -172,12 +172,12 @@ pub(super) fn pressures_at_rest(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(patch::<2>(lab, n, Cells::Boxes, None, "equilibrium")?.worst)
 }
 
-/// The same with statics and a barrier of a given reach [m].
+/// The patch test with statics and a barrier of a given reach [m].
 pub(super) fn patch_at_rest_by_barrier(lab: &Lab, reach: f64) -> Result<f64, Trouble> {
     Ok(patch::<2>(lab, 3.0, Cells::Linear, Some(reach), "equilibrium")?.worst)
 }
 
-/// An integrator that comes to rest in steps of 0.1 s, because it damps everything.
+/// An integrator with which bodies come to rest in steps of 0.1 s, because it damps everything.
 const DAMPED: &str = "backward_euler";
 
 /// The results for two blocks.

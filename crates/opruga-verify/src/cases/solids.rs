@@ -65,8 +65,8 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "lame-tube-quadrilaterals", quick: true, measure: |lab, n| tube(lab, n, Cells::Boxes, false), ..TUBE },
     Case { name: "lame-tube-triangles", quick: true, measure: |lab, n| tube(lab, n, Cells::Linear, false), ..TUBE },
     Case {
-        // Changed after its first run. It started at 4 cells and had only the pressure, whose second-order part was most of the error, which changes
-        // its sign between 4 and 8 cells.
+        // Changed after its first run. It started at 4 cells and had only the pressure. The second-order part of the pressure was most of the error,
+        // which changes its sign between 4 and 8 cells.
         name: "lame-tube-quadratic-triangles",
         levels: &[8.0, 16.0, 32.0],
         quick: false,
@@ -225,7 +225,7 @@ fn hole(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let poisson = 0.3;
     let mesh = mapped([n as u32; 2], Cells::Boxes, |s| {
         let (angle, radius) = (std::f64::consts::FRAC_PI_2 * s[1], 4.0f64.powf(s[0]));
-        // Exactly on the axes, without rounding.
+        // Nodes on the axes must be there exactly, without rounding.
         [if s[1] == 1.0 { 0.0 } else { radius * angle.cos() }, radius * angle.sin()]
     })?;
     let outer = at_radius(&mesh, 4.0);

@@ -259,7 +259,8 @@ fn ball(lab: &Lab, n: f64, cells: Cells, motion: Motion) -> Result<f64, Trouble>
     let mesh = octant::<3>(n as u32, n as u32, None, 1.0, cells)?;
     let pins = match motion {
         Motion::Twist => {
-            // About z and odd in z: planes through the axis move only perpendicular to themselves, the plane of the equator does not move.
+            // The motion is about z and odd in z: planes through the axis move only perpendicular to themselves, and the plane of the equator does
+            // not move.
             let rows: Vec<String> = ["yz", "xz", "xy"]
                 .iter()
                 .enumerate()

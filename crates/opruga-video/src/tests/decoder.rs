@@ -1,4 +1,5 @@
-//! A decoder only for the output of the encoder. It has its own bit reader, and shares the tables, the prediction and the inverse transform.
+//! A decoder for the output of the encoder only. It has its own bit reader, but shares the tables, the prediction and the inverse transform with the
+//! encoder.
 
 use super::super::frame::Frame;
 use super::super::parameters::NUMBER_BITS;
@@ -13,7 +14,8 @@ struct Reader {
 }
 
 impl Reader {
-    /// The bits of a unit, without its header and without the bytes that keep it from looking like a start.
+    /// The bits of a unit, without its header and without the bytes that were inserted so that nothing in it looks like the
+    /// start of a unit.
     fn new(unit: &[u8]) -> Reader {
         let mut bytes: Vec<u8> = Vec::new();
         for (place, &byte) in unit.iter().enumerate().skip(1) {

@@ -133,7 +133,7 @@ fn check_decoded(made: &Made, size: [u32; 2]) {
 fn a_decoder_shows_what_the_encoder_expects() {
     let size = [200, 150];
     let mut images: Vec<Drawing> = (0..30).map(|step| scene(size, step)).collect();
-    // A cut, an unchanged picture, and a picture that moves as a whole, including beyond its edges.
+    // A cut, an unchanged picture, and a picture that moves as a whole, even beyond its edges.
     images.push(noise(size, 5));
     images.extend([scene(size, 8), scene(size, 8)]);
     for step in 0..6 {
@@ -147,7 +147,7 @@ fn a_decoder_shows_what_the_encoder_expects() {
 
 #[test]
 fn known_films_have_known_bytes() {
-    // ffmpeg shows this film as the encoder expects, byte by byte, and without a warning. It is made without lines and letters, whose pixels may
+    // ffmpeg decodes this film as the encoder expects, to the byte and without a warning. It contains no lines and letters, because their pixels may
     // differ on other machines.
     let size = [98, 51];
     let mut images: Vec<Drawing> = Vec::new();

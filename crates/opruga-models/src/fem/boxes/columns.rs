@@ -237,8 +237,8 @@ fn change_of_amplitudes<R: Lane, const D: usize, const N: usize>(
     change
 }
 
-/// Adds the second derivatives of q under the forces u on it: those of φ(J) N : cof F with N = Σ gₐ ⊗ uₐ. Also adds those of the
-/// guard energy ½ (1 − s) Σ kₐ gₐ·gₐ, which replaces the law in a flat cell, except those by g alone.
+/// Adds the second derivatives of q under the forces u on it: those of φ(J) N : cof F with N = Σ gₐ ⊗ uₐ. Also adds those of
+/// the guard energy ½ (1 − s) Σ kₐ gₐ·gₐ, which replaces the law in a degenerate cell, except those by g alone.
 #[inline(always)]
 fn add_bent_frame<R: Lane, const D: usize, const N: usize>(
     kept: &Kept<R, D>,

@@ -61,8 +61,8 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Push<'_, E, D, N> {
     }
 }
 
-/// Transforms forces on the amplitudes q to forces on F and g, and adds those of the guard energy of flat cells; returns the
-/// guard energy.
+/// Transforms forces on the amplitudes q to forces on F and g, and adds those of the guard energy of degenerate cells; returns
+/// the guard energy.
 #[inline(always)]
 fn turn<R: Register, const D: usize, const N: usize>(
     rest: &Rest<'_, R, D, N>,
