@@ -42,7 +42,7 @@ pub(crate) fn modes(call: &Modes, registries: &Registries) -> Result<u8, Failure
     of_world(call, &source, &reading, &mut *source.build(blueprint, &reading, &options)?)
 }
 
-/// The integrator with a role among those that scenes can name.
+/// The integrator with the given role, among those that scenes can name.
 fn integrator_with(registries: &Registries, role: Role) -> Option<&'static Spec> {
     catalogue_of(registries).integrators.into_iter().find(|spec| spec.has_role(role))
 }

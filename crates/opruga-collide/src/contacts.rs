@@ -86,7 +86,7 @@ impl<const D: usize> Colliders<D> {
     pub fn reach(&self, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
         (0..self.len()).any(|collider| self.one_reaches(collider, time0, time1, min, max))
     }
-    /// The same for one of them.
+    /// Whether one of them may touch something that stays within a box, as for [`Self::reach`].
     pub fn one_reaches(&self, collider: usize, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
         let collider = &self.all[collider];
         let reach = collider.reach(time0, time1);

@@ -2,7 +2,7 @@
 
 use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Whether a long step shall end, because somebody requests it or because it has exceeded a time limit. It is checked within
+/// Whether a long step shall end, because this was requested or because it has exceeded a time limit. It is checked within
 /// steps and within preparations that take seconds, and is shared by those who compute and those who wait.
 #[derive(Debug)]
 pub struct BreakOff {

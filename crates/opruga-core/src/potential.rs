@@ -143,7 +143,8 @@ pub trait Sink<const D: usize> {
             }
         }
     }
-    /// The same for many stencils, which may be computed on several threads; these do not change the bits.
+    /// Adds the matrices of many stencils, which may be computed on several threads; the number of threads does not change the
+    /// bits.
     fn stencil_packs(&mut self, _threads: usize, packs: &dyn StencilPacks<D>) {
         packs.deliver(&(0..usize::MAX), &mut |_, pack| self.stencils(pack));
     }

@@ -7,7 +7,7 @@ use color_quant::NeuQuant;
 const BITS: u32 = 6;
 /// The maximum number of colours of a palette.
 const MOST: usize = 256;
-/// The number of them that are the most frequent colours themselves: backgrounds, lines, arrows.
+/// The number of entries that are exactly the most frequent colours: backgrounds, lines, arrows.
 const KEPT: usize = 64;
 
 /// The colours of an animation, and the palette entry for each colour.

@@ -72,7 +72,7 @@ impl Checkpoint {
     /// Writes the checkpoint; [`crate::safe_write::safe_write`] makes the file.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// The errors of the writer.
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         let mut head = Vec::with_capacity(HEAD);
         head.extend_from_slice(MAGIC);

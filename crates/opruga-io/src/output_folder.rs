@@ -139,7 +139,7 @@ impl OutputFolder {
     /// Writes a file of the folder by [`safe_write`]. A file that this run has already written may be written again.
     ///
     /// # Errors
-    /// Those of [`safe_write`].
+    /// The errors of [`safe_write`].
     pub fn write(
         &self,
         name: &str,
@@ -257,7 +257,7 @@ fn remove(path: &Path) -> Result<(), WriteError> {
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        // It is removed while still locked, so that nobody can have locked it in the meantime. Some systems do not remove open files.
+        // It is removed while still locked, so that no other program can lock it in the meantime. Some systems do not remove open files.
         let gone = cfg!(unix) && fs::remove_file(self.path(LOCK)).is_ok();
         drop(self.lock.take());
         if !gone {

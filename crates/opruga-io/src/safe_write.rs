@@ -136,7 +136,7 @@ impl Target for File {
 /// Does the same as [`safe_write`] with a writer made by the caller, for tests in which the disk fails.
 ///
 /// # Errors
-/// Those of [`safe_write`].
+/// The errors of [`safe_write`].
 pub fn safe_write_through<'a, W: Target + 'a>(
     path: &Path,
     force: bool,

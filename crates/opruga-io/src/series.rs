@@ -59,7 +59,7 @@ impl Format {
     /// Writes one frame. In the plane z is zero. Numbers are written with all their digits.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// The errors of the writer.
     pub fn write(self, out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_>]) -> io::Result<()> {
         match self {
             Format::Vtk => vtk(out, title, time, shapes),
@@ -73,7 +73,7 @@ impl Format {
 /// Writes the list of a series of VTK files with their times, in the format of ParaView (`NAME.vtk.series`).
 ///
 /// # Errors
-/// Those of the writer.
+/// The errors of the writer.
 pub fn write_vtk_series(out: &mut dyn Write, files: &[(String, f64)]) -> io::Result<()> {
     let rows: Vec<_> = files.iter().map(|(name, time)| serde_json::json!({"name": name, "time": time})).collect();
     let series = serde_json::json!({"file-series-version": "1.0", "files": rows});

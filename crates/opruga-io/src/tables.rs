@@ -18,7 +18,7 @@ pub struct FinalBody<'a> {
 /// Writes `final.csv` of a world of this dimension: `body,node,x,y[,z],vx,vy[,vz]`, 17 significant digits.
 ///
 /// # Errors
-/// Those of the writer.
+/// The errors of the writer.
 pub fn write_final<'a>(
     out: &mut dyn Write,
     dimension: usize,
@@ -30,7 +30,7 @@ pub fn write_final<'a>(
 /// Writes `final.csv` with additional columns; for every body, these have one row of numbers per node.
 ///
 /// # Errors
-/// Those of the writer.
+/// The errors of the writer.
 pub fn write_final_with<'a>(
     out: &mut dyn Write,
     dimension: usize,
@@ -84,7 +84,7 @@ impl NumberTable {
     /// Writes the table as CSV, 17 significant digits.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// The errors of the writer.
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "{}", self.columns.iter().map(|c| cell(c)).collect::<Vec<_>>().join(","))?;
         for row in self.rows() {
@@ -268,7 +268,7 @@ impl Summary {
     /// Writes `summary.json`.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// The errors of the writer.
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         serde_json::to_writer_pretty(&mut *out, &self.to_json())?;
         writeln!(out)

@@ -62,7 +62,7 @@ impl Track {
     /// Writes a PC2 point cache: beginning with its first frame, one sample per frame of `length` seconds.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// The errors of the writer.
     ///
     /// # Source
     /// The point cache of 3ds Max as Blender's modifier Mesh Cache reads it: `POINTCACHE2`, version 1, points, first frame, sample rate, samples.
@@ -82,7 +82,7 @@ impl Track {
     /// Writes the motion file MDD: times and positions, big-endian.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// The errors of the writer.
     ///
     /// # Source
     /// LightWave motion designer, as Blender's modifier Mesh Cache reads it.

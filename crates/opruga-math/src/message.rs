@@ -236,7 +236,7 @@ impl fmt::Display for Field {
 pub trait IntoField: Clone {
     /// The value as a field for catalogues.
     fn field(&self) -> Field;
-    /// The same with other settings.
+    /// The same value with other names of settings, if it contains any.
     #[must_use]
     fn replaced(&self, _settings: &Replacing<'_>) -> Self {
         self.clone()

@@ -159,7 +159,7 @@ impl Team {
     /// Does the work on parts of a slice that begin at the given indices, the first of which is 0.
     ///
     /// # Panics
-    /// If the indices do not increase or are beyond the end.
+    /// Panics if an index is smaller than the previous one or beyond the end.
     pub fn each_part<T: Send>(&self, slice: &mut [T], starts: &[usize], work: impl Fn(usize, &mut [T]) + Sync) {
         let (parts, end) = (Start(slice.as_mut_ptr()), slice.len());
         assert!(starts.is_sorted() && starts.last().is_none_or(|last| *last <= end), "parts follow one another");

@@ -253,7 +253,7 @@ unsafe fn split_avx2(x: __m256d) -> (__m256d, __m256d) {
     (_mm256_castsi256_pd(mantissa), _mm256_sub_pd(_mm256_castsi256_pd(exponent), _mm256_set1_pd(BIAS)))
 }
 
-/// The same for eight numbers.
+/// Does for eight numbers what `split_avx2` does for four.
 ///
 /// # Safety
 /// The processor must have AVX-512.

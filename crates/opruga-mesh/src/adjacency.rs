@@ -79,8 +79,9 @@ impl Mesh<3> {
     /// Nodes that no facet names have an empty ring.
     ///
     /// # Errors
-    /// Those of [`Mesh::validate`]; [`MeshError::Open`], [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`],
-    /// [`MeshError::InconsistentOrientation`]; [`MeshError::NonManifoldNodes`] if the triangles at a node form more than one fan.
+    /// The errors of [`Mesh::validate`]; [`MeshError::Open`], [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`],
+    /// [`MeshError::InconsistentOrientation`]; [`MeshError::NonManifoldNodes`] if the triangles at a node form more than one
+    /// fan.
     pub fn node_rings(&self) -> Result<Adjacency, MeshError> {
         self.validate()?;
         Survey::of(&self.facets)?.closed_and_consistent()?;

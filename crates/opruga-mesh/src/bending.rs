@@ -72,7 +72,7 @@ impl<const D: usize> Mesh<D> {
     /// The hinges of the boundary (space only), then those of the sheets; see [`hinges`] for the figure.
     ///
     /// # Errors
-    /// Those of [`Mesh::validate`], and [`MeshError::NonManifoldEdges`].
+    /// The errors of [`Mesh::validate`], and [`MeshError::NonManifoldEdges`].
     pub fn hinges(&self) -> Result<Vec<[u32; 4]>, MeshError> {
         self.validate()?;
         let mut list = hinges(&self.facet_triangles())?;
@@ -83,7 +83,7 @@ impl<const D: usize> Mesh<D> {
     /// The bending triples of the outline (plane only), then those of the wires; see [`bends`].
     ///
     /// # Errors
-    /// Those of [`Mesh::validate`].
+    /// The errors of [`Mesh::validate`].
     pub fn bends(&self) -> Result<Vec<[u32; 3]>, MeshError> {
         self.validate()?;
         let mut list = Vec::new();

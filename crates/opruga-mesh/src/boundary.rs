@@ -41,7 +41,7 @@ impl<const D: usize> Mesh<D> {
     /// quadratic tetrahedron four triangles, through all of its nodes.
     ///
     /// # Errors
-    /// Those of [`Mesh::validate`]; [`MeshError::NonManifoldEdges`] with the lowest two nodes of each face that more than two cells share.
+    /// The errors of [`Mesh::validate`]; [`MeshError::NonManifoldEdges`] with the lowest two nodes of each face that more than two cells share.
     pub fn facets_from_cells(&self) -> Result<Vec<[u32; D]>, MeshError> {
         self.validate()?;
         let mut faces = Vec::new();
@@ -106,7 +106,7 @@ impl<const D: usize> Mesh<D> {
     /// into six tetrahedra.
     ///
     /// # Errors
-    /// Those of [`Mesh::facets_from_cells`].
+    /// The errors of [`Mesh::facets_from_cells`].
     pub fn into_simplices(self) -> Result<Mesh<D>, MeshError> {
         self.into_simplices_by(Cut::Six)
     }
@@ -117,7 +117,7 @@ impl<const D: usize> Mesh<D> {
     /// and values.
     ///
     /// # Errors
-    /// Those of [`Mesh::facets_from_cells`]; [`MeshError::OddLoop`] if hexahedra cannot be mirrored from one to the next.
+    /// The errors of [`Mesh::facets_from_cells`]; [`MeshError::OddLoop`] if hexahedra cannot be mirrored from one to the next.
     pub fn into_simplices_by(mut self, cut: Cut) -> Result<Mesh<D>, MeshError> {
         self.validate()?;
         if self.cells.is_empty() {

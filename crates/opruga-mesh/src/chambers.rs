@@ -197,9 +197,9 @@ impl<const D: usize> Mesh<D> {
     /// Facets are connected if they share a node (plane) or an edge (space). Components are ordered by their lowest facet.
     ///
     /// # Errors
-    /// Those of [`Mesh::validate`]; [`MeshError::NonManifoldNodes`] (plane) or [`MeshError::NonManifoldEdges`] (space) if more than two facets meet;
-    /// [`MeshError::NonOrientable`] for a surface with only one side; [`MeshError::Open`] with the number of free boundaries and a node on each;
-    /// [`MeshError::InconsistentOrientation`] if neighbours have opposite orientations.
+    /// The errors of [`Mesh::validate`]; [`MeshError::NonManifoldNodes`] (plane) or [`MeshError::NonManifoldEdges`] (space) if more than two facets
+    /// meet; [`MeshError::NonOrientable`] for a surface with only one side; [`MeshError::Open`] with the number of free boundaries and a node on
+    /// each; [`MeshError::InconsistentOrientation`] if neighbours have opposite orientations.
     pub fn components(&self) -> Result<Vec<Component>, MeshError> {
         self.validate()?;
         let survey = Survey::of(&self.facets)?;
@@ -262,7 +262,7 @@ impl<const D: usize> Mesh<D> {
     /// facet is reversed.
     ///
     /// # Errors
-    /// Those of [`Mesh::validate`]; [`MeshError::NonManifoldNodes`], [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`],
+    /// The errors of [`Mesh::validate`]; [`MeshError::NonManifoldNodes`], [`MeshError::NonManifoldEdges`], [`MeshError::NonOrientable`],
     /// [`MeshError::Open`]. The mesh is then unchanged.
     pub fn orient_outward(&mut self) -> Result<usize, MeshError> {
         self.validate()?;

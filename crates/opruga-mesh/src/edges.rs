@@ -145,7 +145,7 @@ impl<const D: usize> Mesh<D> {
     /// mean of its two triangulations: a rectangle of area A then adds A/2 to each side and A/2 to each diagonal. Edges without adjacent area get 0.
     ///
     /// # Errors
-    /// Those of [`Mesh::validate`].
+    /// The errors of [`Mesh::validate`].
     pub fn edge_areas(&self, edges: &[[u32; 2]]) -> Result<Vec<f64>, MeshError> {
         self.validate()?;
 

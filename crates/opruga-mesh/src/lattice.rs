@@ -135,7 +135,7 @@ impl Mesh<2> {
     /// from 1 to 2, `top` from 3 to 2, `left` from 0 to 3.
     ///
     /// # Errors
-    /// Those of [`Mesh::grid`]; [`MeshError::Size`] with the area at a corner if the quadrilateral is not convex and counter-clockwise there.
+    /// The errors of [`Mesh::grid`]; [`MeshError::Size`] with the area at a corner if the quadrilateral is not convex and counter-clockwise there.
     pub fn quadrilateral(corners: [[f64; 2]; 4], cells: [u32; 2]) -> Result<Mesh<2>, MeshError> {
         for k in 0..4 {
             finite(Quantity::CornerQuadrilateral, &corners[k])?;

@@ -27,8 +27,8 @@ impl Mesh<3> {
     /// therefore extends slightly beyond the surface; the skin shows the surface itself.
     ///
     /// # Errors
-    /// Those of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`], also for a surface whose
-    /// box is too large for the spacing.
+    /// The errors of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`], also for a surface
+    /// whose box is too large for the spacing.
     ///
     /// # Source
     /// F. Labelle, J. R. Shewchuk, "Isosurface stuffing", ACM Trans. Graphics 26 (2007), section 3.

@@ -42,7 +42,7 @@ impl<const D: usize> Mesh<D> {
     /// In the plane, facets and wires have lengths, which are added. Facets that bound cells do not count. An empty mesh has length 0.
     ///
     /// # Errors
-    /// Those of [`Mesh::validate`]; [`MeshError::MixedMeasures`] if elements of different dimensions share the mesh.
+    /// The errors of [`Mesh::validate`]; [`MeshError::MixedMeasures`] if elements of different dimensions share the mesh.
     pub fn measure(&self) -> Result<Measure, MeshError> {
         let mut total = 0.0;
         let kind = self.visit_measures(|_, _, measure| total += measure)?;
@@ -53,7 +53,7 @@ impl<const D: usize> Mesh<D> {
     /// total.
     ///
     /// # Errors
-    /// Those of [`Mesh::measure`].
+    /// The errors of [`Mesh::measure`].
     pub fn lumped_measures(&self, share: Share) -> Result<Vec<f64>, MeshError> {
         let mut shares = vec![0.0; self.nodes()];
         match share {
@@ -69,7 +69,7 @@ impl<const D: usize> Mesh<D> {
     /// The lumped mass of each node [kg], from the density of every cell [kg/m³, in the plane per area].
     ///
     /// # Errors
-    /// Those of [`Mesh::measure`]; [`MeshError::CellValues`] if the number of densities differs from the number of cells.
+    /// The errors of [`Mesh::measure`]; [`MeshError::CellValues`] if the number of densities differs from the number of cells.
     pub fn lumped_masses(&self, densities: &[f64]) -> Result<Vec<f64>, MeshError> {
         let cells = self.cells.len();
         if densities.len() != cells {

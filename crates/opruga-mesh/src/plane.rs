@@ -54,7 +54,7 @@ impl Mesh<2> {
     /// `start_angle` [rad]; the others follow counter-clockwise.
     ///
     /// # Errors
-    /// As [`Mesh::ring`], for `sides` ≥ 3 and `vertices_per_side` ≥ 1; [`MeshError::TooManyNodes`].
+    /// The errors of [`Mesh::ring`], also for fewer than three sides or no vertices per side; [`MeshError::TooManyNodes`].
     pub fn regular_polygon(
         sides: u32,
         radius: f64,

@@ -129,7 +129,7 @@ impl<const D: usize> Mesh<D> {
     /// straight. Existing quadratic cells do not change, and neighbours use their nodes at common edges.
     ///
     /// # Errors
-    /// Those of [`Mesh::validate`]; [`MeshError::NotSimplices`] for quadrilaterals and hexahedra ([`Mesh::into_simplices`] cuts them);
+    /// The errors of [`Mesh::validate`]; [`MeshError::NotSimplices`] for quadrilaterals and hexahedra ([`Mesh::into_simplices`] cuts them);
     /// [`MeshError::TooManyNodes`].
     pub fn into_quadratic(mut self) -> Result<Mesh<D>, MeshError> {
         self.validate()?;

@@ -62,8 +62,8 @@ impl Mesh<3> {
     /// Nodes are renumbered. A group keeps its old nodes; a new node belongs to it if both ends of the edge that it divides do.
     ///
     /// # Errors
-    /// Those of [`Mesh::components`] for surfaces that are not closed; [`MeshError::Size`] for a length that is not positive,
-    /// [`MeshError::TooManyNodes`] for one that is too small.
+    /// The errors of [`Mesh::components`] for surfaces that are not closed; [`MeshError::Size`] for a length that is not
+    /// positive, [`MeshError::TooManyNodes`] for one that is too small.
     ///
     /// # Source
     /// M. Botsch, L. Kobbelt, "A remeshing approach to multiresolution modeling", Symposium on Geometry Processing (2004), section 4.

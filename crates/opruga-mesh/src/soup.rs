@@ -164,7 +164,7 @@ impl Mesh<3> {
     /// Orients the triangles of every closed component outward, and those of cavities (with an odd number of components around them) inward.
     ///
     /// # Errors
-    /// Those of [`Mesh::orient_outward`]. The mesh is then unchanged.
+    /// The errors of [`Mesh::orient_outward`]. The mesh is then unchanged.
     pub fn orient_components(&mut self) -> Result<Turned, MeshError> {
         self.validate()?;
         let survey = Survey::of(&self.facets)?;
@@ -233,7 +233,7 @@ impl Mesh<3> {
     /// boundaries.
     ///
     /// # Errors
-    /// Those of the orientation, and [`MeshError::NonManifoldNodes`] if a free boundary touches itself.
+    /// The errors of the orientation, and [`MeshError::NonManifoldNodes`] if a free boundary touches itself.
     pub fn cap(&mut self) -> Result<usize, MeshError> {
         self.orient_alike()?;
         // Free edges run in the opposite direction to the boundary of the hole: from each node to the next.

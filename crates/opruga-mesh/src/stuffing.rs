@@ -44,8 +44,8 @@ impl Mesh<3> {
     /// tetrahedra of the smaller part at that edge are removed.
     ///
     /// # Errors
-    /// Those of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive, or so large that nothing remains; [`MeshError::Torn`]
-    /// if the filling has more or fewer pieces than the surface; [`MeshError::TooManyNodes`].
+    /// The errors of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive, or so large that nothing remains;
+    /// [`MeshError::Torn`] if the filling has more or fewer pieces than the surface; [`MeshError::TooManyNodes`].
     ///
     /// # Source
     /// F. Labelle, J. R. Shewchuk, "Isosurface stuffing: fast tetrahedral meshes with good dihedral angles", ACM Trans. Graphics 26 (2007), the

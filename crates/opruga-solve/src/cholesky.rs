@@ -48,7 +48,7 @@ impl Cholesky {
     /// Factors a matrix and solves A x = b in place. One pass through a large factor serves both b and the rank-one terms.
     ///
     /// # Errors
-    /// As [`Cholesky::update`].
+    /// The errors of [`Cholesky::update`].
     pub fn update_and_solve<const D: usize>(
         &mut self,
         matrix: &BlockMatrix<D>,

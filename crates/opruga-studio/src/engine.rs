@@ -160,7 +160,7 @@ struct Living {
 /// Builds the world of a scene; `scene_warnings` are the warnings about it.
 ///
 /// # Errors
-/// Those of the world.
+/// The errors of the world.
 pub fn build(
     blueprint: AnyBlueprint,
     scene_warnings: Vec<Warning>,

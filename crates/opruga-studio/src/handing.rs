@@ -57,7 +57,7 @@ mod window {
         /// Writes a file under a name that does not exist yet; returns its path.
         ///
         /// # Errors
-        /// Those of the system.
+        /// The errors of the system.
         pub fn file(&self, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, Report> {
             self.made()?;
             let path = self.free(|name| format!("{name}.{ending}"), name)?;
@@ -113,7 +113,7 @@ mod window {
     /// Writes a file to `out/studio`; returns its path.
     ///
     /// # Errors
-    /// Those of the system.
+    /// The errors of the system.
     pub fn file(name: &str, ending: &str, bytes: &[u8]) -> Result<String, Report> {
         Folder::default().file(name, ending, bytes).map(|path| path.display().to_string())
     }
@@ -121,7 +121,7 @@ mod window {
     /// Writes a scene and the files that it names to `out/studio`; returns their paths.
     ///
     /// # Errors
-    /// Those of the system.
+    /// The errors of the system.
     pub fn scene_with_files(
         name: &str,
         text: &str,

@@ -83,7 +83,7 @@ pub fn mark_of(path: &Path) -> PathBuf {
 /// Writes a scene so that a reader always finds it complete.
 ///
 /// # Errors
-/// Those of the system.
+/// The errors of the system.
 pub fn write(path: &Path, shared: &Shared) -> Result<(), Report> {
     let packed = share::pack(shared)?;
     safe_write(path, true, |file| file.write_all(&packed))?;

@@ -61,7 +61,7 @@ pub fn unpack(packed: &[u8]) -> Result<Shared, Report> {
     Ok(Shared { name: word("name")?, text: word("text")?, files: opruga::scenes::files().with(own) })
 }
 
-/// The part of an address after its `#` for a scene. Files that come with the program are omitted.
+/// The part after the `#` of an address that contains a scene. Files that come with the program are omitted.
 ///
 /// # Errors
 /// [`Report::AddressTooLong`].

@@ -68,7 +68,7 @@ impl Scene {
         self.named("body", mesh, rest)
     }
 
-    /// The same for a body with a name.
+    /// Adds a body with a name, a mesh and further fields.
     pub(crate) fn named<const D: usize>(mut self, body: &str, mesh: &Mesh<D>, rest: &str) -> Result<Scene, Trouble> {
         let written = opruga::io::meshes::write(mesh, "vtk").map_err(|e| e.to_string())?;
         let name = format!("mesh-{}.vtk", self.files.len());

@@ -72,7 +72,7 @@ pub(crate) const COUNTS: [[[Code; 17]; 4]; 3] = [
     ],
 ];
 
-/// The same for the chroma DC levels.
+/// Codes of the number of chroma DC levels, by the number of trailing ones.
 pub(crate) const SUM_COUNTS: [[Code; 5]; 4] = [
     join([2, 6, 6, 6, 6], [1, 7, 4, 3, 2]),
     join([0, 1, 6, 7, 8], [0, 1, 6, 3, 3]),
@@ -99,7 +99,7 @@ pub(crate) const ZEROS: [&[Code]; 15] = [
     &join([1, 1], [0, 1]),
 ];
 
-/// The same for the chroma DC levels.
+/// The number of zeros before the last chroma DC level, by the number of levels.
 pub(crate) const SUM_ZEROS: [&[Code]; 3] =
     [&join([1, 2, 3, 3], [1, 1, 1, 0]), &join([1, 2, 2], [1, 1, 0]), &join([1, 1], [1, 0])];
 

@@ -261,7 +261,7 @@ impl AnyBlueprint {
     /// Builds the world of the scene with the models and integrators of this library.
     ///
     /// # Errors
-    /// As [`World::new`].
+    /// The errors of [`World::new`].
     pub fn build(self, options: Options) -> Result<Box<dyn AnyWorld>, WorldError> {
         self.build_with(options, &Registries::default())
     }
@@ -269,7 +269,7 @@ impl AnyBlueprint {
     /// Builds the world of the scene.
     ///
     /// # Errors
-    /// As [`World::new`].
+    /// The errors of [`World::new`].
     pub fn build_with(self, options: Options, registries: &Registries) -> Result<Box<dyn AnyWorld>, WorldError> {
         let Registries { plane, space } = registries;
         Ok(match self {

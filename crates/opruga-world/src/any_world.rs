@@ -59,45 +59,45 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// Changes a parameter.
     ///
     /// # Errors
-    /// As [`World::set`].
+    /// The errors of [`World::set`].
     fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError>;
     /// Gives a command that begins now, as if the scene had contained it from the start; returns its number. In the plane the third numbers of
     /// vectors, axes and rows are ignored.
     ///
     /// # Errors
-    /// As [`World::act`]; also if the command adds a body.
+    /// The errors of [`World::act`]; also if the command adds a body.
     fn act(&mut self, command: &CommandBlueprint<3>) -> Result<usize, WorldError>;
     /// Gives the last command of a scene that adds a body and has already begun; returns its number.
     ///
     /// # Errors
-    /// As [`World::act`]; also if the scene has no such command or has another dimension.
+    /// The errors of [`World::act`]; also if the scene has no such command or has another dimension.
     fn act_of(&mut self, scene: &AnyBlueprint) -> Result<usize, WorldError>;
     /// Begins and ends the commands that are due now, without waiting for the next frame.
     ///
     /// # Errors
-    /// As [`World::begin_what_is_due`].
+    /// The errors of [`World::begin_what_is_due`].
     fn begin_what_is_due(&mut self) -> Result<(), WorldError>;
     /// Extends the path of the pointer of a drag.
     ///
     /// # Errors
-    /// As [`World::lead`].
+    /// The errors of [`World::lead`].
     fn lead(&mut self, number: usize, row: Vec<f64>) -> Result<(), WorldError>;
     /// Ends a command at a time [s].
     ///
     /// # Errors
-    /// As [`World::finish`].
+    /// The errors of [`World::finish`].
     fn finish(&mut self, number: usize, until: f64) -> Result<(), WorldError>;
     /// The command that the last call of [`AnyWorld::frame`] refused, which is the cause of its error.
     fn refused_command(&self) -> Option<RefusedCommand<'_>>;
     /// Moves a node and gives it a velocity, from outside the physics.
     ///
     /// # Errors
-    /// As [`World::set_node`].
+    /// The errors of [`World::set_node`].
     fn set_node(&mut self, body: usize, node: u32, position: [f64; 3], velocity: [f64; 3]) -> Result<(), WorldError>;
     /// Removes a body.
     ///
     /// # Errors
-    /// As [`World::remove_body`].
+    /// The errors of [`World::remove_body`].
     fn remove_body(&mut self, name: &str) -> Result<(), WorldError>;
     /// Records the inputs of the program from now on, for [`AnyWorld::take_inputs`].
     fn keep_inputs(&mut self);
@@ -116,12 +116,12 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// Restores the state of a snapshot.
     ///
     /// # Errors
-    /// As [`World::restore`].
+    /// The errors of [`World::restore`].
     fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError>;
     /// Restores the state of a snapshot from the same past.
     ///
     /// # Errors
-    /// As [`World::rewind`].
+    /// The errors of [`World::rewind`].
     fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError>;
     /// The hash of all positions and velocities, node by node.
     fn state_hash(&self) -> u64;
@@ -175,7 +175,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// The lowest natural modes of a body about its present state.
     ///
     /// # Errors
-    /// As [`World::modes`].
+    /// The errors of [`World::modes`].
     fn modes(&self, body: usize, count: usize) -> Result<Vec<Mode<3>>, WorldError>;
     /// Warnings so far, with counts.
     fn warnings(&self) -> Vec<Warning>;

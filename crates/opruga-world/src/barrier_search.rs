@@ -324,7 +324,7 @@ impl<const D: usize> Search<'_, '_, D> {
         }
     }
 
-    /// The most iterations of a body, and whether a search that has not converged is then accepted.
+    /// The largest number of iterations of a body, and whether a search that has not converged by then is accepted.
     fn most_iterations(&self) -> (u32, bool) {
         let each = self.opened.iter().map(|open| open.step.most_iterations());
         each.fold((0, true), |(most, all), (iterations, accepts)| (most.max(iterations), all && accepts))

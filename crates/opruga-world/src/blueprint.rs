@@ -147,7 +147,7 @@ pub struct Surroundings<const D: usize> {
     pub largest_velocity: Option<f64>,
     /// A body is removed if all of its nodes are farther from the origin than this [m]. Removed bodies are counted. None: no limit.
     pub largest_distance: Option<f64>,
-    /// Whether bodies at rest in a degenerate shape get a random displacement, so that they leave it. Each displacement is counted.
+    /// Whether bodies at rest in a degenerate shape get a random displacement, so that they leave it. Such displacements are counted.
     pub unfold: bool,
 }
 

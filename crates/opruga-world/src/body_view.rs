@@ -28,7 +28,7 @@ impl<const D: usize> World<D> {
     /// The number of the body of a handle. It stays the same while the body exists.
     ///
     /// # Errors
-    /// As [`World::view`].
+    /// The errors of [`World::view`].
     pub fn resolve(&self, handle: BodyHandle) -> Result<usize, WorldError> {
         if self.slots.is_of(handle) {
             return Ok(handle.index);
@@ -61,14 +61,14 @@ impl<'w, const D: usize> BodyView<'w, D> {
     /// The velocity of a node [m/s].
     ///
     /// # Errors
-    /// As [`BodyView::position`].
+    /// The errors of [`BodyView::position`].
     pub fn velocity(&self, node: u32) -> Result<[f64; D], WorldError> {
         self.known(node).map(|()| self.world.velocity(self.number, node))
     }
     /// The mass of a node [kg].
     ///
     /// # Errors
-    /// As [`BodyView::position`].
+    /// The errors of [`BodyView::position`].
     pub fn node_mass(&self, node: u32) -> Result<f64, WorldError> {
         self.known(node).map(|()| self.world.node_mass(self.number, node))
     }

@@ -5,11 +5,11 @@ use opruga_collide::Report;
 /// Whether two bodies touched in the last frame and in the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactPhase {
-    /// Only in the last frame.
+    /// They touched only in the last frame.
     Began,
-    /// In both.
+    /// They touched in both.
     Persists,
-    /// Only in the frame before.
+    /// They touched only in the frame before the last.
     Ended,
 }
 

@@ -50,7 +50,7 @@ impl<const D: usize> Registry<D> {
     /// The values of an integrator: its defaults, replaced by the given fields.
     ///
     /// # Errors
-    /// As [`Registry::model_values`].
+    /// The errors of [`Registry::model_values`].
     pub fn integrator_values(&self, kind: &str, fields: &[(&str, Value)]) -> Result<Values, WorldError> {
         values::<D>(kind, "integrator", &self.integrators(), fields)
     }
@@ -111,7 +111,7 @@ impl ColliderBlueprint {
     /// An obstacle of a scene in `D` dimensions: the defaults of its kind, replaced by the given fields.
     ///
     /// # Errors
-    /// As [`Registry::model_values`].
+    /// The errors of [`Registry::model_values`].
     pub fn new<const D: usize>(kind: &str, fields: &[(&str, Value)]) -> Result<ColliderBlueprint, WorldError> {
         Ok(ColliderBlueprint { values: values::<D>(kind, "collider", &opruga_collide::all(D), fields)? })
     }

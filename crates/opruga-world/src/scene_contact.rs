@@ -196,7 +196,8 @@ impl Partition {
     ) -> bool {
         let mut any = false;
         let wide = |number: u32| wider(boxes[number as usize], scene.distance);
-        // Bodies are compared along the axis of their largest extent, in the order of their lower ends.
+        // Bodies are compared along the axis along which all of them together extend farthest, in the order of their lower
+        // ends.
         let extent = |d: usize| {
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for one in boxes {

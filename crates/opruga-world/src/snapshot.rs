@@ -94,7 +94,7 @@ impl<const D: usize> World<D> {
     /// number.
     ///
     /// # Errors
-    /// As [`World::restore`].
+    /// The errors of [`World::restore`].
     pub fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         self.restored(bytes, true)
     }

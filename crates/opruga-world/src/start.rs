@@ -35,7 +35,7 @@ impl<const D: usize> World<D> {
     /// Builds a world with a registry that a user has extended.
     ///
     /// # Errors
-    /// As [`World::new`].
+    /// The errors of [`World::new`].
     pub fn with_registry(
         blueprint: Blueprint<D>,
         options: Options,

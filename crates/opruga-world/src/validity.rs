@@ -207,7 +207,7 @@ pub(crate) fn blueprint<const D: usize>(scene: &Blueprint<D>) -> Result<(), Worl
 /// Refuses a body that no scene file could describe, whose parts do not fit one another, or whose numbers are not finite.
 ///
 /// # Errors
-/// As [`blueprint`].
+/// The errors of [`blueprint`].
 pub(crate) fn body<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), WorldError> {
     mesh(body).and_then(|()| numbers(body)).map_err(|fault| fault.at(Part::body(&body.name)))
 }
@@ -370,7 +370,7 @@ pub(crate) fn command<const D: usize>(command: &CommandBlueprint<D>) -> Result<(
 /// Refuses an invalid command of a program.
 ///
 /// # Errors
-/// As [`blueprint`].
+/// The errors of [`blueprint`].
 pub(crate) fn given<const D: usize>(given: &CommandBlueprint<D>) -> Result<(), WorldError> {
     command(given).map_err(|fault| fault.at(Part::Section { path: "command" }))?;
     match &given.action {

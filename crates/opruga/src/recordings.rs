@@ -149,7 +149,7 @@ impl Tape {
     /// program are not in the recording.
     ///
     /// # Errors
-    /// Those of [`RecordingFile::create`].
+    /// The errors of [`RecordingFile::create`].
     pub fn begin(path: &Path, force: bool, header: &Header, world: &mut dyn AnyWorld) -> Result<Tape, WriteError> {
         let file = RecordingFile::create(path, force, header)?;
         world.keep_inputs();
@@ -163,7 +163,7 @@ impl Tape {
     /// Steps the world through a frame and adds the frame.
     ///
     /// # Errors
-    /// Those of [`AnyWorld::frame`] and [`Tape::push`].
+    /// The errors of [`AnyWorld::frame`] and [`Tape::push`].
     pub fn step(&mut self, world: &mut dyn AnyWorld) -> Result<(), TapeError> {
         world.frame()?;
         Ok(self.push(world)?)
@@ -203,7 +203,7 @@ impl Tape {
     /// Writes the state of the last frame and the end; the state includes the actions of the program after that frame.
     ///
     /// # Errors
-    /// Those of [`Tape::push`].
+    /// The errors of [`Tape::push`].
     pub fn finish(mut self, world: &mut dyn AnyWorld) -> Result<u64, WriteError> {
         if world.frames() > self.kept {
             self.keep(world)?;

@@ -227,7 +227,7 @@ impl PairTable {
         }
     }
 
-    /// The same for a layout known at compile time, so that the partial sums stay in registers.
+    /// As [`Self::sum`], for a layout known at compile time, so that the partial sums stay in registers.
     #[inline(always)]
     fn sum_laid_out<P: Pack, T: PairTerm<P, D>, const D: usize, const BATCH: bool>(
         &self,

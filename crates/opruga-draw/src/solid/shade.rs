@@ -54,7 +54,7 @@ pub(crate) struct Surface<'a> {
 
 /// The colour of a surface without light.
 pub(crate) enum Colouring<'a> {
-    /// The same everywhere.
+    /// The same colour everywhere.
     Plain([u8; 3]),
     /// From a fraction of a colour map at each corner.
     Mapped {

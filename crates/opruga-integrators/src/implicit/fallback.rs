@@ -69,7 +69,7 @@ impl<const D: usize> Minimiser<D> for RealTime {
     fn keeps_matrix(&self, system: &System<D>) -> bool {
         real_time::keeps_matrix(system)
     }
-    /// In real time nobody can change a setting between steps.
+    /// In real time, settings cannot be changed between steps.
     fn always_halves(&self) -> bool {
         true
     }

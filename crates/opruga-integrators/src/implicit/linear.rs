@@ -291,7 +291,7 @@ impl<const D: usize> Linear<D> {
         size
     }
 
-    /// The same without the mass.
+    /// The size of the diagonal block of a node without its mass.
     pub(crate) fn stiffness_at(&self, mixture: &Mixture<D>, node: usize) -> f64 {
         (self.size_at(mixture, node) - D as f64 * mixture.sigma * mixture.mass_at(node)).larger(0.0)
     }

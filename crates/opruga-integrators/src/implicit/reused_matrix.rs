@@ -28,9 +28,9 @@ pub(crate) struct ReusedMatrix<const D: usize> {
     projectors: Vec<Block<D>>,
     packed: Packed<D>,
     cholesky: Cholesky,
-    /// Whether it was made in the shape of the iteration and has not been used yet; then one pass through a dense factor also
-    /// solves for the right-hand side. A matrix that is made again because a run is resumed counts as used, so that its
-    /// solutions have the same bits as in the original run.
+    /// Whether it was computed at the positions of this iteration and has not been used yet; then one pass through a dense
+    /// factor also solves for the right-hand side. A matrix that is made again because a run is resumed counts as used, so that
+    /// its solutions have the same bits as in the original run.
     is_new: bool,
     /// The solution for the present right-hand side, and whether it is known.
     solution: Vec<f64>,

@@ -48,7 +48,7 @@ impl RecordingFile {
     /// Does the same as [`RecordingFile::create`] with a target made by the caller, for tests in which the disk fails.
     ///
     /// # Errors
-    /// Those of [`RecordingFile::create`].
+    /// The errors of [`RecordingFile::create`].
     pub fn create_through<W: Target + Send + 'static>(
         path: &Path,
         force: bool,
@@ -116,7 +116,7 @@ impl RecordingFile {
     /// recording.
     ///
     /// # Errors
-    /// Those of [`RecordingFile::push`].
+    /// The errors of [`RecordingFile::push`].
     pub fn keep(&mut self, frame: u64, hash: u64, state: impl FnOnce(&mut Vec<u8>)) -> Result<(), WriteError> {
         self.write(|file| {
             // The previous chunk goes first.
@@ -131,7 +131,7 @@ impl RecordingFile {
     /// Adds an action of a program that precedes the step to the next frame.
     ///
     /// # Errors
-    /// Those of [`RecordingFile::push`].
+    /// The errors of [`RecordingFile::push`].
     pub fn input(&mut self, frame: u64, bytes: &[u8]) -> Result<(), WriteError> {
         self.write(|file| {
             file.writer.flush()?;
@@ -197,7 +197,7 @@ impl Syncing {
         let run = move || {
             while let Err(RecvTimeoutError::Timeout) = stopped.recv_timeout(SYNCED) {
                 file.sync_data()?;
-                // Its name is synced as well, once.
+                // Once, the folder is synced as well, so that it contains the name of the file.
                 folder.take().map_or(Ok(()), |folder| sync_folder(&folder))?;
             }
             Ok(())

@@ -36,7 +36,7 @@ impl<W: Target> Writer<W> {
     /// Writes the header.
     ///
     /// # Errors
-    /// Those of the target.
+    /// The errors of the target.
     pub fn new(target: W, header: &Header) -> io::Result<Writer<W>> {
         let (pending, identity) = format::beginning(header);
         let mut writer = Writer {
@@ -152,7 +152,7 @@ impl<W: Target> Writer<W> {
     /// Makes everything that was flushed survive a power failure.
     ///
     /// # Errors
-    /// Those of the target.
+    /// The errors of the target.
     pub fn sync(&self) -> io::Result<()> {
         self.out.inner.sync()
     }
@@ -165,7 +165,7 @@ impl<W: Target> Writer<W> {
     /// Writes the remaining data, the index and the end, and syncs all of it.
     ///
     /// # Errors
-    /// Those of the target.
+    /// The errors of the target.
     pub fn finish(&mut self) -> io::Result<()> {
         self.end_passed();
         let offset = self.offset;

@@ -137,7 +137,7 @@ pub fn survey(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options
 /// regular, or larger than the limit, is refused before it is read.
 ///
 /// # Errors
-/// Those of [`read`], and `read.failed` if the file cannot be read.
+/// The errors of [`read`], and `read.failed` if the file cannot be read.
 pub fn read_file(
     path: &Path,
     catalogue: &Catalogue,

@@ -160,7 +160,7 @@ pub(super) fn write(out: &mut dyn Write, time: f64, shapes: &[Shape<'_>]) -> io:
 /// Writes the list of a series of files with their times, in the format of ParaView (`.pvd`).
 ///
 /// # Errors
-/// Those of the writer.
+/// The errors of the writer.
 pub fn write_pvd(out: &mut dyn Write, files: &[(String, f64)]) -> io::Result<()> {
     writeln!(out, "<?xml version=\"1.0\"?>")?;
     writeln!(out, "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>")?;

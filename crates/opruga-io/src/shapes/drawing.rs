@@ -76,7 +76,7 @@ impl Outline {
     /// Makes the body with the drawing that it carries; also reports triangles that are thinner than promised.
     ///
     /// # Errors
-    /// Those of the filling.
+    /// The errors of the filling.
     pub(super) fn mesh(&self) -> Result<(Mesh<2>, Option<SceneError>), SceneError> {
         let too_many = |e: MeshError| refused(&e.into());
         let (mut mesh, thin) = match self.inside {

@@ -255,7 +255,7 @@ impl Loaded {
     /// Makes the mesh, scaled and rotated; also returns what was lost, with counts.
     ///
     /// # Errors
-    /// Those of the filling.
+    /// The errors of the filling.
     pub(crate) fn mesh<const D: usize>(
         &self,
         transform: &Transform<'_>,

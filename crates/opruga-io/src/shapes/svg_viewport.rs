@@ -93,7 +93,7 @@ impl Reader<'_, '_> {
     /// Reads the contents of an `<svg>` or a `<symbol>`.
     ///
     /// # Errors
-    /// Those of its contents; `svg.unsupported` if it shows only a part of them.
+    /// The errors of its contents; `svg.unsupported` if it shows only a part of them.
     pub(super) fn inside(
         &mut self,
         node: Node<'_, '_>,

@@ -35,7 +35,7 @@ fn key<const D: usize>(surface: &Surface<D>, poisson: f64, exterior: bool, asked
     key
 }
 
-/// Returns the stiffness of a boundary; computes it if nobody holds it.
+/// Returns the stiffness of a boundary, which is computed unless it is still stored.
 pub(super) fn stiffness<const D: usize>(
     surface: &Surface<D>,
     poisson: f64,

@@ -42,7 +42,7 @@ pub fn in_plane(values: &Values, gradient: &[[f64; 2]; 2]) -> Result<AtPoint<2>,
 /// Evaluates the law that these fields of a model describe, in space.
 ///
 /// # Errors
-/// As [`in_plane`].
+/// The errors of [`in_plane`].
 pub fn in_space(values: &Values, gradient: &[[f64; 3]; 3]) -> Result<AtPoint<3>, BuildError> {
     ask(&*(entry(values)?.cold.space)(), values, gradient)
 }

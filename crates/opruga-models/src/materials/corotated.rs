@@ -11,7 +11,7 @@ use opruga_math::rotation::nearest_rotation;
 /// strain: a finite force can compress a bar to zero length.
 ///
 /// # Source
-/// Müller, Gross, "Interactive virtual materials" (2004); R differentiated exactly as in McAdams et al. (2011).
+/// Müller, Gross, "Interactive virtual materials" (2004); R is differentiated exactly, as in McAdams et al. (2011).
 #[derive(Clone, Copy, Debug)]
 pub struct Corotated;
 

@@ -19,7 +19,7 @@ const MOST_ITERATIONS: usize = 60;
 /// The relative change of the thickness below which it has converged.
 const FOUND: f64 = 1e-12;
 
-/// Packs of points in space.
+/// Buffers for packs of points in space.
 struct Space {
     gradient: PackBuffer<{ MOST_PACKS * 9 * WIDTH }>,
     energy: PackBuffer<{ MOST_PACKS * WIDTH }>,

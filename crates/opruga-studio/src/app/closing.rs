@@ -13,7 +13,7 @@ const PATIENCE: Duration = Duration::from_millis(300);
 /// The state of closing the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Closing {
-    /// Nobody has asked for it.
+    /// It has not been requested.
     #[default]
     No,
     /// The user is being asked; `fresh` means since the previous picture.

@@ -60,7 +60,7 @@ impl Titles {
         }
     }
 
-    /// The same for a message.
+    /// Replaces the names in a message.
     pub(super) fn in_report(&self, report: Report) -> Report {
         let of = |name: &String| self.of(name).to_string();
         match report {
@@ -94,7 +94,7 @@ impl Titles {
         message.renamed(&|name| self.in_path(name), &|text| self.in_text(text))
     }
 
-    /// The same for a warning.
+    /// Replaces the names in a warning.
     pub(super) fn in_warning(&self, warning: Warning) -> Warning {
         let about = warning.about.map(|message| self.in_message(&message));
         Warning { message: self.in_text(&warning.message), about, ..warning }

@@ -159,7 +159,7 @@ fn shares<const D: usize>(mesh: &Mesh<D>, height: f64) -> Vec<f64> {
     out
 }
 
-/// The same with a constraint.
+/// The worst result of the patch test with a constraint.
 fn pressures<const D: usize>(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble>
 where
     Lab: Worlds<D>,
@@ -167,7 +167,7 @@ where
     Ok(patch(lab, n, cells, None, DAMPED)?.worst)
 }
 
-/// The same with statics.
+/// The worst result of the patch test with statics and a constraint.
 pub(super) fn pressures_at_rest(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(patch::<2>(lab, n, Cells::Boxes, None, "equilibrium")?.worst)
 }

@@ -45,7 +45,7 @@ pub struct Range {
 /// The points that a sweep visits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Design {
-    /// Every value of every parameter with every value of the others.
+    /// All combinations of the values of the parameters.
     Grid,
     /// The values of one parameter after the other, with the others as in the scene.
     Each,

@@ -90,7 +90,7 @@ impl Sweep {
     /// If the scene refuses a point only because of its value, this is not an error; its row reports it.
     ///
     /// # Errors
-    /// Those of the scene, of [`Axis`] and of [`Metric`].
+    /// The errors of the scene, of [`Axis`] and of [`Metric`].
     pub fn points(&self) -> Result<Vec<Point>, Vec<SceneError>> {
         let mut errors = Vec::new();
         if self.metrics.is_empty() {

@@ -38,7 +38,7 @@ impl Sweep {
     /// Runs all points on the calling thread. Speeds (`nanoseconds_per_step`) need a clock: see [`Sweep::measure`].
     ///
     /// # Errors
-    /// Those of [`Sweep::points`]. If a point fails, its row reports it.
+    /// The errors of [`Sweep::points`]. If a point fails, its row reports it.
     pub fn run(&self) -> Result<Vec<Row>, Vec<SceneError>> {
         let never = AtomicBool::new(false);
         let points = self.points()?;

@@ -2,7 +2,7 @@
 //!
 //! Each row ends with a checksum of its cells. A resumed sweep uses existing rows as its own results. A row that was changed in the meantime, by hand
 //! or by a program that reformatted its numbers, is refused, and the error names its line. The point is not computed again automatically, because
-//! that would overwrite what somebody has written; to have it computed again, delete the line.
+//! that would overwrite the changes; to have it computed again, delete the line.
 
 use super::Sweep;
 use super::errors::{RowFault, SweepError};

@@ -84,7 +84,7 @@ pub(in super::super) struct DeformRates<'a, E, const D: usize, const N: usize> {
     pub(in super::super) shape: PhantomData<E>,
     pub(in super::super) group: Group<'a>,
     pub(in super::super) velocities: Nodes<'a, D>,
-    /// As kept for the positions.
+    /// The quantities kept for the positions.
     pub(in super::super) kept: &'a [f64],
     pub(in super::super) rate: &'a mut [f64],
     /// Rates of F, g and β.

@@ -34,7 +34,7 @@ pub(in super::super) struct Contract<'a, E, const D: usize, const N: usize> {
     /// The index of the pack in the group.
     pub(in super::super) pack: usize,
     pub(in super::super) of: Of,
-    /// As [`super::Deform`] leaves it.
+    /// The quantities that [`super::Deform`] has kept.
     pub(in super::super) kept: &'a [f64],
     /// The stress at the points; read only if the energy is differentiated exactly.
     pub(in super::super) stress: &'a [f64],
