@@ -168,7 +168,7 @@ pub(crate) struct Keeper<'a> {
     folder: &'a OutputFolder,
     source: &'a Source,
     calling: Calling,
-    /// None: only at the end.
+    /// The time between checkpoints; if none, the only checkpoint is written at the end.
     every: Option<Duration>,
     next: Option<Instant>,
     older: Older,

@@ -193,7 +193,7 @@ impl<const D: usize> History<D> {
             _ => None,
         }
     }
-    /// The same, mutable.
+    /// The mutable vectors of a channel; `None` if the system has no such channel.
     pub fn vectors_mut(&mut self, channel: PerNode) -> Option<&mut Columns<D>> {
         let k = self.find(channel.name)?;
         match &mut self.channels[k].1 {

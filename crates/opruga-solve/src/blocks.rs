@@ -142,7 +142,7 @@ pub fn nodes<const D: usize>(x: &[f64]) -> &[[f64; D]] {
     x.as_chunks::<D>().0
 }
 
-/// The same, mutable.
+/// A mutable long vector as the vectors of its nodes.
 #[inline(always)]
 pub fn nodes_mut<const D: usize>(x: &mut [f64]) -> &mut [[f64; D]] {
     x.as_chunks_mut::<D>().0

@@ -12,7 +12,7 @@ pub struct Shape {
     pub file: String,
     /// A scene around it.
     pub text: String,
-    /// Whether it is one of space.
+    /// Whether the scene is in space.
     pub space: bool,
     /// Where its file is.
     pub files: Files,

@@ -167,7 +167,7 @@ pub enum Offer {
 pub struct Message {
     /// A running number, which distinguishes a new message from an earlier one with the same text.
     pub number: u64,
-    /// How grave it is.
+    /// Its severity.
     pub severity: Severity,
     /// Its contents.
     pub report: Report,

@@ -17,7 +17,7 @@ use std::sync::{Arc, PoisonError};
 pub(crate) enum Touched {
     /// These bodies; an empty list means none.
     Bodies(Vec<usize>),
-    /// All of them: gravity, drag.
+    /// All bodies, for a change of gravity or drag.
     All,
 }
 

@@ -47,9 +47,9 @@ pub(crate) struct Contact<const D: usize> {
 /// The changes that follow from the forces of the constraints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Verdict {
-    /// Which nodes are held, or how.
+    /// Whether other nodes must be held, or nodes must be held in another way.
     pub(crate) anew: bool,
-    /// The friction force, or its direction.
+    /// Whether the friction force or its direction changes.
     pub(crate) unsettled: bool,
 }
 

@@ -119,7 +119,7 @@ impl RecordingFile {
     /// The errors of [`RecordingFile::push`].
     pub fn keep(&mut self, frame: u64, hash: u64, state: impl FnOnce(&mut Vec<u8>)) -> Result<(), WriteError> {
         self.write(|file| {
-            // The previous chunk goes first.
+            // The previous chunk is written first.
             file.writer.flush()?;
             file.state.clear();
             state(&mut file.state);

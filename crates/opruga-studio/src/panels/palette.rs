@@ -38,7 +38,7 @@ const PLANE: [Sample; 6] = [
     (Language::of_big_ball, "{ kind = \"ring\", radius = 0.8, vertices = 72 }", 1.5, GAS),
 ];
 
-/// Bodies of space.
+/// Bodies in space.
 const SPACE: [Sample; 4] = [
     (Language::of_balloon, "{ kind = \"icosphere\", radius = 0.4, subdivisions = 3 }", 0.4, BALLOON),
     (

@@ -187,7 +187,7 @@ impl Session {
                     self.write(given);
                 }
                 Err(error) => {
-                    // None of them instead of some.
+                    // Either all bodies are changed or none.
                     self.document = documents;
                     self.engine = self.build(&self.document)?;
                     self.engine.rewind(&before).map_err(Report::World)?;
