@@ -8,7 +8,7 @@ use opruga_core::system::{Stage, System};
 /// A body is slender if no layer of cells has more nodes than this many times the number of layers.
 const SLENDER: usize = 8;
 
-/// The largest square of the number of nodes in the widest layer, which is the size of the factor.
+/// The largest size of the factor: the number of nodes of the widest layer times that of the body.
 const LARGEST_FACTOR: usize = 400_000;
 
 /// Which nodes are coupled, as delivered.
