@@ -191,11 +191,17 @@ fn touch<const D: usize>(
         let outcome = if alone { meeting.solve(step) } else { Ok(()) };
         outcome.map_err(|trouble| (meeting.in_scene(trouble), step.time))
     };
-    let several = meetings.len() > 1;
-    meetings.iter_mut().for_each(|meeting| meeting.touching.threads = if several { 1 } else { threads });
-    let mut outcomes: Vec<_> = meetings.iter_mut().map(|meeting| (meeting, Ok(()))).collect();
-    threads::each(threads, &mut outcomes, |(meeting, outcome)| *outcome = solve(meeting));
-    outcomes.into_iter().try_for_each(|(_, outcome)| outcome)?;
+    if let [meeting] = meetings {
+        meeting.touching.threads = threads;
+        solve(meeting)?;
+    } else {
+        let mut outcomes: Vec<_> = meetings.iter_mut().map(|meeting| (meeting, Ok(()))).collect();
+        threads::each(threads, &mut outcomes, |(meeting, outcome)| {
+            meeting.touching.threads = 1;
+            *outcome = solve(meeting);
+        });
+        outcomes.into_iter().try_for_each(|(_, outcome)| outcome)?;
+    }
     for meeting in meetings.iter_mut().filter(|meeting| !meeting.is_one()) {
         if meeting.is_pushed() {
             let outcome = meeting.solve_in_turn(islands, step);
