@@ -18,8 +18,8 @@ const WEIGHT: Case = Case {
 pub(super) const CASES: &[Case] = &[
     Case {
         name: "contact-patch-statics",
-        quantity: "two blocks with non-matching meshes are pressed together: largest deviation of the pressure on a node from the applied pressure, \
-relative to that, by `equilibrium`",
+        quantity: "two blocks with non-matching meshes are pressed together: largest relative deviation of the pressure on a node from the applied \
+pressure, by `equilibrium`",
         source: "exact: uniform pressure (R. L. Taylor, P. Papadopoulos 1991, contact patch test)",
         over: Over::Cells("cells along a side of the lower block; one more along that of the upper block"),
         levels: &[2.0, 3.0, 4.0],
@@ -39,8 +39,8 @@ relative to that, by `equilibrium`",
     },
     Case {
         name: "contact-patch-barrier-statics",
-        quantity: "two blocks with non-matching meshes are pressed together: largest deviation of the pressure on a node from the applied pressure, \
-relative to that, by `equilibrium` with a barrier",
+        quantity: "two blocks with non-matching meshes are pressed together: largest relative deviation of the pressure on a node from the applied \
+pressure, by `equilibrium` with a barrier",
         measure: patch_at_rest_by_barrier,
         ..BARRIER
     },

@@ -16,7 +16,8 @@ const ELASTICA: Case = Case {
 
 const SAG: Case = Case {
     unit: "m",
-    source: "quadratic tetrahedra of another program, converged; Euler–Bernoulli ρgAL⁴/8EI = 0.014715 and Timoshenko 0.014865 are theories of thin beams",
+    source: "another program with quadratic tetrahedra, converged; Euler–Bernoulli ρgAL⁴/8EI = 0.014715 and Timoshenko 0.014865 are theories of thin \
+beams",
     over: Over::Cells("cells along the beam"),
     ..BASE
 };
@@ -64,7 +65,7 @@ Venant–Kirchhoff",
     },
     Case {
         name: "roll-up",
-        quantity: "moment that keeps a straight rod of EI = 1 N m² and 1 m rolled up into a closed circle",
+        quantity: "moment that keeps a straight rod of 1 m with EI = 1 N m² rolled up into a closed circle",
         unit: "N m",
         source: "exact: M = 2π EI/L, also for a chain of equal hinges",
         over: Over::Cells("segments"),
@@ -96,7 +97,7 @@ Venant–Kirchhoff",
     Case {
         name: "very-heavy-beam-quadratic-tetrahedra",
         quantity: "deflection of the end of a beam of 1 × 0.1 × 0.1 m under its weight, E = 1e6 Pa, ν = 0.3, ρ = 1000 kg/m³, neo-Hookean",
-        source: "0.747 by quadratic elements of another program, converged in space; the elastica without stretch and shear gives 0.7383",
+        source: "0.747 from another program with quadratic elements, converged in space; the elastica without stretch and shear gives 0.7383",
         levels: &[4.0, 8.0, 12.0],
         expected: &[0.747],
         measure: |lab, n| heavy(lab, n, Cells::Quadratic, 1e6, 4.0),

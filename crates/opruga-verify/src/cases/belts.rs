@@ -21,9 +21,9 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "explicit-reaches-implicit",
         family: Family::Dynamics,
-        quantity: "height of a block that has fallen onto another one: by symplectic Euler minus by backward Euler",
+        quantity: "difference in height of a block that has fallen onto another one, between symplectic Euler and backward Euler",
         unit: "m",
-        source: "limit of short steps: the same motion",
+        source: "in the limit of short steps: the same motion",
         over: Over::Step("step [s]"),
         levels: &[1.0 / 960.0, 1.0 / 1920.0, 1.0 / 3840.0],
         scale: Scale::Of(1.0),

@@ -37,7 +37,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "finite-difference-roll-up",
-        quantity: "moment that keeps a straight rod of EI = 1 N m² and 1 m rolled up into a closed circle",
+        quantity: "moment that keeps a straight rod of 1 m with EI = 1 N m² rolled up into a closed circle",
         unit: "N m",
         source: "exact: M = 2π EI/L",
         levels: &[12.0, 24.0, 48.0],

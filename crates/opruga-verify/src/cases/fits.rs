@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 
 pub(super) const CASES: &[Case] = &[Case {
     name: "shrink-fit",
-    quantity: "pressure between two tubes of radii 1, 1.5 and 2 m, of which the outer one is 1 mm too narrow, plane stress",
+    quantity: "pressure between two tubes of radii 1, 1.5 and 2 m, the outer of which is 1 mm too narrow, plane stress",
     unit: "Pa",
     source: "closed form: E δ (b² − a²) (c² − b²)/(2 b³ (c² − a²)) (G. Lamé, B. Clapeyron 1833)",
     over: Over::Cells("sides of a quarter of the outer tube"),

@@ -64,7 +64,7 @@ pub(super) const START: Case = Case {
     family: Family::Ledgers,
     quantity: "kinetic energy of a square of 1 m that begins with the velocity gradient ∂v/∂x = 1/s along one axis, divided by ρ",
     unit: "J m³/kg",
-    source: "exact: ½ ∫ x² dV = 1/24; the masses are at the nodes, which are too far out by the square of the cell size",
+    source: "exact: ½ ∫ x² dV = 1/24; the masses are at the nodes, so they lie too far out; the error falls with the square of the cell size",
     over: Over::Cells("cells along each side"),
     levels: &[8.0, 16.0, 32.0],
     expected: &[1.0 / 24.0],

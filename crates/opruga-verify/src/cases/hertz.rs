@@ -16,7 +16,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "hertz-line-bodies",
         quantity: "half width of the contact between two elastic cylinders of radii 1 and 2 m, the second of which is twice as stiff, relative to \
-that of Hertz at the same force, plane strain, by `equilibrium`",
+Hertz's value at the same force, plane strain, by `equilibrium`",
         source: "closed form: √(4 F R/(π E*)), 1/R = 1/R₁ + 1/R₂, 1/E* = (1 − ν²)(1/E₁ + 1/E₂) (H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, ch. 4)",
         over: Over::Cells("cells along an eighth of the smaller circle; 7/8 as many along the larger one"),
         levels: &[12.0, 24.0, 48.0],
@@ -26,7 +26,7 @@ that of Hertz at the same force, plane strain, by `equilibrium`",
     },
     Case {
         name: "hertz-sphere",
-        quantity: "radius of the contact between two equal elastic balls, relative to that of Hertz at the same force, by `equilibrium`",
+        quantity: "radius of the contact between two equal elastic balls, relative to Hertz's value at the same force, by `equilibrium`",
         source: "closed form: (3 F R/(4 E*))^⅓, R = R₁/2, E* = E/(2(1 − ν²)) (H. Hertz 1882; K. L. Johnson, Contact Mechanics, 1985, ch. 4)",
         over: Over::Cells("cells along an eighth of a great circle; one less for the other ball"),
         levels: &[4.0, 5.0, 6.0],

@@ -6,7 +6,7 @@ use crate::lab::{Lab, Scene, Trouble};
 
 const SQUARE: Case = Case {
     family: Family::Dynamics,
-    quantity: "ω/√κ of the fastest motion of a block that is one cluster, which no map follows",
+    quantity: "ω/√κ of the fastest motion that no map follows, in a block that is one cluster",
     source: "exact: U = ½ κ Σ m |x − g|² with a goal g that stays where it is",
     over: Over::Parameter("share β of the fitted map"),
     levels: &[0.0, 0.3, 0.8, 1.0],
@@ -19,7 +19,7 @@ const SQUARE: Case = Case {
 };
 
 const STRAIN: Case = Case {
-    quantity: "ω/√κ of the slowest strain of a block that is one cluster, which the fitted map follows",
+    quantity: "ω/√κ of the slowest strain that the fitted map follows, in a block that is one cluster",
     source: "exact: √(1 − β)",
     levels: &[0.1, 0.3, 0.8],
     expected: &[0.948_683_298_050_513_8, 0.836_660_026_534_075_6, 0.447_213_595_499_957_9],
@@ -55,7 +55,7 @@ pub(super) const DYNAMICS: &[Case] = &[
     Case { name: "matching-strain-3d", measure: |lab, b| space(lab, b, "linear", Wanted::Number(6)), ..STRAIN },
     Case {
         name: "matching-bend-3d-quadratic",
-        quantity: "ω/√κ of the last of the 24 motions that a quadratic map of a block follows, all but 6 of them with energy",
+        quantity: "ω/√κ of the last of the 24 motions of a block that a quadratic map follows; all but 6 of them have energy",
         measure: |lab, b| space(lab, b, "quadratic", Wanted::Number(29)),
         ..STRAIN
     },

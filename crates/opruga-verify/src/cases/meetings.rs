@@ -26,7 +26,7 @@ const SLOPE: Case = Case {
 pub(super) const CASES: &[Case] = &[
     Case {
         name: "bars-meet-swap",
-        quantity: "speed of a bar after an equal one has hit it, relative to the speed of that one before",
+        quantity: "speed of a bar after an equal bar has hit it, relative to the speed of the other bar before the impact",
         source: "exact: 1, they swap their speeds (B. de Saint-Venant 1867); no order: some vibration remains in a chain of masses",
         measure: |lab, n| Ok(impact(lab, n, 1.0, 0.0)?.gained),
         ..BARS
@@ -41,7 +41,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "bars-meet-stress",
-        quantity: "stress in the middle of a bar at rest after an equal one has hit it, divided by ρcv/2",
+        quantity: "stress in the middle of a bar at rest after an equal bar has hit it, divided by ρcv/2",
         source: "exact: ρcv/2 until the wave returns from the end (B. de Saint-Venant 1867)",
         measure: |lab, n| Ok(impact(lab, n, 1.0, 0.0)?.stress),
         ..BARS

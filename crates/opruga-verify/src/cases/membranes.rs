@@ -13,7 +13,8 @@ const SINGULAR: f64 = 1.354;
 const LINEAR: Case = Case {
     quantity: "upward displacement of the middle of the pulled side, linear, plane stress, E = 1, ν = 1/3, F = 1",
     unit: "m",
-    source: "R. D. Cook 1974; limit 23.9676 of graded quadratic triangles (153,000) of two other programs; order 2λ = 1.354 of the corner singularity, M. L. Williams 1952",
+    source: "R. D. Cook 1974; limit 23.9676 from two other programs with 153,000 graded quadratic triangles; order 2λ = 1.354 from the corner \
+singularity, M. L. Williams 1952",
     over: Over::Cells("cells along a side of the membrane"),
     expected: &[23.9676],
     check: Check::Order(SINGULAR),
@@ -51,7 +52,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "cook-linear-0-49-quadrilaterals",
         quantity: "upward displacement of the pulled corner, linear, plane strain, E = 1, ν = 0.49, F = 1",
-        source: "R. D. Cook 1974; 19.48 by 32 × 32 quadratic triangles of two other programs",
+        source: "R. D. Cook 1974; 19.48 from two other programs with 32 × 32 quadratic triangles",
         levels: &[8.0, 16.0, 32.0],
         expected: &[19.48],
         check: Check::Finest,
@@ -63,7 +64,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "cook-linear-0-49-quadratic-triangles",
         quantity: "upward displacement of the middle of the pulled side, linear, plane strain, E = 1, ν = 0.49, F = 1",
-        source: "R. D. Cook 1974; 18.63 by 32 × 32 quadratic triangles of two other programs",
+        source: "R. D. Cook 1974; 18.63 from two other programs with 32 × 32 quadratic triangles",
         levels: &[4.0, 8.0, 16.0],
         expected: &[18.63],
         check: Check::Finest,
@@ -82,7 +83,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         name: "cook-linear-0-49-triangles",
         quantity: "upward displacement of the pulled corner, linear, plane strain, E = 1, ν = 0.49, F = 1, nodal volumes",
-        source: "R. D. Cook 1974; 19.48 by 32 × 32 quadratic triangles of two other programs",
+        source: "R. D. Cook 1974; 19.48 from two other programs with 32 × 32 quadratic triangles",
         expected: &[19.48],
         levels: &[16.0, 32.0, 64.0],
         check: Check::Finest,
@@ -94,7 +95,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "cook-large-0-3",
-        source: "7.7648 by quadratic triangles of another program, μ/2 (I₁ − 3) − μ ln J + λ/2 ln² J, ν = 0.3",
+        source: "7.7648 from another program with quadratic triangles, μ/2 (I₁ − 3) − μ ln J + λ/2 ln² J, ν = 0.3",
         expected: &[7.7648],
         measure: |lab, n| {
             cook(
@@ -110,7 +111,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "cook-large-0-45",
-        source: "7.1660 by quadratic triangles of another program, μ/2 (I₁ − 3) − μ ln J + λ/2 ln² J, ν = 0.45",
+        source: "7.1660 from another program with quadratic triangles, μ/2 (I₁ − 3) − μ ln J + λ/2 ln² J, ν = 0.45",
         expected: &[7.1660],
         measure: |lab, n| {
             cook(

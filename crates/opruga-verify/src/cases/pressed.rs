@@ -9,8 +9,8 @@ use opruga::mesh::Mesh;
 use std::cell::Cell;
 
 const PATCH: Case = Case {
-    quantity: "two blocks with non-matching meshes are pressed together: largest deviation of the pressure on a node from the applied pressure, \
-relative to that",
+    quantity: "two blocks with non-matching meshes are pressed together: largest relative deviation of the pressure on a node from the applied \
+pressure",
     source: "exact: uniform pressure (R. L. Taylor, P. Papadopoulos 1991, contact patch test)",
     over: Over::Cells("cells along a side of the lower block; one more along that of the upper block"),
     levels: &[2.0, 3.0, 4.0],
@@ -55,8 +55,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "barrier-reaches-constraint",
-        quantity: "height of a block that presses on another one: with a barrier minus with a constraint",
-        source: "limit of a vanishing reach: the constraint",
+        quantity: "difference in height of a block that presses on another one, between a barrier and a constraint",
+        source: "in the limit of a vanishing reach: the constraint",
         unit: "m",
         // The amount by which the pressure reduces the height of each block.
         scale: Scale::Of(1e-3),
@@ -68,7 +68,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "hertz-line",
-        quantity: "half width of the contact between a cylinder of 1 m and a plane, relative to that of Hertz at the same force, plane strain",
+        quantity: "half width of the contact between a cylinder of 1 m and a plane, relative to Hertz's value at the same force, plane strain",
         source: "closed form: √(4 F R/(π E*)), E* = E/(1 − ν²) (H. Hertz 1882)",
         over: Over::Cells("cells along half of the width"),
         levels: &[16.0, 32.0, 64.0],

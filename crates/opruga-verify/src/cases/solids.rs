@@ -130,7 +130,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "hole-in-a-sheet",
-        quantity: "largest stress at a round hole in a stretched sheet, relative to that far away, quadrilaterals, ν = 0.3",
+        quantity: "largest stress at a round hole in a stretched sheet, relative to the stress far from it, quadrilaterals, ν = 0.3",
         unit: "",
         source: "G. Kirsch 1898: 3, with his displacements at four radii from the hole",
         over: Over::Cells("cells along each side"),

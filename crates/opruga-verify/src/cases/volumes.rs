@@ -49,7 +49,8 @@ const TUBE: Case = Case {
 const COOK: Case = Case {
     quantity: "upward displacement of the middle of the pulled side of Cook's membrane, linear, plane stress, E = 1, ν = 1/3, F = 1, finite volumes",
     unit: "m",
-    source: "R. D. Cook 1974; limit 23.9676 of graded quadratic triangles (153,000) of two other programs; order 2λ = 1.354 of the corner singularity, M. L. Williams 1952",
+    source: "R. D. Cook 1974; limit 23.9676 from two other programs with 153,000 graded quadratic triangles; order 2λ = 1.354 from the corner \
+singularity, M. L. Williams 1952",
     over: Over::Cells("cells along a side of the membrane"),
     levels: &[16.0, 32.0, 64.0],
     expected: &[23.9676],
