@@ -22,7 +22,7 @@ opruga::math::messages! {
         "recording.no_frame" #[error("the recording contains no frame")]
         Empty {},
         /// The scene inside and the states are inconsistent.
-        "recording.other_program" #[error("its scene does not produce its first state: another program recorded it")]
+        "recording.other_program" #[error("the scene of the recording does not produce its first state: another program recorded it")]
         OtherProgram {},
         /// Its end is damaged.
         "recording.damaged" #[error("after frame {frame}: {cause}")]

@@ -255,7 +255,7 @@ fn row_100_a_slider_that_was_drawn_too_far_shows_the_last_good_value_and_the_mes
     let node = window.harness.get_by_role_and_label(slider().1, slider().0);
     assert_eq!(node.accesskit_node().numeric_value(), Some(stiffness));
     assert!(matches!(shown.message.as_ref().and_then(|m| m.offer.clone()), Some(Offer::Substeps(_))));
-    window.harness.get_by_label_contains("substeps, with some to spare").click();
+    window.harness.get_by_label_contains("substeps, with a safety margin").click();
     window.until("it was taken", |shown| shown.substeps > 32);
     assert!(window.shown().bodies[0].models[0].number("stiffness").expect("one") > stiffness);
 }

@@ -160,7 +160,7 @@ mod tests {
         ];
         let mut harness = Harness::new_ui(move |ui| {
             for (rect, tools) in parts {
-                for label in ["strain", "volume over that at rest", "von Mises stress"] {
+                for label in ["strain", "volume / volume at rest", "von Mises stress"] {
                     for language in [Language::English, Language::Croatian] {
                         let (shown, paper) = (shown(label), Paper::of(ui));
                         let painter = ui.painter();

@@ -109,7 +109,7 @@ impl Language {
                 let name = self.done(&Step::Set(path.clone()));
                 either!(
                     self,
-                    "`{name}` can be left out only at the start: press Reset, and then ×",
+                    "`{name}` can be removed only at the start: press Reset, then ×",
                     "`{name}` se može izostaviti samo na početku: „Na početak”, pa ×"
                 )
             }
@@ -124,7 +124,7 @@ impl Language {
                 let warnings = if count == 1 { "1 warning".into() } else { format!("{count} warnings") };
                 either!(
                     self,
-                    "The command line ends here, at t = {time:.2} s, with {warnings}: {list}. In the window, time continues",
+                    "On the command line, the run ends here, at t = {time:.2} s, with {warnings}: {list}. In the window, time continues",
                     "Naredbeni redak ovdje završava, u t = {time:.2} s; upozorenja ({count}): {list}. U prozoru vrijeme teče dalje"
                 )
             }
@@ -165,7 +165,7 @@ impl Language {
                  copies",
                 "`{about}` ne stoji u samom prizoru; strane se mogu razlikovati u tijelima koja su ondje od početka i nisu kopije"
             ),
-            Report::NoText(file) => either!(self, "{file} is not text in UTF-8", "{file} nije tekst u UTF-8"),
+            Report::NoText(file) => either!(self, "{file} is not UTF-8 text", "{file} nije tekst u UTF-8"),
             Report::NoShapeFile(file, known) => either!(
                 self,
                 "{file} is neither a scene nor a shape; allowed: {known}",
@@ -173,7 +173,7 @@ impl Language {
             ),
             Report::NameOfFile(file) => either!(
                 self,
-                "{file}: a scene cannot name this file; rename it without quotes and backslashes",
+                "{file}: a scene cannot refer to a file with this name; rename it without quotes and backslashes",
                 "{file}: prizor ne može imenovati tu datoteku; preimenuj je bez navodnika i obrnutih kosih crta"
             ),
             Report::TooLarge(file, bytes, most) => either!(
@@ -194,7 +194,7 @@ impl Language {
             Report::LinkCopied => self.link_copied().into(),
             Report::AddressTooLong(letters, most) => either!(
                 self,
-                "the scene is too large for an address: {letters} letters; allowed: {most}. Save it as a file",
+                "the scene is too large for an address: {letters} characters; allowed: {most}. Save it as a file",
                 "prizor je prevelik za adresu: {letters} znakova; dopušteno: {most}. Spremi ga kao datoteku"
             ),
             Report::AddressUnknown(known) => either!(
@@ -214,8 +214,8 @@ impl Language {
             ),
             Report::WindowLost(file) => either!(
                 self,
-                "The last window was lost, probably because of its graphics driver. Your work is saved in {file} and continues here, at the last \
-moment that was kept",
+                "The last window was lost, probably because of its graphics driver. Your work is saved in {file}. The scene continues here from the \
+last saved moment",
                 "Posljednji prozor je izgubljen, vjerojatno s grafičkim upravljačkim programom. Učinjeno je spremljeno u {file} i \
                  nastavlja se ovdje: vrijeme stoji na zadnjem sačuvanom trenutku"
             ),
@@ -238,7 +238,7 @@ moment that was kept",
             (Language::Croatian, "pressure") => "tlak",
             (Language::Croatian, "speed") => "brzina",
             (Language::Croatian, "von Mises stress") => "naprezanje (von Mises)",
-            (Language::Croatian, "volume over that at rest") => "obujam / početni",
+            (Language::Croatian, "volume / volume at rest") => "obujam / početni",
             (Language::Croatian, label) => label,
         }
     }

@@ -58,7 +58,7 @@ impl Quantity {
             Quantity::Pressure => ("pressure", "Pa"),
             Quantity::Speed => ("speed", "m/s"),
             Quantity::VonMises => ("von Mises stress", "Pa"),
-            Quantity::VolumeRatio => ("volume over that at rest", ""),
+            Quantity::VolumeRatio => ("volume / volume at rest", ""),
             Quantity::Plain => return None,
         };
         // Most of a body has little stress, and the shading of a body is visible only if its colour is light.

@@ -112,7 +112,7 @@ fn two_configurations_stand_side_by_side_and_only_the_right_one_is_changed() {
     assert_eq!(shown.bodies[0].models[0].number("stiffness"), Some(1600.0), "the left one stays");
     assert!(shown.beside.as_ref().and_then(|b| b.distances).is_some_and(|[mean, _]| mean > 0.0));
     window.click("Plots");
-    assert!(window.harness.query_by_label("Distance of the sides [m]").is_some());
+    assert!(window.harness.query_by_label("Distance between the sides [m]").is_some());
     window.click("Plots");
     // The right side is pulled in the same way as the left one.
     let right = egui::pos2(window.canvas().right() - 0.25 * window.canvas().width(), window.canvas().center().y);
