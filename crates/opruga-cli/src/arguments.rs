@@ -19,8 +19,8 @@ pub(crate) use verify::Verify;
     max_term_width = 110,
     after_help = "Without a command, `opruga` opens the studio if there is a screen; otherwise it runs the scene \
                   `ball`.\n\nOPRUGA_SIMD=scalar|sse2|avx2|avx512 in the environment selects the vector instructions of the kernels; the default is \
-                  the best that the processor has. The results are the same to the bit. `scalar` stands for the instructions that every processor of \
-                  a kind has: `sse2` on x86-64."
+                  the best that the processor has. The results are the same to the bit. `scalar` selects the instructions that every processor of an \
+architecture has: `sse2` on x86-64."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -69,7 +69,7 @@ pub(crate) enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Print the reference of the scene format (Markdown), made from the descriptions in the code
+    /// Print the reference of the scene format (Markdown), generated from the descriptions in the code
     Reference {
         /// Print the JSON Schema for editors instead
         #[arg(long)]
@@ -77,7 +77,7 @@ pub(crate) enum Command {
     },
     /// Fill a surface or an outline with cells, look at a mesh, or write it in another format
     Mesh(Mesh),
-    /// Print energy density, stress and tangent of a material of finite elements at a deformation gradient
+    /// Print energy density, stress and tangent of a finite-element material at a deformation gradient
     Material(Material),
     /// Compare the engine with closed forms and published numbers; exit code 1 if a case fails
     Verify(Verify),
@@ -98,17 +98,17 @@ pub(crate) struct Mesh {
     pub(crate) out: Option<PathBuf>,
     /// Approximate length of the edges of cells [m]; required for surfaces and drawings
     ///
-    /// In space it is the side of the cubes of a lattice whose points move to the surface; edges are 0.9 of it on average.
-    /// Thinner parts may be lost; a message reports this.
+    /// In space, it is the side of the cubes of a lattice whose points move to the surface; edges are 0.9 of it on average.
+    /// Parts thinner than this may be lost; a message then reports it.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub(crate) size: Option<f64>,
     /// The longest side of the whole body [m], instead of the units of the file; required for drawings
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     pub(crate) scale_to: Option<f64>,
-    /// A field of the shape, as in a scene, such as layer=countries, feature=Italy, path=wing, text=opruga; may be given several times
+    /// Set a field of the shape, as in a scene, such as layer=countries, feature=Italy, path=wing, text=opruga; may be given several times
     #[arg(long = "set", value_name = "FIELD=VALUE")]
     pub(crate) set: Vec<String>,
-    /// With 2, also a node in the middle of every edge
+    /// The order of the cells: 1 has nodes at the corners only; 2 also has one in the middle of every edge
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2))]
     pub(crate) order: u32,
     /// Repair the mesh: flip inverted cells, drop nodes that no cell uses, merge vertices at the same position; report the number of each
@@ -162,8 +162,8 @@ pub(crate) struct Sweep {
     pub(crate) scene: Option<String>,
     /// The values of a parameter; may be given several times
     ///
-    /// PATH=a,b,c lists them. PATH=LOW..HIGH:COUNT has COUNT values, including both ends; with :log appended, neighbours have the same ratio, with
-    /// :whole, values are rounded. PATH=VALUE changes the parameter for all points. If several parameters vary, the points form a grid, unless --each
+    /// PATH=a,b,c lists them. PATH=LOW..HIGH:COUNT has COUNT values, including both ends; :log makes the ratios of neighbours equal, :whole rounds
+    /// the values. PATH=VALUE changes the parameter for all points. If several parameters vary, the points form a grid, unless --each
     /// or --sample is given.
     #[arg(long = "set", value_name = "PATH=VALUES", conflicts_with = "resume")]
     pub(crate) set: Vec<String>,
@@ -188,7 +188,7 @@ pub(crate) struct Sweep {
     /// PROBE.COLUMN.min, .max, .mean, .last for a column of a probe of the scene, such as top.y.max.
     #[arg(long = "metric", value_name = "METRIC", conflicts_with = "resume")]
     pub(crate) metrics: Vec<String>,
-    /// The simulated time at which runs end, instead of that of the scene [s]
+    /// The simulated time at which runs end [s] [default: that of the scene]
     #[arg(long, allow_negative_numbers = true, conflicts_with = "resume")]
     pub(crate) seconds: Option<f64>,
     /// The folder for the output [default: out/SCENE-sweep]
@@ -223,8 +223,7 @@ pub(crate) struct Sweep {
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Pictures {
     /// Pictures and exported frames per second of simulated time [default: 20]
-    ///
-    /// Above 0 up to 240, but never more than there are frames. There is a whole number of frames between two pictures: with frames of 1/60 s there
+    /// At most 240, and never more than there are frames. There is a whole number of frames between two pictures: with frames of 1/60 s there
     /// can be 60, 30, 20, 15, 12, … pictures per second, and the nearest rate is used.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) fps: Option<f64>,
@@ -267,7 +266,7 @@ pub(crate) struct Run {
     /// A scene file, or the name of a scene that comes with the program [default: ball]
     #[arg(conflicts_with = "resume")]
     pub(crate) scene: Option<String>,
-    /// The simulated time at which the run ends, instead of that of the scene [s]
+    /// The simulated time at which the run ends [s] [default: that of the scene]
     ///
     /// A run has whole frames; if the last one ends after this time, a note reports it. A resumed run that continues from t = 5 with --seconds 8 runs
     /// for 3 s; without --seconds, it ends where the earlier run was meant to end. 0 writes the state at the start.
@@ -287,7 +286,7 @@ pub(crate) struct Run {
     /// Also write Cauchy's stress, the von Mises stress and J of every node to final.csv
     ///
     /// The value at a node is the mean over the finite elements around it, weighted by their volume at rest. Columns: sxx, syy, szz, sxy,
-    /// in 3D syz and szx, von_mises (of that mean), volume_ratio. Nodes of bodies without finite elements have NaN.
+    /// in 3D also syz and szx, then von_mises (of the mean stress) and volume_ratio. Nodes of bodies without finite elements have NaN.
     #[arg(long)]
     pub(crate) stress: bool,
     /// Override a parameter, such as time.substeps=64; may be given several times
@@ -305,7 +304,7 @@ pub(crate) struct Run {
     /// The output covers the rest of the run only, so it goes to a folder of its own.
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
-    /// Seconds on the clock between two checkpoints during the run; 0: only at the end
+    /// Real time between two checkpoints during the run [s]; 0 writes one only at the end
     ///
     /// A run that is killed loses no more than that: `checkpoint` and `diagnostics.csv` reach up to then, and `checkpoint.previous` is the checkpoint
     /// before. --resume continues from either.
@@ -317,13 +316,13 @@ pub(crate) struct Run {
     /// --force replaces an existing file.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
-    /// Keep one state for every FRAMES frames of the recording; 1: all
+    /// Keep one state every FRAMES frames of the recording; 1 keeps all states
     ///
     /// States between them are computed again on request, and compared by their hashes. By default, the interval is chosen so that recording
     /// takes less than a tenth of the run; it is at most 32 frames.
     #[arg(long, value_name = "FRAMES", requires = "record", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) record_every: Option<u32>,
-    /// Write one row of diagnostics.csv for every FRAMES frames; 1: all
+    /// Write a row of diagnostics.csv every FRAMES frames; 1 writes every frame
     ///
     /// The first and the last frame always have a row. By default, every frame has a row if the table then stays below 67 MB. If it would be
     /// larger, rows are left out, and a warning counts them.
@@ -356,10 +355,10 @@ pub(crate) struct Run {
 pub(crate) struct Modes {
     /// A scene file, or the name of a scene that comes with the program
     pub(crate) scene: String,
-    /// The number of modes, from the lowest one: a number from 1, or `all`
+    /// The number of modes, starting with the lowest: a number from 1, or `all`
     #[arg(short = 'n', long = "count", default_value = "10", allow_negative_numbers = true, value_parser = count_of_modes)]
     pub(crate) count: usize,
-    /// The body [default: the first one]
+    /// The body whose modes are computed [default: the first one]
     #[arg(long, value_name = "NAME")]
     pub(crate) body: Option<String>,
     /// Find the modes about the equilibrium, which the integrator `equilibrium` computes, instead of the state at the start
@@ -392,15 +391,14 @@ pub(crate) struct Modes {
 pub(crate) struct Replay {
     /// A recording: a file that `opruga run --record` has written
     pub(crate) file: PathBuf,
-    /// Recompute every frame and compare its hash, and its whole state if that is kept; exit code 1 if one differs
-    ///
-    /// On its own, it writes nothing. With --out or another option for output, the output is written afterwards if all frames are the same.
+    /// Recompute every frame and compare its hash, and its whole state if that was kept; exit code 1 if a frame differs
+    /// On its own, it writes nothing. With --out or another output option, it writes the output afterwards if all frames are the same.
     #[arg(long)]
     pub(crate) verify: bool,
-    /// The simulated time to begin at [s] [default: the first frame]
+    /// The simulated time at which to begin [s] [default: the first frame]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) from: Option<f64>,
-    /// The simulated time to end at [s] [default: the last frame]
+    /// The simulated time at which to end [s] [default: the last frame]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
     #[command(flatten)]
@@ -411,13 +409,13 @@ pub(crate) struct Replay {
     /// Replace existing output
     #[arg(long)]
     pub(crate) force: bool,
-    /// Also write the frame of every picture as VTK (frame-000012.vtk …; ParaView opens frames.vtk.series)
+    /// Also write the state at every picture as VTK (frame-000012.vtk …; ParaView opens frames.vtk.series)
     #[arg(long)]
     pub(crate) vtk: bool,
-    /// Also write the frame of every picture as VTK XML, with displacements, groups and stress (ParaView opens frames.pvd)
+    /// Also write the state at every picture as VTK XML, with displacements, groups and stress (ParaView opens frames.pvd)
     #[arg(long)]
     pub(crate) vtu: bool,
-    /// Also write the run as animated glTF (run.glb): one morph target for the frame of every picture
+    /// Also write the run as animated glTF (run.glb), with one morph target per picture
     #[arg(long)]
     pub(crate) gltf: bool,
     /// Also write a point cache of every body (NAME.pc2), for the mesh of --obj
@@ -426,10 +424,10 @@ pub(crate) struct Replay {
     /// Also write a point cache of every body (NAME.mdd), for the mesh of --obj
     #[arg(long)]
     pub(crate) mdd: bool,
-    /// Also write the frame of every picture as Wavefront OBJ
+    /// Also write the state at every picture as Wavefront OBJ
     #[arg(long)]
     pub(crate) obj: bool,
-    /// Also write the frame of every picture as Stanford PLY
+    /// Also write the state at every picture as Stanford PLY
     #[arg(long)]
     pub(crate) ply: bool,
     /// Number of threads, 1 to 256; results do not depend on it

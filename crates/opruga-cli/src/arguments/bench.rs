@@ -5,13 +5,13 @@ use std::path::PathBuf;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Bench {
-    /// Rings of 8 to 1,048,576 vertices, and many of them: figure 4 of the thesis
+    /// One ring of 8 to 1,048,576 vertices, and many rings: figure 4 of the thesis
     Vertices(BenchVertices),
     /// A scene without pictures and files: milliseconds per frame, and what they are spent on
     Scene(BenchScene),
     /// Forces and Hessians of finite elements, nanoseconds per element
     Elements(BenchElements),
-    /// What `--record` adds to the frames of a scene: alternating runs with and without it
+    /// The time that `--record` adds to the frames of a scene, from alternating runs with and without it
     Record(BenchRecord),
     /// How long it takes to read a surface of many triangles, compared with reading the bytes of its file
     Load(BenchLoad),
@@ -24,13 +24,13 @@ pub(crate) struct BenchRecord {
     /// Override a parameter, such as time.substeps=64; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Number of frames per run [default: those of the scene]
+    /// Number of frames per run [default: as many as the scene has]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) frames: Option<u32>,
     /// Number of pairs of runs
     #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1_000))]
     pub(crate) rounds: u32,
-    /// Keep one state for every FRAMES frames, as `run --record-every` does [default: as `run --record` does]
+    /// Keep one state every FRAMES frames, as `run --record-every` does [default: as `run --record` does]
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) every: Option<u32>,
     /// The folder for the recording, which is removed afterwards [default: the system's folder for temporary files]
@@ -51,7 +51,7 @@ pub(crate) struct BenchLoad {
     /// Approximate number of triangles of the torus
     #[arg(long, default_value_t = 1_000_000, conflicts_with = "file", value_parser = clap::value_parser!(u32).range(100..=10_000_000))]
     pub(crate) triangles: u32,
-    /// How many times it is read
+    /// Number of times that the file is read
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=100))]
     pub(crate) rounds: u32,
     /// Print JSON
@@ -69,7 +69,7 @@ pub(crate) struct BenchScene {
     /// Number of frames that are timed
     #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) frames: u32,
-    /// Number of frames before them
+    /// Number of frames before the timed ones
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     pub(crate) after: u32,
     /// Allow shapes to be read from files outside the folder of the scene
@@ -82,10 +82,10 @@ pub(crate) struct BenchScene {
 
 #[derive(Args, Debug)]
 pub(crate) struct BenchElements {
-    /// Only this material of `fem`
+    /// Measure only this material of `fem`
     #[arg(long)]
     pub(crate) material: Option<String>,
-    /// Hexahedra along a side of the cube, each cut into six tetrahedra
+    /// Number of hexahedra along a side of the cube, each cut into six tetrahedra
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(2..=100))]
     pub(crate) cells: u32,
     /// Print JSON
@@ -107,7 +107,7 @@ pub(crate) struct BenchVertices {
     /// The integrator, one of those that `opruga list` shows
     #[arg(long, default_value = "symplectic_euler")]
     pub(crate) integrator: String,
-    /// Only one row: `36` for one ring of 36 vertices, `27778x36` for 27,778 of them
+    /// Measure only one row: `36` for one ring of 36 vertices, `27778x36` for 27,778 of them
     #[arg(long, value_name = "[RINGSx]VERTICES")]
     pub(crate) only: Option<String>,
     /// Processor time spent on each row, above 0 up to 600 [s]

@@ -9,7 +9,7 @@ pub(crate) struct Material {
     /// The deformation gradient F = ∂x/∂X row by row: 4 numbers for the plane, 9 for space, such as 1.1,0,0,1
     #[arg(long = "F", value_name = "NUMBERS", allow_hyphen_values = true)]
     pub(crate) gradient: String,
-    /// Young's modulus E [Pa]; with 1 Pa all stresses are fractions of E
+    /// Young's modulus E [Pa]; with 1 Pa, all stresses are fractions of E
     #[arg(long = "E", value_name = "PA", allow_negative_numbers = true, default_value_t = 1.0)]
     pub(crate) youngs_modulus: f64,
     /// Poisson's ratio ν
@@ -18,7 +18,7 @@ pub(crate) struct Material {
     /// In the plane: nothing moves across it (strain), or no stress acts across it (stress) [default: strain]
     #[arg(long, value_name = "WORD")]
     pub(crate) plane: Option<String>,
-    /// Another number of the material, as in a scene, such as mooney_share=0.2; may be given several times
+    /// Set another number of the material, as in a scene, such as mooney_share=0.2; may be given several times
     #[arg(long = "set", value_name = "FIELD=VALUE")]
     pub(crate) set: Vec<String>,
     /// Print JSON, with all digits
