@@ -14,9 +14,9 @@ opruga::math::messages! {
         "read.not_regular_file" #[error("this is not a regular file")]
         NotARegularFile {},
         "scene.no_scene" #[error("this is the file of a shape, not a scene")]
-        #[hint("a scene names it: shape = {{ kind = \"{kind}\", file = \"{file}\", … }}; `opruga mesh` looks at it")]
+        #[hint("a scene names it: shape = {{ kind = \"{kind}\", file = \"{file}\", … }}; `opruga mesh` shows it")]
         ShapeFile { kind: &'static str, file: String },
-        "material.gradient" #[error("`--F` has `{word}`, which is not a finite number")] #[value("{word}")]
+        "material.gradient" #[error("`--F` contains `{word}`, which is not a finite number")] #[value("{word}")]
         #[allowed("4 finite numbers (2D) or 9 (3D), row by row")]
         #[hint("--F 1.1,0,0,1 stretches the plane by a tenth along x; --F 1,0,0,0,1,0,0,0,1 is the state at rest in space")]
         GradientNumber { word: String },
@@ -59,7 +59,7 @@ opruga::math::messages! {
         Arguments { text: String },
         "call" #[error("{option} is {value}; allowed: {allowed}")]
         OutOfRange { option: &'static str, value: String, allowed: CallRange },
-        "call" #[error("OPRUGA_SIMD={name}: allowed are scalar, sse2, avx2, avx512")]
+        "call" #[error("OPRUGA_SIMD={name} is unknown; allowed: scalar, sse2, avx2, avx512")]
         NoInstructions { name: String },
         "call" #[error("there is no integrator `{name}`")] #[hint("did you mean `{closest}`?")]
         NoIntegratorNear { name: String, closest: String },
@@ -73,9 +73,9 @@ opruga::math::messages! {
         UnknownEnding { path: String, ending: String, known: &'static str },
         "call" #[error("{path} is not a file name in UTF-8")]
         NotUtf8 { path: String },
-        "call" #[error("--size is missing")] #[hint("--size H: approximate length of the edges [m]")]
+        "call" #[error("--size is missing")] #[hint("--size H sets the approximate length of the edges [m]")]
         NoSize {},
-        "call" #[error("--scale-to is missing")] #[hint("--scale-to L: the longer side of the drawing [m]")]
+        "call" #[error("--scale-to is missing")] #[hint("--scale-to L sets the longer side of the drawing [m]")]
         NoScale {},
         "call" #[error("--set text=… is missing")]
         #[hint("--set text=… gives the text to write in the font, such as --set text=opruga")]
@@ -87,34 +87,34 @@ opruga::math::messages! {
         NoShape { path: String, ending: String, meshes: &'static str },
         "call" #[error("{path}: files ending in `.toml` contain no shape")] #[hint("`opruga check` and `opruga run` read scenes")]
         SceneAsShape { path: String },
-        "call" #[error("the file contains nothing that can fill a body")]
+        "call" #[error("the file contains no cells that could fill a body")]
         NothingFills {},
-        "call" #[error("a film cannot have {rate} pictures per second: --fps {fps}, frames of {frame} s")]
+        "call" #[error("--fps {fps} with frames of {frame} s would give {rate} pictures per second")]
         #[hint("allowed rates are 0.0001 to 10000; --no-pictures writes no film")]
         FilmRate { rate: String, fps: String, frame: String },
         "call" #[error("--gltf, --pc2 and --mdd keep the whole run in memory, here more than {bytes} bytes")]
-        #[hint("a lower --fps, or --from and --to")]
+        #[hint("use a lower --fps, or write only a part with --from and --to")]
         RunTooLong { bytes: usize },
         "call" #[error("there is no frame from {} s to {} s: the recording has frames from {} s to {} s, {} s apart", number(*from), number(*to), number(*first), number(*last), number(*apart))]
         NoFrame { from: f64, to: f64, first: f64, last: f64, apart: f64 },
         "call" #[error("the checkpoint is at t = {} s, and the run ends at {} s: nothing is left to do", number(*time), number(*end))]
-        #[hint("--seconds is the simulated time at which the run ends: give one above {}", number(*time))]
+        #[hint("--seconds is the simulated time at which the run ends; it must be above {}", number(*time))]
         NothingLeft { time: f64, end: f64 },
         "call" #[error("`{scene}` comes with the program and never changes: --watch needs a file")] #[hint("`opruga new NAME` writes one")]
         NeverChanges { scene: String },
-        "call" #[error("there is no screen here to open a window on")] #[hint("`opruga run {scene}` runs without a window and writes pictures")]
+        "call" #[error("there is no screen on which a window could be opened")] #[hint("`opruga run {scene}` runs without a window and writes pictures")]
         NoScreen { scene: String },
-        "call" #[error("there is no screen here to open a window on")] #[hint("`opruga replay {file}` writes its pictures")]
+        "call" #[error("there is no screen on which a window could be opened")] #[hint("`opruga replay {file}` writes its pictures")]
         NoScreenForRecording { file: String },
-        "call" #[error("the program `opruga-studio` is not in the folder of this one")] #[hint("cargo install --path crates/opruga-studio")]
+        "call" #[error("the program `opruga-studio` is not in the same folder as this one")] #[hint("`cargo install --path crates/opruga-studio` installs it")]
         NoStudio {},
         "call" #[error("the studio cannot be started: {reason}")]
         StudioNotStarted { reason: String },
         "call" #[error("the scene has no body")]
         NoBody {},
-        "call" #[error("no case is called `{word}`; families are {families}")] #[hint("did you mean `{closest}`? `opruga verify --list` shows all cases")]
+        "call" #[error("no case or family is called `{word}`; the families are {families}")] #[hint("did you mean `{closest}`? `opruga verify --list` shows all cases")]
         NoCaseNear { word: String, families: String, closest: String },
-        "call" #[error("no case is called `{word}`; families are {families}")] #[hint("`opruga verify --list` shows all cases")]
+        "call" #[error("no case or family is called `{word}`; the families are {families}")] #[hint("`opruga verify --list` shows all cases")]
         NoCase { word: String, families: String },
     }
 }
@@ -156,23 +156,23 @@ opruga::math::messages! {
         AboveCores { threads: usize, cores: usize },
         "simd.other" #[error("OPRUGA_SIMD=scalar: the kernels use {used}, which every processor of this kind has")]
         NeverScalar { used: &'static str },
-        "simd.other" #[error("OPRUGA_SIMD={asked}: this processor lacks them; the kernels use {used}")]
+        "simd.other" #[error("OPRUGA_SIMD={asked}: this processor does not have these instructions; the kernels use {used}")]
         InstructionsLacking { asked: String, used: &'static str },
         "diagnostics.thinned"
-        #[error("diagnostics.csv would have about {megabytes} MB, more than the default limit of {most} MB: one frame in {apart} has a row; --diagnostics-every 1 writes all")]
+        #[error("diagnostics.csv would have about {megabytes} MB, more than the default limit of {most} MB, so only one frame in {apart} has a row; --diagnostics-every 1 writes all rows")]
         Thinned { megabytes: u64, most: u64, apart: u64 },
         "checkpoint.failed" #[error("a checkpoint during the run could not be written: {cause}")]
         CheckpointFailed { cause: AnyMessage },
-        "checkpoint.failed" #[error("no checkpoint at t = {} s: {path}: {cause}", number(*time))]
+        "checkpoint.failed" #[error("no checkpoint was written at t = {} s: {path}: {cause}", number(*time))]
         NoCheckpoint { time: f64, path: String, cause: AnyMessage },
         "recording.open"
-        #[error("the recording has no end: its run was killed or still runs; {} up to t = {} s {} complete, {} after {} not a complete frame",
+        #[error("the recording has no end: its run was killed or is still running; {} up to t = {} s {} complete, {} after {} not a complete frame",
             counted(*frames, "frame", "frames"), number(*until), if *frames == 1 { "is" } else { "are" },
             counted(*lost, "byte", "bytes"), if *lost == 1 { "it is" } else { "them are" })]
         NoEnd { frames: u64, until: f64, lost: u64 },
         "recording.program" #[error("{program} wrote the recording; this is {now}")]
         OtherProgram { program: String, now: &'static str },
-        "scene.changed" #[error("{file} has changed since the recording, which uses its own copy")]
+        "scene.changed" #[error("{file} has changed since the run was recorded; the recording uses its own copy")]
         SceneChanged { file: String },
         "pictures.thinned" #[error("pictures of {nodes} nodes would take {mebibytes} MiB; one frame in {every} is kept")]
         PicturesThinned { nodes: usize, mebibytes: u64, every: u64 },
@@ -181,11 +181,11 @@ opruga::math::messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CallNote {
         "run.whole_frames"
-        #[error("a run has whole frames: it ends at t = {} s, not at {} s, after {} of {} s",
+        #[error("a run consists of whole frames: it ends at t = {} s, not at {} s, after {} of {} s",
             number(*reached), number(*asked), counted(*frames, "frame", "frames"), rounded(*frame, 4))]
         WholeFrames { reached: f64, asked: f64, frames: u64, frame: f64 },
         "run.takes_long"
-        #[error("the run will take about {duration} more ({} of {} s). Shorter: {shorter}", counted(*frames, "frame", "frames"), rounded(*each, 2))]
+        #[error("the run will take about {duration} more ({} of {} s). To shorten it: {shorter}", counted(*frames, "frame", "frames"), rounded(*each, 2))]
         TakesLong { duration: String, frames: u64, each: f64, shorter: Shorter },
         "pictures.rate"
         #[error("{} pictures per second, not {} (--fps): the time between two pictures is a whole number of frames of the scene, here {} of {} s each",

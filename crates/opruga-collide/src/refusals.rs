@@ -27,10 +27,10 @@ messages! {
         "collider.no_room" #[error("`thickness` is {thickness}")] #[parameters("thickness")] #[allowed("less than half of every side, {half}")]
         FilledBox { thickness: f64, half: f64 },
         /// A normal without a direction.
-        "collider.no_direction" #[error("`normal` is {normal}")] #[parameters("normal")] #[allowed("a vector of a length above {least}")]
+        "collider.no_direction" #[error("`normal` is {normal}")] #[parameters("normal")] #[allowed("a vector with a length above {least}")]
         NoNormal { normal: String, least: String },
         /// A capsule without a direction.
-        "collider.no_direction" #[error("`a` is {a} and `b` is {b}")] #[parameters("a", "b")] #[allowed("two different points (one point is a `ball`)")]
+        "collider.no_direction" #[error("`a` is {a} and `b` is {b}")] #[parameters("a", "b")] #[allowed("two different points (for one point, use a `ball`)")]
         NoAxis { a: String, b: String },
         /// A box that is given twice or not at all.
         "collider.box_fields" #[error("needs either `min` and `max`, or `center` and `size`")] #[parameters("min", "max", "center", "size")]
@@ -57,7 +57,7 @@ messages! {
         "collider.flat_hull" #[error("the hull of the {count} `points` has no volume")] #[parameters("points")] #[allowed("points that are not all in one plane")]
         NoVolume { count: usize },
         /// A segment without a length.
-        "collider.degenerate_facet" #[error("points {first} and {second} are both at {position}")] #[allowed("segments of a length above 0")]
+        "collider.degenerate_facet" #[error("points {first} and {second} are both at {position}")] #[allowed("segments with a length above 0")]
         SamePoints { first: usize, second: usize, position: String },
         /// A triangle without an area.
         "collider.degenerate_facet" #[error("triangle {triangle} with points {points} has no area")] #[allowed("triangles with an area")]

@@ -21,8 +21,9 @@ macro_rules! collider {
                 Field::new("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact. The speed before an \
 impact is that with which a node meets the surface within the step: √(u² + 2 a g) with its speed u and gap g at the start of the step and its \
 acceleration a by forces, but at most the speed at the end of the step, so that an impact creates no energy. With `rest_speed = 0` it is always the \
-speed at the end of the step, as in the thesis, and a node that is pushed on gains a little energy. `symplectic_euler` loses about m g h v of energy \
-from one impact with speed v to the next (a tenth in 20 s from 1 m at 16 substeps); `verlet` loses none."),
+speed at the end of the step, as in the thesis, and a node that forces push towards the surface gains a little energy. Between two impacts at speed \
+v, `symplectic_euler` loses about m g h v of energy: a ball dropped from 1 m loses a tenth of its energy in 20 s at 16 substeps. `verlet` loses \
+none."),
                 Field::new("friction", Allowed::NOT_NEGATIVE, "", ZERO, "Coulomb's coefficient µ, for both sticking and sliding."),
                 Field::new("rest_speed", Allowed::NOT_NEGATIVE, "m/s", Default::Number(0.05), "Normal speed up to which a contact does not bounce; \
 with 0 every crossing bounces, even that of a node at rest on the collider.").applies(&[Condition::NotZero("restitution")]),
@@ -51,15 +52,15 @@ both! { HALF_SPACE_2D, HALF_SPACE_3D, "half_space", &[Role::HalfSpace],
     Field::new("normal", Allowed::Direction, "", Default::Required, "Direction out of the solid."),
 }
 
-const BOX_TEXT: &str = "Solid inside, or (`inside = true`) a container that keeps bodies within its walls. Given by two opposite corners, or by \
-centre and size and then possibly turned. A node inside leaves through the nearest face; a node that is faster than a quarter of the smallest side \
-per step leaves through the face by which it came in.";
+const BOX_TEXT: &str = "Solid inside, or (`inside = true`) a container that keeps bodies within its walls. The box is given by two opposite corners, \
+or by its centre and size; it can then also be rotated. A node inside leaves through the nearest face; a node that is faster than a quarter of the \
+smallest side per step leaves through the face by which it came in.";
 const MIN: Field = Field::new(
     "min",
     Allowed::Vector,
     "m",
     Default::Absent,
-    "Corner with the least coordinates; with `max`, instead of `center` and `size`.",
+    "Corner with the least coordinates; give it with `max`, instead of `center` and `size`.",
 )
 .with(&["max"]);
 const MAX: Field =
@@ -69,7 +70,7 @@ const CENTER: Field = Field::new(
     Allowed::Vector,
     "m",
     Default::Absent,
-    "Centre of the box; with `size`, instead of `min` and `max`.",
+    "Centre of the box; give it with `size`, instead of `min` and `max`.",
 )
 .with(&["size"]);
 const SIZE: Field =
@@ -79,21 +80,21 @@ const INSIDE_BOX: Field =
 
 collider! {
     /// The parameters of `box` in 2D.
-    BOX_2D, "box", 2, Allowed::ANY, &[], "a box, solid or as a container", BOX_TEXT;
+    BOX_2D, "box", 2, Allowed::ANY, &[], "a box: solid, or a container", BOX_TEXT;
     MIN, MAX, CENTER, SIZE,
     Field::new("rotation", Allowed::ANY, "rad", Default::Absent, "Angle by which the box is turned about its centre, counterclockwise."),
     INSIDE_BOX,
 }
 collider! {
     /// The parameters of `box` in 3D.
-    BOX_3D, "box", 3, Allowed::Vector, &[], "a box, solid or as a container", BOX_TEXT;
+    BOX_3D, "box", 3, Allowed::Vector, &[], "a box: solid, or a container", BOX_TEXT;
     MIN, MAX, CENTER, SIZE,
     Field::new("rotation", Allowed::Vector, "rad", Default::Absent, "Rotation vector (axis times angle) by which the box is turned about its centre."),
     INSIDE_BOX,
 }
 
 both! { BALL_2D, BALL_3D, "ball", &[],
-    "a disc (2D) or ball (3D), solid or as a container",
+    "a disc (2D) or ball (3D): solid, or a container",
     "Solid where |x − center| < radius, or outside of it (`inside = true`). A node exactly at the centre leaves along +y.";
     Field::new("center", Allowed::Vector, "m", Default::Origin, "The centre."),
     Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
@@ -101,8 +102,8 @@ both! { BALL_2D, BALL_3D, "ball", &[],
 }
 
 both! { CAPSULE_2D, CAPSULE_3D, "capsule", &[],
-    "all points nearer to a segment than a radius",
-    "Solid where the distance to the segment a b is below the radius. A node exactly on the segment leaves at a right angle to it.";
+    "all points within a given distance of a segment",
+    "Solid where the distance to the segment from a to b is less than the radius. A node exactly on the segment leaves at a right angle to it.";
     Field::new("a", Allowed::Vector, "m", Default::Required, "One end of the segment."),
     Field::new("b", Allowed::Vector, "m", Default::Required, "The other end, a different point from `a`."),
     Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
@@ -114,9 +115,9 @@ both! { CONVEX_2D, CONVEX_3D, "convex", &[],
     Field::new("points", Allowed::Points, "m", Default::Required, "Points whose hull has an area (2D) or a volume (3D)."),
 }
 
-const THIN: &str = "An infinitely thin surface that holds nodes back on both sides: a node stays on the side on which it was before the step, \
-however fast it is. Nodes keep a distance of at least a hundred-millionth of its size. A node that starts exactly on it goes to the side of the \
-normal (in 2D, to the left of the direction in which the points run, in 3D by the right-hand rule).";
+const THIN: &str = "An infinitely thin surface that stops nodes from either side: a node stays on the side on which it was before the step, however \
+fast it is. Nodes keep a distance of at least a hundred-millionth of its size. A node that starts exactly on it goes to the side of the normal (in \
+2D, to the left of the direction in which the points run, in 3D by the right-hand rule).";
 
 collider! {
     /// The parameters of `polyline` (2D).
@@ -128,7 +129,7 @@ collider! {
     /// The parameters of `triangle_mesh` (3D).
     TRIANGLE_MESH, "triangle_mesh", 3, Allowed::Vector, &[], "a thin surface of triangles, open or closed", THIN;
     Field::new("points", Allowed::Points, "m", Default::Required, "The corners of the triangles."),
-    Field::new("triangles", Allowed::Integers, "", Default::Required, "Three numbers of points per triangle, counted from 0."),
+    Field::new("triangles", Allowed::Integers, "", Default::Required, "Three point numbers per triangle, counted from 0."),
 }
 
 /// The specification of every kind of collider that exists in a dimension.

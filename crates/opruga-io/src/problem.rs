@@ -27,7 +27,7 @@ opruga_math::messages! {
         AtTime { time: f64, about: AnyMessage },
         "part.label" #[error("did you mean `{word}`?")]
         Nearest { word: String },
-        "part.label" #[error("without --strict this is a warning")]
+        "part.label" #[error("without --strict, this is a warning")]
         NotStrict {},
     }
 }

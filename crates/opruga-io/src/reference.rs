@@ -8,7 +8,8 @@ use std::fmt::Write as _;
 
 /// The reference page in Markdown.
 pub fn markdown(catalogue: &Catalogue) -> String {
-    let mut out = String::from("# The scene file\n\n<!-- Made from the descriptions in the code; do not edit. -->\n\n");
+    let mut out =
+        String::from("# The scene file\n\n<!-- Generated from the descriptions in the code; do not edit. -->\n\n");
     out.push_str(INTRODUCTION);
     table(&mut out, "## ", &SCENE, None);
     for child in SCENE.children {

@@ -18,17 +18,17 @@ messages! {
     pub(crate) enum RefusalHint {
         "part.refusal_hint" #[error("substeps >= {substeps}, such as --set time.substeps={substeps}; or another integrator")]
         Substeps { substeps: u32 },
-        "part.refusal_hint" #[error("another `value`: a frame has at most {most} substeps")]
+        "part.refusal_hint" #[error("use another `value`: a frame has at most {most} substeps")]
         OtherValue { most: u32 },
-        "part.refusal_hint" #[error("a `value` of {substeps} or more, or another integrator")]
+        "part.refusal_hint" #[error("use a `value` of {substeps} or more, or another integrator")]
         LargerValue { substeps: u32 },
-        "part.refusal_hint" #[error("another `value`, or substeps >= {substeps} when the command begins, set by an earlier command")]
+        "part.refusal_hint" #[error("use another `value`, or an earlier command that sets substeps >= {substeps}")]
         ValueOrEarlierCommand { substeps: u32 },
-        "part.refusal_hint" #[error("another `value`, or substeps >= {substeps} when the command begins, such as --set time.substeps={substeps}")]
+        "part.refusal_hint" #[error("use another `value`, or substeps >= {substeps} when the command begins, such as --set time.substeps={substeps}")]
         ValueOrSubsteps { substeps: u32 },
-        "part.refusal_hint" #[error("a softer or heavier body, or substeps >= {substeps} when the command begins, set by an earlier command")]
+        "part.refusal_hint" #[error("use a softer or heavier body, or an earlier command that sets substeps >= {substeps}")]
         BodyOrEarlierCommand { substeps: u32 },
-        "part.refusal_hint" #[error("a softer or heavier body, or substeps >= {substeps} when the command begins, such as --set time.substeps={substeps}")]
+        "part.refusal_hint" #[error("use a softer or heavier body, or substeps >= {substeps} when the command begins, such as --set time.substeps={substeps}")]
         BodyOrSubsteps { substeps: u32 },
     }
 

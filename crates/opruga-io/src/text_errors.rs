@@ -100,7 +100,7 @@ messages! {
         NoEntry { list: String, index: usize, last: usize },
         "set.path" #[error("`{list}` has no entry `{name}`")] #[value("{name}")] #[allowed("{known}")]
         NoEntryCalled { list: String, name: String, known: String },
-        "set.path" #[error("`{list}` has {count} entries `{name}`")] #[value("{name}")] #[allowed("their numbers: {indices}")]
+        "set.path" #[error("`{list}` has {count} entries called `{name}`")] #[value("{name}")] #[allowed("their numbers: {indices}")]
         SeveralEntries { list: String, count: usize, name: String, indices: String },
         "set.path" #[error("`{value}` is {kind}, which has no fields")] #[value("{field}")]
         NoFields { value: String, kind: ValueKind, field: String },

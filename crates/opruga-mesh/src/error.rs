@@ -121,7 +121,7 @@ messages! {
         "part.mesh" #[error("`{name}` has {values} numbers, {components} per node, for {nodes} nodes")]
         NodeValues { name: String, values: usize, components: usize, nodes: usize },
         /// An operation that supports only triangles and tetrahedra was applied to another cell.
-        "part.mesh" #[error("a {element} is not a triangle or tetrahedron; cut it into these first")]
+        "part.mesh" #[error("elements of the kind {element} are neither triangles nor tetrahedra; cut them into these first")]
         NotSimplices { element: Element },
         /// Hexahedra that cannot be cut into five tetrahedra each such that common faces are cut in the same way.
         "part.mesh" #[error("the hexahedra around the edge from node {} to node {} cannot alternate: a loop of an odd number of edges passes through it",
@@ -130,14 +130,14 @@ messages! {
         /// The spacing of a filling is missing.
         "part.mesh" #[error("`spacing` is missing: the side of the cubes that the filling is made of [m]")]
         NoSpacing {},
-        /// A filling is so coarse that it is not connected in the same way as its surface.
-        "part.mesh" #[error("with a spacing of {} m the filling of {} falls into {pieces} pieces", number(*spacing), counted(*parts as u64, "closed surface", "closed surfaces"))]
+        /// A filling is not connected as its surface is, because it is too coarse.
+        "part.mesh" #[error("with a spacing of {} m, the filling of {} falls into {pieces} pieces", number(*spacing), counted(*parts as u64, "closed surface", "closed surfaces"))]
         Torn { spacing: f64, pieces: usize, parts: usize },
-        /// A filling is so coarse that its volume differs much from that enclosed by its surface.
-        "part.mesh" #[error("with a spacing of {} m the filling would have {kept:.2} of the volume{}", number(*spacing), keeps(*finer))]
+        /// A filling has much less or more volume than its surface encloses, because it is too coarse.
+        "part.mesh" #[error("with a spacing of {} m, the filling would have {kept:.2} of the volume{}", number(*spacing), keeps(*finer))]
         Lost { spacing: f64, kept: f64, finer: Option<f64> },
         /// A three-dimensional element in a plane mesh, or a filled plane cell in a mesh in space.
-        "part.mesh" #[error("a mesh of {dimension} dimensions cannot contain a {element}")]
+        "part.mesh" #[error("a mesh of {dimension} dimensions cannot contain elements of the kind {element}")]
         WrongDimension { element: Element, dimension: usize },
         /// Sheet quadrilateral k is not the union of sheet triangles 2k and 2k + 1.
         "part.mesh" #[error("sheet quadrilateral {index} is not cut into sheet triangles {} and {}", 2 * u64::from(*index), 2 * u64::from(*index) + 1)]

@@ -8,7 +8,7 @@ opruga_math::messages! {
     pub enum VideoError {
         /// A frame has no pixels, or more than the format allows.
         "video.size"
-        #[error("a film of {width} by {height} pixels is impossible")]
+        #[error("a film cannot have {width} by {height} pixels")]
         #[allowed("1 to 16384 per side, and at most 35 million in all")]
         Size { width: u32, height: u32 },
         /// The size of a frame differs from that of the film.

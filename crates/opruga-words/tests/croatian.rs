@@ -107,7 +107,7 @@ fn what_a_model_refuses_in_a_step_comes_with_what_helps_under_the_settings_of_th
     assert!(croatian.ends_with(&format!("; savjet: {hint}")), "{croatian}");
     let english = error.in_full();
     assert!(
-        english.ends_with("; hint: `when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`"),
+        english.ends_with("; hint: use `when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`"),
         "{english}"
     );
 }

@@ -103,19 +103,19 @@ messages! {
         /// More pairs may touch in a step than the scene allows. Contains the time of the last good frame \[s\].
         "limit.contacts"
         #[error("more than {most} pairs of vertices, edges and facets may touch in a step ({found} were found) in the frame from t = {} s; the world is at its last good frame", number(*last))]
-        #[allowed("{most}")] #[hint("a larger `most_pairs` in `[contact]`, or coarser surfaces")]
+        #[allowed("{most}")] #[hint("use a larger `most_pairs` in `[contact]`, or coarser surfaces")]
         TooManyContacts { found: usize, most: usize, last: f64 },
         /// Surfaces that a barrier should keep apart meet. The second is another body, the same body, or an obstacle. Contains the time at the end of
         /// the substep \[s\].
         "contact.surfaces_meet"
         #[error("the surfaces of `{first}` and {} meet at t = {} s, but a barrier needs a gap; the world is at its last good frame", other(first, second), number(*time))]
-        #[hint("bodies that begin apart, a smaller `thickness`, or `response = \"constraint\"`")]
+        #[hint("move the bodies apart, or use a smaller `thickness` or `response = \"constraint\"`")]
         Meet { first: String, second: String, time: f64 },
         /// Pins and obstacles move bodies through one another. The second is another body, the same body, or an obstacle. Contains the time at the
         /// end of the substep \[s\].
         "contact.led_through"
         #[error("pins and obstacles move `{first}` through {} at t = {} s; the world is at its last good frame", other(first, second), number(*time))]
-        #[hint("another path of these pins or obstacles, or `touch = false` for the pair")]
+        #[hint("use another path for these pins or obstacles, or `touch = false` for the pair")]
         LedThrough { first: String, second: String, time: f64 },
         /// The frame was cancelled from outside ([`crate::Options::break_off`]).
         "run.broken_off" #[error("the frame was interrupted; the world is at its last good frame")]

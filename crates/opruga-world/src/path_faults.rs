@@ -26,7 +26,7 @@ messages! {
         NoBodyThen { time: f64 },
         "part.path" #[error("body `{body}` has no model `{kind}`")] #[allowed("{known}")]
         NoModel { body: String, kind: String, known: String },
-        "part.path" #[error("body `{body}` follows the integrator of the scene: integrator.{field}")]
+        "part.path" #[error("body `{body}` uses the integrator of the scene: integrator.{field}")]
         FollowsScene { body: String, field: String },
         "part.path" #[error("there is no such integrator")]
         NoSuchIntegrator {},
@@ -64,7 +64,7 @@ messages! {
         NoCommand {},
         "part.path" #[error("only a drag has a path")]
         NoDrag {},
-        "part.path" #[error("a row of its path must be a later time and a point, all of them finite numbers")]
+        "part.path" #[error("each row of its path must contain a later time and a point, all of them finite numbers")]
         Row {},
         "part.path" #[error("it begins at {at} s and cannot end at {until} s")]
         CannotEnd { at: f64, until: f64 },
@@ -82,7 +82,7 @@ messages! {
         NoForm {},
         "part.path" #[error("the scene has another dimension")]
         OtherDimension {},
-        "part.path" #[error("the scene adds nothing now")]
+        "part.path" #[error("no command of the scene has added a body yet")]
         AddsNothing {},
         "part.path" #[error("no cell of the body has all of its nodes selected")] #[allowed("all nodes of at least one cell")]
         NoCells {},
@@ -117,9 +117,9 @@ messages! {
         NoObstacle {},
         "part.snapshot" #[error("it changes a body that does not exist")]
         NoBody {},
-        "part.snapshot" #[error("it holds a body that no command here adds")]
+        "part.snapshot" #[error("it contains a body that no command of this scene adds")]
         NotAdded {},
-        "part.snapshot" #[error("a body has the mesh of a body that does not exist")]
+        "part.snapshot" #[error("a body uses the mesh of a body that does not exist")]
         NoMesh {},
         "part.snapshot" #[error("the origin of a body is of an unknown kind")]
         FromNowhere {},
@@ -145,7 +145,7 @@ messages! {
         NotFinite { body: String },
         "part.snapshot" #[error("it has another number of commands")]
         CommandCount {},
-        "part.snapshot" #[error("a command holds something that does not exist")]
+        "part.snapshot" #[error("a command refers to something that does not exist")]
         CommandHolds {},
         "part.snapshot" #[error("a command is in an unknown state")]
         CommandState {},

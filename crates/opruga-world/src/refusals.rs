@@ -25,7 +25,7 @@ messages! {
         "stale_handle" #[error("the body of this handle is no longer in this world, or never was")]
         #[hint("`World::body` finds a body by its name, `World::handle` gives a handle of it")]
         StaleHandle {},
-        "model.cells_twice" #[error("cell {cell} belongs to the models {first} and {second} of the body, whose stiffness would add up")]
+        "model.cells_twice" #[error("cell {cell} belongs to the models {first} and {second} of the body, whose stiffnesses would add up")]
         #[allowed("every cell in one `{kind}` model")] #[hint("use `cells` to name groups without common cells")]
         CellsTwice { cell: u32, first: usize, second: usize, kind: &'static str },
         "model.uncovered_cells"
@@ -33,7 +33,7 @@ messages! {
         #[allowed("every cell in one model")]
         Uncovered { count: usize, cells: usize, first: usize, groups: String },
         "integrator.mass_matrix"
-        #[error("`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, but `{integrator}` moves every node by its own mass")] #[value("\"consistent\"")] #[parameters("mass")]
+        #[error("`mass` is \"consistent\", which couples the accelerations of the nodes of a cell, but `{integrator}` moves every node according to its own mass")] #[value("\"consistent\"")] #[parameters("mass")]
         #[allowed("\"lumped\"")] #[hint("consistent masses work with backward_euler, bdf2, implicit_midpoint and newmark")]
         MassMatrix { integrator: &'static str },
         "model.mass" #[error("`mass` is \"consistent\", but there are obstacles, whose impacts act on the masses of single nodes")] #[value("\"consistent\"")] #[parameters("mass")]
@@ -55,16 +55,16 @@ messages! {
         "run.model" #[error("{cause}")]
         State { cause: StepError },
         "modes.all_held" #[error("all nodes of the body are pinned along every axis, so the body cannot vibrate")]
-        #[allowed("a node that is free along an axis")] #[hint("another body, or fewer pins")]
+        #[allowed("a node that is free along an axis")] #[hint("choose another body, or use fewer pins")]
         AllHeld {},
         "modes.no_mass" #[error("node {node} has no mass")] #[allowed("masses above 0 where a node can move")]
         NoMassOfNode { node: usize },
         "modes.memory" #[error("{count} modes of a body with {axes} free coordinates take about {bytes} bytes")] #[allowed("at most {most} bytes")]
-        #[hint("fewer modes")]
+        #[hint("compute fewer modes")]
         ModesMemory { count: usize, axes: usize, bytes: String, most: String },
         "modes.indefinite" #[error("the stiffness of this state has no natural frequencies")]
         Indefinite {},
-        "contact.implicit" #[error("bodies of `{integrator}` cannot touch `{other}`: one of the two integrators looks for a state at rest, the other one follows a motion")]
+        "contact.implicit" #[error("bodies of `{integrator}` cannot touch bodies of `{other}`: one integrator finds a state of rest, the other follows a motion")]
         #[allowed("bodies that all rest, or all move")]
         #[hint("`contact.touch = false` in a body lets it pass through the others")]
         RestBesideMotion { integrator: &'static str, other: String },
@@ -72,27 +72,27 @@ messages! {
         #[allowed("bodies that touch without `arc_length` and `load_steps`")]
         #[hint("`contact.touch = false` in a body lets it pass through the others")]
         RestInParts { integrator: &'static str },
-        "run.model" #[error("bodies that touch find no common equilibrium: steps and contact do not agree on an end, however short the steps")]
+        "run.model" #[error("no common equilibrium was found for bodies that touch: the steps of the bodies and their contact do not lead to the same state, however short the steps")]
         #[hint("use pins or friction to hold bodies that would slide")]
         NoAgreementAtRest {},
-        "run.model" #[error("bodies that touch find no common equilibrium: after {steps} steps towards it they still move by {} m", number(*moved))]
+        "run.model" #[error("no common equilibrium was found for bodies that touch: after {steps} steps towards it, they still move by {} m", number(*moved))]
         #[hint("use pins or friction to hold bodies that would slide")]
         NoCommonBalance { steps: usize, moved: f64 },
-        "contact.barrier" #[error("`{integrator}` does not solve for the end of a step, which a barrier needs")]
-        #[allowed("an implicit integrator, such as `backward_euler`")] #[hint("or `response = \"constraint\"`, which works with every integrator")]
+        "contact.barrier" #[error("a barrier needs an integrator that solves for the end of a step, which `{integrator}` does not do")]
+        #[allowed("an implicit integrator, such as `backward_euler`")] #[hint("`response = \"constraint\"` works with every integrator")]
         NoBarrier { integrator: &'static str },
         "contact.reach"
-        #[error("the reach is {} m and the shortest edge of the body is {} m, so its own features would push one another at rest", number(*reach), number(*shortest))]
+        #[error("the reach is {} m and the shortest edge of the body is {} m, so its own features would push one another apart at rest", number(*reach), number(*shortest))]
         #[allowed("less than that edge")]
         Reach { reach: f64, shortest: f64 },
         "contact.unfold" #[error("`unfold` displaces bodies at random, possibly into other bodies")] #[parameters("unfold")] #[allowed("`unfold = false` in a scene with `[contact]`")]
         Unfold {},
         "limit.memory" #[error("the bodies of the scene take about {all} bytes, of which `{body}` takes {largest}")] #[allowed("at most {most} bytes")]
-        #[hint("a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
+        #[hint("use a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
         SceneMemory { all: String, body: String, largest: String, most: u64 },
         "limit.memory" #[error("the bodies of the scene take about {all} bytes, of which `{body}` takes {largest}")]
-        #[allowed("the memory that the machine gives to this program")]
-        #[hint("a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
+        #[allowed("the memory that is available to this program")]
+        #[hint("use a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
         MachineMemory { all: String, body: String, largest: String },
         "scene.range"
         #[error("it begins {} m from the origin along an axis, where positions are rounded by {} m", rounded(*farthest, 3), rounded(*farthest * f64::EPSILON, 2))]
@@ -125,15 +125,15 @@ messages! {
         #[allowed("forces, stiffnesses and their ratios to the masses of nodes below 1e300")]
         #[hint("the largest number of its models is `{field}` = {} of `{kind}`, and its lightest node has {} kg", number(*value), number(*lightest))]
         NoEstimateOf { cause: AnyMessage, field: String, value: f64, kind: String, lightest: f64 },
-        "run.model" #[error("obstacles push nodes through others that a barrier keeps apart")] #[hint("smaller steps, or finer surfaces")]
+        "run.model" #[error("obstacles push nodes through surfaces from which a barrier keeps them apart")] #[hint("use smaller steps, or finer surfaces")]
         Pushed {},
         "run.model" #[error("cell {cell} is inverted (volume ratio {}) while a barrier keeps bodies apart", number(*ratio))]
-        #[hint("a material that resists that, such as `neo_hookean`, or smaller steps")]
+        #[hint("use a material that resists inversion, such as `neo_hookean`, or smaller steps")]
         InvertedByBarrier { cell: u32, ratio: f64 },
-        "run.model" #[error("the matrix of a step with a barrier cannot be factored: it is not positive definite")] #[hint("smaller steps, or another material")]
+        "run.model" #[error("the matrix of a step with a barrier cannot be factored: it is not positive definite")] #[hint("use smaller steps, or another material")]
         NoFactor {},
         "run.model" #[error("the step of bodies that a barrier keeps apart did not converge in {iterations} iterations")]
-        #[hint("smaller steps, or more `iterations`")]
+        #[hint("use smaller steps, or more `iterations`")]
         NoCommonEnd { iterations: u32 },
     }
 }

@@ -119,7 +119,7 @@ pub const SCENE: Section = Section {
                 Allowed::Integer { least: 0, greatest: LARGEST_WHOLE },
                 "",
                 Default::Integer(1),
-                "The seed of everything random: the same seed gives the same bits.",
+                "The seed of all random numbers; the same seed gives the same results, bit for bit.",
             ),
             Field::new("title", Allowed::Text, "", Default::Text(""), "A sentence for lists and pictures."),
             Field::new(
@@ -134,8 +134,8 @@ pub const SCENE: Section = Section {
                 Allowed::Text,
                 "",
                 Default::Text(""),
-                "The authors and licences of the drawings, maps or surfaces that the scene shows. Every picture and film of the scene has this text \
-below it, in small letters.",
+                "The authors and licences of the drawings, maps or surfaces that the scene shows. Every picture and film of the scene shows this \
+text below it, in small type.",
             ),
         ],
     ),
@@ -146,7 +146,7 @@ below it, in small letters.",
         child("body", Holds::List(&BODY), false, "The deformable bodies."),
         child("collider", Holds::Colliders, false, "The rigid obstacles."),
         child("contact", Holds::Table(&CONTACT), false, "How deformable bodies touch one another."),
-        child("load", Holds::Tagged { tag: "kind", sections: LOADS }, false, "Forces from outside."),
+        child("load", Holds::Tagged { tag: "kind", sections: LOADS }, false, "External forces."),
         child(
             "command",
             Holds::Tagged { tag: "do", sections: COMMANDS },
@@ -190,23 +190,30 @@ pub const PICTURE: Section = Section {
     spec: &section(
         "picture",
         "What pictures of the scene show",
-        "What pictures show, and from where. What is not given is chosen from what can be seen in the run; no physical result depends on it.",
+        "Fields that are not given are chosen from what can be seen in the run. No physical result depends on these fields.",
         &[
             Field::new(
                 "panels",
                 Allowed::Integer { least: 1, greatest: 60 },
                 "",
                 Default::Absent,
-                "How many moments `strip.png` shows; by default, as many as leave bodies large enough to see.",
+                "The number of moments that `strip.png` shows. By default, there are as many as leave bodies large enough to see.",
             ),
             Field::new(
                 "low",
                 Allowed::Vector,
                 "m",
                 Default::Absent,
-                "The lowest corner of the part that `strip.png` shows, with `high`; by default, everything that bodies reach, as in films.",
+                "With `high`: the corner with the smallest coordinates of the part that `strip.png` shows. By default, it shows everything that \
+bodies reach, as in films.",
             ),
-            Field::new("high", Allowed::Vector, "m", Default::Absent, "The highest corner of that part."),
+            Field::new(
+                "high",
+                Allowed::Vector,
+                "m",
+                Default::Absent,
+                "With `low`: the corner with the largest coordinates of the part that `strip.png` shows.",
+            ),
             Field::new(
                 "azimuth",
                 Allowed::Number { least: Bound::Closed(-360.0), greatest: Bound::Closed(360.0) },
@@ -232,7 +239,7 @@ pub const WORLD: Section = Section {
         "world",
         "What acts everywhere",
         "Gravity and drag act on every node. `largest_force` and `largest_velocity` stabilise a scene; `largest_distance` removes bodies that would \
-fall for ever. All three are off by default, and each use is counted. `unfold` is not physical and is also off by default.",
+fall for ever. All three are off by default; warnings report how often they act. `unfold` is not physical and is also off by default.",
         &[
             Field::new("gravity", Allowed::Vector, "m/s²", Default::Origin, "Acceleration of gravity."),
             Field::new(
@@ -249,15 +256,15 @@ fall for ever. All three are off by default, and each use is counted. `unfold` i
                 Allowed::POSITIVE,
                 "m",
                 Default::Absent,
-                "A body all of whose nodes are farther than this from the origin is removed.",
+                "A body is removed when all of its nodes are farther than this from the origin.",
             ),
             Field::new(
                 "unfold",
                 Allowed::Boolean,
                 "",
                 Default::Boolean(false),
-                "Whether a body that is at rest with degenerate or inverted cells, or is strained although nothing acts on it, is displaced at \
-random so that it leaves that shape: by 1e-4 of its size, then by a hundredth and a tenth. Each displacement is counted.",
+                "Whether a body is displaced at random to leave a shape in which it is at rest with degenerate or inverted cells, or strained \
+although nothing acts on it. The displacement is 1e-4 of its size, then a hundredth, then a tenth. A warning reports the number of displacements.",
             ),
         ],
     ),
@@ -280,7 +287,7 @@ the shape's own coordinates, then moved to `position`.",
                 Allowed::Text,
                 "",
                 Default::Absent,
-                "The name of the numbers in the mesh file, one per cell, that are mass per volume [kg/m³].",
+                "The name of the values in the mesh file that give the mass per volume of each cell [kg/m³].",
             ),
             Field::new("node_mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of every node."),
             Field::new(
@@ -296,7 +303,7 @@ the shape's own coordinates, then moved to `position`.",
                 "m",
                 Default::Number(1.0),
                 "Depth out of the plane in 2D, also for gas, loads and bending. In 3D it is the thickness of a sheet or the width of a square wire; \
-only `density` uses it, and requires it there, as it does for a wire in 2D.",
+only `density` uses it. `density` requires it in 3D, and also for a wire in 2D.",
             ),
             Field::new(
                 "position",
@@ -348,8 +355,8 @@ tetrahedra; it is 1 for other bodies. `finite_volume` needs `order = 1`. `order 
             false,
             "Angular velocity at the start about the centre of mass [rad/s].",
         ),
-        child("integrator", Holds::Integrator, false, "Its integrator, if it is not that of the scene."),
-        child("models", Holds::Models, false, "What its material does."),
+        child("integrator", Holds::Integrator, false, "Its own integrator; the default is that of the scene."),
+        child("models", Holds::Models, false, "The models that give its forces."),
         contact::OF_BODY,
         child("pin", Holds::List(&PIN), false, "Nodes that are held in place, or moved in a prescribed way."),
         child(
@@ -382,7 +389,7 @@ start.",
                 Allowed::Text,
                 "",
                 Default::Absent,
-                "The name of the vectors in the mesh file, one per node, that are velocities [m/s]. They turn with `rotation`; `scale` does not \
+                "The name of the vectors in the mesh file that give the velocity of each node [m/s]. `rotation` rotates them; `scale` does not \
 change them.",
             ),
         ],
@@ -403,8 +410,8 @@ pub const PIN: Section = Section {
         "Between the rows of `motion` the displacement is linear; before the first and after the last it is constant. A pinned node follows its pin, \
 even through obstacles: these stop its neighbours, but not the node. The work of the pin against springs and obstacles counts as work of the user. \
 If a pin catches a moving node, or if its motion has a corner, the pin changes the velocity of that node by an impulse. With `mass = \
-\"consistent\"`, a node shares its inertia with its neighbours, so the impulse throws them back, by the same amount with every integrator. A table \
-of motion with many rows accelerates them gradually instead.",
+\"consistent\"`, a node shares its inertia with its neighbours, so the impulse makes the neighbours recoil, by the same amount with every \
+integrator. To accelerate them gradually instead, give `motion` many rows.",
         &[
             Field::new(
                 "axes",
@@ -439,7 +446,7 @@ pub const COPIES: Section = Section {
                 Allowed::NOT_NEGATIVE,
                 "m",
                 Default::Number(0.0),
-                "Each coordinate is displaced at random, uniformly within ±jitter, by the seed of the scene.",
+                "Each coordinate is displaced at random, uniformly within ±jitter. The random numbers depend on the seed of the scene.",
             ),
         ],
     ),

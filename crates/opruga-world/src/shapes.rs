@@ -15,7 +15,7 @@ const fn count(least: i64) -> Allowed {
     Allowed::Integer { least, greatest: MAXIMUM_NODES as i64 }
 }
 
-const CENTER: Field = Field::new("center", Allowed::Vector, "m", Default::Origin, "Where its centre lies.");
+const CENTER: Field = Field::new("center", Allowed::Vector, "m", Default::Origin, "The position of its centre.");
 const CORNER: Field =
     Field::new("corner", Allowed::Vector, "m", Default::Origin, "Its corner with the lowest coordinates.");
 const START_ANGLE: Field = Field::new(
@@ -33,7 +33,7 @@ static RING: Spec = Spec {
     dimensions: &[2],
     fields: &[
         Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the circle."),
-        Field::new("vertices", count(3), "", Default::Required, "How many vertices."),
+        Field::new("vertices", count(3), "", Default::Required, "The number of vertices."),
         CENTER,
         START_ANGLE,
     ],
@@ -49,8 +49,14 @@ must lie in a ring.",
     dimensions: &[2],
     fields: &[
         Field::new("centers", Allowed::Points, "m", Default::Required, "The centre of each ring."),
-        Field::new("radii", Allowed::Numbers, "m", Default::Required, "The radius of each ring; negative: a hole."),
-        Field::new("vertices", count(3), "", Default::Required, "How many vertices each ring has."),
+        Field::new(
+            "radii",
+            Allowed::Numbers,
+            "m",
+            Default::Required,
+            "The radius of each ring; a negative radius makes a hole.",
+        ),
+        Field::new("vertices", count(3), "", Default::Required, "The number of vertices of each ring."),
     ],
     roles: &[],
 };
@@ -58,12 +64,12 @@ must lie in a ring.",
 static REGULAR_POLYGON: Spec = Spec {
     kind: "regular_polygon",
     summary: "an outline of equal sides",
-    documentation: "Corners on a circle, counter-clockwise; each side in equal edges.",
+    documentation: "Corners on a circle, counter-clockwise; each side is divided into equal edges.",
     dimensions: &[2],
     fields: &[
-        Field::new("sides", count(3), "", Default::Required, "How many sides."),
+        Field::new("sides", count(3), "", Default::Required, "The number of sides."),
         Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The distance of the corners from the centre."),
-        Field::new("vertices_per_side", count(1), "", Default::Integer(1), "How many edges a side has."),
+        Field::new("vertices_per_side", count(1), "", Default::Integer(1), "The number of edges of each side."),
         CENTER,
         START_ANGLE,
     ],
@@ -93,7 +99,7 @@ static LINE: Spec = Spec {
     fields: &[
         Field::new("from", Allowed::Vector, "m", Default::Required, "Its first node."),
         Field::new("to", Allowed::Vector, "m", Default::Required, "Its last node."),
-        Field::new("segments", count(1), "", Default::Required, "How many edges."),
+        Field::new("segments", count(1), "", Default::Required, "The number of edges."),
     ],
     roles: &[],
 };
@@ -123,7 +129,7 @@ static GRID: Spec = Spec {
     dimensions: &[2, 3],
     fields: &[
         Field::new("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
-        Field::new("cells", Allowed::Integers, "", Default::Required, "How many cells along each axis."),
+        Field::new("cells", Allowed::Integers, "", Default::Required, "The number of cells along each axis."),
         CORNER,
     ],
     roles: &[],
@@ -141,7 +147,7 @@ static QUADRILATERAL: Spec = Spec {
             Allowed::Integers,
             "",
             Default::Required,
-            "How many cells along the side from corner 0 to 1, and along the side from 1 to 2.",
+            "The number of cells along the side from corner 0 to 1, and along the side from 1 to 2.",
         ),
     ],
     roles: &[],
@@ -156,7 +162,7 @@ static SHEET: Spec = Spec {
         CORNER,
         Field::new("u", Allowed::Vector, "m", Default::Required, "Its first side, from the corner."),
         Field::new("v", Allowed::Vector, "m", Default::Required, "Its second side, from the corner."),
-        Field::new("cells", Allowed::Integers, "", Default::Required, "How many cells along u and along v."),
+        Field::new("cells", Allowed::Integers, "", Default::Required, "The number of cells along u and along v."),
     ],
     roles: &[],
 };
@@ -168,7 +174,7 @@ static BOX: Spec = Spec {
     dimensions: &[3],
     fields: &[
         Field::new("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
-        Field::new("cells", Allowed::Integers, "", Default::Required, "How many cells along each axis."),
+        Field::new("cells", Allowed::Integers, "", Default::Required, "The number of cells along each axis."),
         CORNER,
         FILLING_OF_SURFACES,
         SPACING_OF_FILLINGS,
@@ -188,7 +194,7 @@ static ICOSPHERE: Spec = Spec {
             Allowed::Integer { least: 0, greatest: MAXIMUM_SUBDIVISIONS as i64 },
             "",
             Default::Required,
-            "How many times each face is cut into four.",
+            "The number of times that each face is cut into four.",
         ),
         CENTER,
         FILLING_OF_SURFACES,
@@ -211,8 +217,8 @@ static TORUS: Spec = Spec {
             Default::Required,
             "The radius of the tube, less than that of the circle.",
         ),
-        Field::new("nodes_around", count(3), "", Default::Required, "How many nodes around the axis."),
-        Field::new("nodes_of_tube", count(3), "", Default::Required, "How many nodes around the tube."),
+        Field::new("nodes_around", count(3), "", Default::Required, "The number of nodes around the axis."),
+        Field::new("nodes_of_tube", count(3), "", Default::Required, "The number of nodes around the tube."),
         CENTER,
         FILLING_OF_SURFACES,
         SPACING_OF_FILLINGS,

@@ -72,17 +72,17 @@ terms! {
 terms! {
     /// What reduces the error of an integrator.
     pub enum ErrorHint = "part.error_hint" {
-        Implicit = "with implicit integrators it comes from the residual of their equations: a smaller `tolerance`, or `accuracy = \"exact\"`",
-        Contact = "bodies met obstacles, where it is proportional to the step with every integrator: more substeps",
-        ContactOfOthers = "bodies met obstacles, where it is proportional to the step with every integrator; it is smallest with `verlet`",
-        Explicit = "more substeps reduce it, and integrators of higher order have less of it",
+        Implicit = "with implicit integrators, it comes from the residual of their equations; use a smaller `tolerance`, or `accuracy = \"exact\"`",
+        Contact = "bodies met obstacles, where this error is proportional to the step with every integrator; use more substeps",
+        ContactOfOthers = "bodies met obstacles, where this error is proportional to the step with every integrator; it is smallest with `verlet`",
+        Explicit = "use more substeps, or an integrator of higher order",
     }
 }
 
 terms! {
     /// Measures against inverted cells.
     pub enum CellHint = "part.cell_hint" {
-        Smaller = "smaller cells, or less compression of them",
+        Smaller = "smaller cells, or less compression",
         Farther = "smaller cells, or a material that pushes cells back from a stronger inversion (`fixed_corotated`)",
         Material = "or a material that pushes such cells back (`stable_neo_hookean`, `fixed_corotated`)",
     }
@@ -91,8 +91,8 @@ terms! {
 terms! {
     /// Cells that are better in bending.
     pub enum BendingHint = "part.bending_hint" {
-        Quadratic = "quadratic cells (`order = 2`), quadrilaterals or hexahedra",
-        Hexahedra = "hexahedra, or shorter cells",
+        Quadratic = "use quadratic cells (`order = 2`), quadrilaterals or hexahedra",
+        Hexahedra = "use hexahedra, or shorter cells",
     }
 }
 
@@ -116,9 +116,9 @@ messages! {
     /// The position of a node for which obstacles leave no space.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Lay {
-        "part.lay" #[error("lay {} m inside the first", number(*depth))]
+        "part.lay" #[error("was {} m inside the first", number(*depth))]
         Inside { depth: f64 },
-        "part.lay" #[error("lay where they meet")]
+        "part.lay" #[error("was where they meet")]
         Between {},
     }
 
@@ -151,30 +151,30 @@ messages! {
         "limit.distance" #[error("bodies went farther than `world.largest_distance` and were removed")]
         BodiesLost {},
         "ledger.numerical_damping"
-        #[error("the implicit integrators themselves removed {} J, more than a twentieth of the energy in motion (`loss_numerical`): motion that is fast compared with the step decays or grows because of the integrator, not because of physics; more substeps reduce this, and `implicit_midpoint` or `newmark` remove less", number(*energy))]
+        #[error("the implicit integrators themselves removed {} J, more than a twentieth of the energy in motion (`loss_numerical`). Motion that is fast compared with the step decays or grows because of the integrator, not because of physics. More substeps reduce this, and `implicit_midpoint` or `newmark` remove less", number(*energy))]
         TakenByRules { energy: f64 },
         "ledger.numerical_damping"
-        #[error("the implicit integrators themselves added {} J, more than a twentieth of the energy in motion (`loss_numerical`): motion that is fast compared with the step decays or grows because of the integrator, not because of physics; more substeps reduce this, and `backward_euler` damps motion that would grow", number(*energy))]
+        #[error("the implicit integrators themselves added {} J, more than a twentieth of the energy in motion (`loss_numerical`). Motion that is fast compared with the step decays or grows because of the integrator, not because of physics. More substeps reduce this, and `backward_euler` damps motion that would grow", number(*energy))]
         MadeByRules { energy: f64 },
         "ledger.closure"
-        #[error("at the end of a frame more than a tenth of the energy in motion was unexplained (`closure`), {} J {difference} so far: the error of the integrator; {help}", number(*energy))]
+        #[error("at the end of a frame, more than a tenth of the energy in motion was unexplained (`closure`): {} J {difference} so far, by the error of the integrator; {help}", number(*energy))]
         Unexplained { energy: f64, difference: Difference, help: ErrorHint },
         "step.not_converged" #[error("a step was accepted although Newton's method had not converged (`when_not_converged = \"accept\"`)")]
         Accepted {},
         "step.halved"
-        #[error("a step of {} s (in statics, the load and the motion of pins that it adds) was halved, again and again if needed, down to {} s, 1/{parts} of it, because Newton's method did not converge over the whole step, or a model is undefined there (`when_not_converged = \"halve\"`, or in real time); the result is as good as with such short steps, but took longer", number(*h), number(*shortest))]
+        #[error("a step of {} s (in statics, the load and the motion of pins that it adds) was halved, repeatedly if needed, down to {} s, 1/{parts} of it, because Newton's method did not converge over the whole step or a model is undefined there (`when_not_converged = \"halve\"`, or real time). The result is as good as with such short steps, but took longer", number(*h), number(*shortest))]
         #[hint("more substeps (in statics, more `load_steps` or frames) avoid the failed attempts")]
         Halved { h: f64, shortest: f64, parts: u64 },
         "step.cut_off"
-        #[error("a real-time step used up its budget, or took so many products that slow motions may have a large residual: forces out of balance that would move single nodes by up to {} m; the body is too stiff or too slender for the step: more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`", number(*left))]
+        #[error("a real-time step used up its budget, or took so many products that slow motions may have a large residual: its forces would move single nodes by up to {} m. The body is too stiff or too slender for the step; use more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`", number(*left))]
         CutOff { left: f64 },
         "statics.blurred"
-        #[error("an equilibrium was found in which forces are as small as their rounding, but the residual could still move nodes by up to {} m: positions have sixteen digits, which is too few for a body so slender, cells so thin or an origin so far away; smaller details of the result are meaningless", number(*error_estimate))]
-        #[hint("cells that are shorter for their thickness, or a scene at the origin")]
+        #[error("an equilibrium was found in which forces are as small as their rounding errors, but the residual could still move nodes by up to {} m: positions have sixteen digits, which is too few for a body so slender, cells so thin or an origin so far away; smaller details of the result are meaningless", number(*error_estimate))]
+        #[hint("use cells that are shorter relative to their thickness, or move the scene to the origin")]
         Estimated { error_estimate: f64 },
         "conditioning"
-        #[error("a body is so stiff for its mass that rounding of its positions, which have sixteen digits, causes forces of up to {} times the load of a node in a step: its motion as a whole is balanced separately and is correct, and its nodes are correct except for the last digit of their positions, but its stresses are meaningless", number(*times))]
-        #[hint("a scene closer to the origin, larger cells, or a less stiff body")]
+        #[error("a body is so stiff for its mass that the rounding of its positions to sixteen digits causes forces of up to {} times the load of a node in a step. Its motion as a whole is balanced separately and is correct. The positions of its nodes are correct except for the last digit, but its stresses are meaningless", number(*times))]
+        #[hint("use larger cells or a less stiff body, or move the scene closer to the origin")]
         Conditioning { times: f64 },
         "step.disturbed"
         #[error("a body at rest in a degenerate, inverted or folded shape was disturbed at random, by 1e-4 of its size, then by a hundredth and by a tenth")]
@@ -182,56 +182,56 @@ messages! {
         Disturbed {},
         "step.odd_rest"
         #[error("a body stayed at rest in a degenerate, inverted or folded shape, in an equilibrium that disturbances of up to a tenth of its size did not end{}", if_any(worst))]
-        #[hint("another initial state, or a material that pushes such cells back (`fixed_corotated`)")]
+        #[hint("use another initial state, or a material that pushes such cells back (`fixed_corotated`)")]
         DegenerateRest { worst: Option<WorstCell> },
         "restore.no_force" #[error("a snapshot does not contain forces that the program defines, and a body had one: add it again (`World::add_force`)")]
         NoForce {},
         "statics.load_left"
         #[error("the run ends before the whole load is applied: the last state of body `{body}` is the equilibrium under {} of it (`load_factor`)", number(*part))]
-        #[hint("more frames, or a longer `arc_length`")]
+        #[hint("use more frames, or a longer `arc_length`")]
         LoadLeft { body: String, part: f64 },
         "units.sag"
         #[error("body `{body}` of {} kg would sag by about {} m under its weight, more than its size of {} m: are its units mixed (metres, kilograms, newtons per metre)?", number(*mass), rounded(*sag, 2), number(*size))]
         Sag { body: String, mass: f64, sag: f64, size: f64 },
         "contact.starts_inside"
-        #[error("body `{body}` begins inside obstacle {collider} ({kind}): {}, of which node {deepest} is the deepest, by {} m; {remedy}", counted(*nodes as u64, "node", "nodes"), number(*depth))]
+        #[error("body `{body}` begins inside obstacle {collider} ({kind}): {}, up to {} m deep (node {deepest}); {remedy}", counted(*nodes as u64, "node", "nodes"), number(*depth))]
         StartsInside { body: String, collider: usize, kind: String, nodes: usize, deepest: u32, depth: f64, remedy: Remedy },
         "contact.none"
-        #[error("at t = {} s {} through one another: first `{first}` and `{second}`", number(*time), if *pairs == 1 { "two bodies pass".into() } else { format!("{pairs} pairs of bodies pass") })]
+        #[error("at t = {} s, {} through one another (first: `{first}` and `{second}`)", number(*time), if *pairs == 1 { "two bodies pass".into() } else { format!("{pairs} pairs of bodies pass") })]
         #[hint("a section `[contact]` keeps bodies apart")]
         NoContact { time: f64, pairs: u64, first: String, second: String },
         "contact.mixed"
-        #[error("at t = {} s body `{first}` ({first_rule}) touches body `{second}` ({second_rule}): contact is solved for both together, but each of them is stepped by its own integrator, so the pair has the order and the damping of neither; counted per frame and pair of bodies", number(*time))]
-        #[hint("one integrator for bodies that touch")]
+        #[error("at t = {} s, body `{first}` ({first_rule}) touches body `{second}` ({second_rule}): contact is solved for both together, but each body is stepped by its own integrator, so the pair has the order and the damping of neither (counted once per frame and pair of bodies)", number(*time))]
+        #[hint("use the same integrator for bodies that touch")]
         Mixed { time: f64, first: String, first_rule: String, second: String, second_rule: String },
         "cells.slender"
-        #[error("body `{body}` bends or twists too stiffly: the longest edges of its cells are {} m on average, {} times its thickness of {} m; at {limit} times the measured first frequencies of plates are {error} % too high, and the error grows with that ratio", rounded(*length, 3), rounded(*times, 3), rounded(*thickness, 3))]
+        #[error("body `{body}` bends or twists too stiffly: the longest edges of its cells are {} m on average, {} times its thickness of {} m; at a ratio of {limit}, the first frequencies of plates were measured to be {error} % too high, and the error grows with the ratio", rounded(*length, 3), rounded(*times, 3), rounded(*thickness, 3))]
         #[hint("{help}")]
         Slender { body: String, length: f64, times: f64, thickness: f64, limit: f64, error: f64, help: BendingHint },
         "cells.inverted"
-        #[error("at t = {} s {cells} inverted; the first is cell {cell} of body `{body}`, with J = {}", number(*time), number(*ratio))]
-        #[hint("more substeps, {help}{}", if_any(unfold))]
+        #[error("at t = {} s, {cells} inverted; the first is cell {cell} of body `{body}`, with J = {}", number(*time), number(*ratio))]
+        #[hint("use more substeps, {help}{}", if_any(unfold))]
         Inverted { time: f64, cells: InvertedCells, cell: u32, body: String, ratio: f64, help: CellHint, unfold: Option<UnfoldHint> },
         "cells.other_balance"
-        #[error("at t = {} s {} account for: equilibrium in a shape that is not the rest shape (snapped through, folded, inverted or twisted); the first is body `{body}` with {} J, of which {} J are accounted for, V/V₀ = {}, and cell {cell} at J = {}", number(*time), bodies_hold(*count), rounded(*energy, 4), rounded(*accounted, 4), rounded(*volume, 4), rounded(*ratio, 4))]
+        #[error("at t = {} s, {} account for: an equilibrium that is not the rest shape, but snapped through, folded, inverted or twisted; the first is body `{body}` with {} J, of which {} J are accounted for, V/V₀ = {}, and cell {cell} with J = {}", number(*time), bodies_hold(*count), rounded(*energy, 4), rounded(*accounted, 4), rounded(*volume, 4), rounded(*ratio, 4))]
         #[hint("if this is not intended, start from the rest shape, with more damping or more substeps{}", if_any(unfold))]
         OtherBalance { time: f64, count: u64, body: String, energy: f64, accounted: f64, volume: f64, cell: u32, ratio: f64, unfold: Option<UnfoldHint> },
         "law.turned"
-        #[error("at t = {} s cell {cell} of body `{body}` is rotated by {}°, which its law `linear` treats as a strain of {} %; counted per frame and body", number(*time), rounded(*angle, 3), rounded(*strain, 3))]
-        #[hint("`corotated`, the same law in axes that rotate with every cell")]
+        #[error("at t = {} s, cell {cell} of body `{body}` is rotated by {}°, which its law `linear` treats as a strain of {} % (counted once per frame and body)", number(*time), rounded(*angle, 3), rounded(*strain, 3))]
+        #[hint("use `corotated`, the same law in axes that rotate with every cell")]
         Turned { time: f64, cell: u32, body: String, angle: f64, strain: f64 },
         "contact.no_room"
-        #[error("at t = {} s obstacles {first} ({first_kind}) and {second} ({second_kind}) left no room for body `{body}`: node {node} {lay}; moving obstacles must not meet; counted per frame and body", number(*time))]
+        #[error("at t = {} s, obstacles {first} ({first_kind}) and {second} ({second_kind}) left no room for body `{body}`: node {node} {lay}. Moving obstacles must stay apart (counted once per frame and body)", number(*time))]
         NoRoom { time: f64, first: usize, first_kind: String, second: usize, second_kind: String, body: String, node: u32, lay: Lay },
         "command.no_body" #[error("commands on body `{body}` ended when it was removed")]
         CommandsEnded { body: String },
-        "command.no_body" #[error("commands on other bodies ended when these were removed")]
+        "command.no_body" #[error("commands on other bodies ended when those bodies were removed")]
         OtherCommandsEnded {},
         "step.no_stable_step"
         #[error("`{integrator}` has no stable step for body `{body}` (ω = {} rad/s): a motion grows as exp({} t)", number(*omega), number(*growth))]
         NoStableStep { integrator: &'static str, body: String, omega: f64, growth: f64 },
         "step.outgrown"
-        #[error("at t = {} s the largest stable step of body `{body}` had fallen to {} s, below h = {} s: compressed or stretched parts are stiffer than at rest; substeps >= {substeps} are stable there", number(*time), number(*limit), number(*h))]
+        #[error("at t = {} s, the largest stable step of body `{body}` had fallen to {} s, below h = {} s: compressed or stretched parts are stiffer than at rest; substeps >= {substeps} are stable there", number(*time), number(*limit), number(*h))]
         Outgrown { time: f64, body: String, limit: f64, h: f64, substeps: f64 },
     }
 }

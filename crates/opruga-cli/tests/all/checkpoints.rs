@@ -218,7 +218,11 @@ fn a_checkpoint_that_cannot_be_written_does_not_end_the_run() {
     signal(&child, "INT");
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(130), "{}", said(&output));
-    assert!(said(&output).contains("warning[checkpoint.failed]: no checkpoint at t = "), "{}", said(&output));
+    assert!(
+        said(&output).contains("warning[checkpoint.failed]: no checkpoint was written at t = "),
+        "{}",
+        said(&output)
+    );
     let text = std::fs::read(folder.join("o/summary.json")).expect("a summary");
     let summary: Value = serde_json::from_slice(&text).expect("JSON");
     let warning = &summary["warnings"][0];

@@ -333,7 +333,7 @@ fn refusals_name_collider_and_value() {
     // A zero direction is not a valid value of the field; nor is one whose length underflows.
     let e = refused::<2>(values::<2>("half_space", &[("normal", vector(&[1e-200, 0.0]))]));
     assert_eq!((e.kind.as_str(), e.code()), ("half_space", "collider.no_direction"));
-    assert_eq!(e.about.in_full(), "`normal` is [1e-200, 0.0]; allowed: a vector of a length above 1e-150");
+    assert_eq!(e.about.in_full(), "`normal` is [1e-200, 0.0]; allowed: a vector with a length above 1e-150");
     let e = refused::<2>(values::<2>("box", &[("min", vector(&[0.0, 0.0]))]));
     assert_eq!(e.code(), "collider.box_fields");
     let e = refused::<3>(values::<3>("box", &[("min", vector(&[0.0; 3])), ("max", vector(&[1.0, -1.0, 1.0]))]));

@@ -60,9 +60,9 @@ messages! {
     pub enum ChoiceError {
         "model.one_of" #[error("exactly one of {fields} must be given")]
         OneOf { fields: String },
-        "model.one_of" #[error("exactly one of {fields} must be given; none of them is given")]
+        "model.one_of" #[error("exactly one of {fields} must be given; none of them is")]
         None { fields: String },
-        "model.one_of" #[error("exactly one of {fields} must be given; given are {given}")]
+        "model.one_of" #[error("exactly one of {fields} must be given, not {given}")]
         Several { fields: String, given: String },
     }
 }

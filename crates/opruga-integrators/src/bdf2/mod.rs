@@ -34,9 +34,10 @@ use opruga_solve::blocks::nodes;
 /// The parameters.
 pub const SPEC: Spec = Spec {
     kind: "bdf2",
-    summary: "implicit, second order, stable for every step; damps motion that is much faster than the step",
-    documentation: "x₁ = (4 x₀ − x₋₁)/3 + ⅔ h v₁ and the same for velocities, solved by Newton's method. The amplitude of an oscillation falls by \
-(hω)⁴/4 in a step if hω is small. It remembers the previous step; its first step is one of backward Euler. Each body is an island of its own.",
+    summary: "implicit, second order, stable for every step size; damps motion that is much faster than the step",
+    documentation: "x₁ = (4 x₀ − x₋₁)/3 + ⅔ h v₁ and the same for velocities, solved by Newton's method. In each step, the amplitude of an \
+oscillation decreases by the fraction (hω)⁴/4 if hω is small. The integrator remembers the previous step; its first step is a step of backward \
+Euler. Each body is an island of its own.",
     dimensions: &[2, 3],
     fields: fields!(of_time),
     roles: &[],

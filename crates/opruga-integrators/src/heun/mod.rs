@@ -28,7 +28,7 @@ use std::ops::Range;
 /// The parameters: none.
 pub const SPEC: Spec = Spec {
     kind: "heun",
-    summary: "second order, energy grows slowly: the explicit trapezoid",
+    summary: "the explicit trapezoidal rule: second order; energy grows slowly",
     documentation: "y₁ = y₀ + h k(y₀), y = y₀ + ½h (k(y₀) + k(y₁)) with k = (v, a). Two forces per step. No step is stable without \
 damping: the energy of a mode ω grows by ¼ω⁴h³ per second.",
     dimensions: &[2, 3],

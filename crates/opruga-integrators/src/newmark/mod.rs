@@ -37,7 +37,7 @@ use opruga_solve::blocks::times;
 /// The parameters.
 pub const SPEC: Spec = Spec {
     kind: "newmark",
-    summary: "implicit, second order, stable for every step: average acceleration, or generalised-α by its spectral radius",
+    summary: "implicit, second order, stable for every step size: average acceleration, or generalised-α with a spectral radius",
     documentation: "x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁), v₁ = v₀ + h ((1 − γ) a₀ + γ a₁), solved by Newton's method. Average acceleration (β = \
 ¼, γ = ½) damps nothing; with `spectral_radius` it is the generalised-α method, which damps motion that is faster than the step. While obstacles \
 hold nodes, average acceleration is replaced by the steps of `implicit_midpoint` in contact, so that bodies come to rest. The integrator remembers \
@@ -50,7 +50,7 @@ the acceleration. Each body is an island of its own.",
             Allowed::FRACTION,
             "",
             Default::Absent,
-            "The factor by which the amplitude of the fastest oscillations falls in a step: 1 keeps them, 0 removes them in one step. If it is not \
+            "The factor by which a step multiplies the amplitude of the fastest oscillations: 1 keeps them, 0 removes them in one step. If it is not \
 given, average acceleration is used.",
         )
     ),

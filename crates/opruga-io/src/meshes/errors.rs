@@ -27,7 +27,7 @@ terms! {
     /// The order of the corners of a cell.
     pub(crate) enum CornerOrder = "part.corner_order" {
         Plane = "a positive area: corners counter-clockwise",
-        Space = "a positive volume: the last corner on the side where the others run counter-clockwise",
+        Space = "a positive volume: the other corners run counter-clockwise as seen from the last one",
     }
 }
 
@@ -50,7 +50,7 @@ messages! {
         Nodes { count: usize, first: u64, last: u64 },
         "part.listed" #[error("the file has no nodes")]
         NoNodes {},
-        "part.listed" #[error("$Entities lists none of {dimension} dimensions")]
+        "part.listed" #[error("$Entities lists no entity of dimension {dimension}")]
         NoEntities { dimension: usize },
         "part.listed" #[error("{entity}")]
         Entity { entity: i32 },
@@ -94,9 +94,9 @@ messages! {
         SecondSection { section: String },
         "part.scan" #[error("`{word}` is not a number type")] #[value("{word}")] #[allowed("{allowed}")]
         NumberType { word: String, allowed: &'static str },
-        "part.scan" #[error("the array `{name}` of the points is given twice")] #[value("{name}")] #[allowed("a name of its own for every array")]
+        "part.scan" #[error("the array `{name}` of the points is given twice")] #[value("{name}")] #[allowed("a different name for every array")]
         PointValuesTwice { name: String },
-        "part.scan" #[error("the array `{name}` of the cells is given twice")] #[value("{name}")] #[allowed("a name of its own for every array")]
+        "part.scan" #[error("the array `{name}` of the cells is given twice")] #[value("{name}")] #[allowed("a different name for every array")]
         CellValuesTwice { name: String },
     }
 
@@ -118,16 +118,16 @@ messages! {
         #[allowed("points, lines of 2 or 3 nodes, triangles of 3 or 6, quadrilaterals of 4, tetrahedra of 4 or 10, hexahedra of 8")]
         UnsupportedCell { cell: u64, element: ElementName, number: i128 },
         "mesh.duplicate_element" #[error("two elements have the number {number}")] #[value("{number}")]
-        #[allowed("a number of its own for every element")]
+        #[allowed("a different number for every element")]
         ElementTwice { number: u64 },
         "mesh.duplicate_node" #[error("two nodes have the number {number}")] #[value("{number}")]
-        #[allowed("a number of its own for every node")]
+        #[allowed("a different number for every node")]
         NodeTwice { number: u64 },
         "mesh.components" #[error("some nodes have {before} numbers `{name}`, others have {components}")] #[value("{components}")] #[allowed("{before}")]
         Components { before: usize, name: String, components: usize },
         "mesh.index" #[error("element {element} names node {node}, which does not exist")] #[value("{node}")] #[allowed("{listed}")]
         NoNode { element: u64, node: u64, listed: Listed },
-        "mesh.index" #[error("a value names node {node}, which does not exist")] #[value("{node}")] #[allowed("{listed}")]
+        "mesh.index" #[error("a value is given for node {node}, which does not exist")] #[value("{node}")] #[allowed("{listed}")]
         NoNodeOfValue { node: u64, listed: Listed },
         "mesh.index" #[error("{element} {index} names vertex {vertex}")] #[value("{vertex}")] #[allowed("{least} to {most}")]
         NoVertex { element: ElementName, index: usize, vertex: u64, least: u64, most: u64 },
@@ -136,15 +136,15 @@ messages! {
         "mesh.dimension" #[error("the file contains only points")] #[value("{element}")]
         #[allowed("lines, triangles, quadrilaterals, tetrahedra or hexahedra")]
         PointsOnly { element: ElementName },
-        "mesh.dimension" #[error("the file contains a surface in space, but nothing that fills it")] #[value("{element}")]
+        "mesh.dimension" #[error("the file contains a surface in 3D, but no cells that fill it")] #[value("{element}")]
         #[allowed("tetrahedra or hexahedra")]
         #[hint("`kind = \"surface\"` reads surfaces; with `filling = \"tetrahedra\"` it fills them")]
         SurfaceInSpace { element: ElementName },
-        "mesh.dimension" #[error("the file contains elements of space, but the scene is in the plane")] #[value("{element}")]
-        #[allowed("triangles or quadrilaterals")] #[hint("`dimension = 3` at the top of the scene")]
+        "mesh.dimension" #[error("the file contains 3D elements, but the scene is 2D")] #[value("{element}")]
+        #[allowed("triangles or quadrilaterals")] #[hint("write `dimension = 3` at the top of the scene")]
         SpaceInPlane { element: ElementName },
         "mesh.dimension" #[error("node {node} lies outside the plane of the first node")] #[value("{z}")]
-        #[allowed("z = {plane}")] #[hint("`dimension = 3` at the top of the scene")]
+        #[allowed("z = {plane}")] #[hint("write `dimension = 3` at the top of the scene")]
         OutOfPlane { node: u64, z: String, plane: String },
         "mesh.dimension" #[error("the file contains cells that fill a body, not a surface")] #[value("3")]
         #[allowed("triangles and quadrilaterals")] #[hint("`kind = \"mesh\"` reads filled bodies")]
@@ -157,7 +157,7 @@ messages! {
         #[hint("leave one of them out")]
         SameNodes { first: u64, second: u64 },
         "mesh.mixed_dimension" #[error("{element} {index} is not part of a cell")] #[value("{index}")]
-        #[allowed("faces, edges and corners of the cells, or a body of one dimension")]
+        #[allowed("faces, edges and corners of the cells, or a one-dimensional body")]
         NoPartOfCell { element: ElementName, index: u64 },
         "mesh.degenerate_element" #[error("{element} {index} has almost no area for its size")] #[value("{area}")]
         #[allowed("more than {least} of its longest edge squared")]
@@ -175,7 +175,7 @@ messages! {
         AllInverted { element: ElementName, index: u64, cells: usize, measure: String, order: CornerOrder, turn: Setting },
         "mesh.topology" #[error("{problem}")]
         Topology { problem: MeshError },
-        "mesh.non_manifold" #[error("more than two cells share a face, through nodes {first} and {second}")]
+        "mesh.non_manifold" #[error("more than two cells share the face through nodes {first} and {second}")]
         #[value("{edges}")] #[allowed("at most two cells at a face")]
         Crowded { first: u64, second: u64, edges: usize },
         "mesh.unreferenced" #[error("node {first} belongs to no cell")] #[value("{first}")] #[allowed("nodes of cells")]

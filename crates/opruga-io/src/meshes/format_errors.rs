@@ -19,12 +19,12 @@ messages! {
         "msh.version" #[error("version `{version}` cannot be read")] #[value("{version}")] #[allowed("2.2 or 4.1")]
         #[hint("Gmsh writes another version with `-format msh41` or `-format msh22`")]
         Version { version: String },
-        "msh.syntax" #[error("{kind} is not a kind of file")] #[value("{kind}")] #[allowed("0 (text) or 1 (binary)")]
+        "msh.syntax" #[error("{kind} is not a file type")] #[value("{kind}")] #[allowed("0 (text) or 1 (binary)")]
         FileKind { kind: u32 },
         "msh.version" #[error("numbers have {size} bytes")] #[value("{size}")] #[allowed("8")]
         NumberSize { size: u32 },
         "msh.endianness" #[error("{number} was found instead of 1")] #[value("{number}")]
-        #[allowed("1, in the order of the file's bytes")]
+        #[allowed("1, in the byte order of the file")]
         Endianness { number: i32 },
         "msh.syntax" #[error("a group has {dimension} dimensions")] #[value("{dimension}")] #[allowed("0 to 3")]
         GroupDimension { dimension: usize },
@@ -35,13 +35,13 @@ messages! {
         GroupTwice { group: i64, dimension: usize, name: String },
         "msh.syntax" #[error("the section ${section} has no end")] #[value("${section}")] #[allowed("$End{section}")] #[hint("the file is cut off")]
         NoEnd { section: String },
-        "msh.syntax" #[error("step, components and count of values are missing")] #[value("{tags}")] #[allowed("3 or more whole tags")]
+        "msh.syntax" #[error("the step, the number of components and the number of values are missing")] #[value("{tags}")] #[allowed("at least 3 integer tags")]
         FewTags { tags: usize },
-        "mesh.index" #[error("a value names element {element}, which does not exist")] #[value("{element}")] #[allowed("the number of an element")]
+        "mesh.index" #[error("a value is given for element {element}, which does not exist")] #[value("{element}")] #[allowed("the number of an element")]
         NoElement { element: u64 },
-        "mesh.duplicate_node" #[error("a value names node {node} twice")] #[value("{node}")] #[allowed("every node once")]
+        "mesh.duplicate_node" #[error("values are given twice for node {node}")] #[value("{node}")] #[allowed("every node once")]
         NodeValueTwice { node: u64 },
-        "mesh.duplicate_element" #[error("a value names element {element} twice")] #[value("{element}")] #[allowed("every element once")]
+        "mesh.duplicate_element" #[error("values are given twice for element {element}")] #[value("{element}")] #[allowed("every element once")]
         ElementValueTwice { element: u64 },
         "msh.size" #[error("a block has a negative number of elements or tags")] #[value("{elements}, {tags}")] #[allowed("0 or more")]
         NegativeBlock { elements: i32, tags: i32 },
@@ -50,7 +50,7 @@ messages! {
         "msh.syntax" #[error("an entity has {dimension} dimensions")] #[value("{dimension}")] #[allowed("0 to 3")]
         EntityDimension { dimension: i32 },
         "msh.syntax" #[error("two entities of {dimension} dimensions have the number {entity}")] #[value("{entity}")]
-        #[allowed("a number of its own for every entity of a dimension")]
+        #[allowed("a different number for every entity of a dimension")]
         EntityTwice { dimension: usize, entity: i32 },
         "msh.size" #[error("numbers of {what} from {lowest} to {highest} are declared, but the file has those from {low} to {high}")]
         #[value("{lowest}, {highest}")] #[allowed("{low}, {high}")]
@@ -62,7 +62,7 @@ messages! {
         Promised { promised: u64, what: Expected, there: usize },
         "msh.syntax" #[error("an entity of {dimension} dimensions has elements of the kind {element}")] #[value("{dimension}")] #[allowed("{wanted}")]
         ElementOfEntity { dimension: usize, element: ElementName, wanted: usize },
-        "mesh.index" #[error("$Entities lists no entity {entity} of {dimension} dimensions")] #[value("{entity}")] #[allowed("{listed}")]
+        "mesh.index" #[error("$Entities lists no entity {entity} of dimension {dimension}")] #[value("{entity}")] #[allowed("{listed}")]
         NoEntity { entity: i32, dimension: usize, listed: Listed },
     }
 

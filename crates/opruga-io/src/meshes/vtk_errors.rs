@@ -30,7 +30,7 @@ messages! {
         NoNodeOfCell { cell: u64, node: i128, most: i128 },
         "vtk.syntax" #[error("the file does not begin like a VTK file")] #[value("{head}")] #[allowed("# vtk DataFile Version 3.0")]
         Head { head: String },
-        "vtk.syntax" #[error("`{word}` is not a kind of file")] #[value("{word}")] #[allowed("ASCII or BINARY")]
+        "vtk.syntax" #[error("`{word}` is not a file type")] #[value("{word}")] #[allowed("ASCII or BINARY")]
         FileKind { word: String },
         "vtk.syntax" #[error("the data set is `{word}`")] #[value("{word}")] #[allowed("UNSTRUCTURED_GRID")]
         DataSet { word: String },
@@ -75,7 +75,7 @@ messages! {
         "vtu.syntax" #[error("the file holds `{kind}`")] #[value("{kind}")] #[allowed("<VTKFile type=\"UnstructuredGrid\">")]
         Kind { kind: String },
         "vtu.compressor" #[error("data compressed by `{name}` cannot be read")] #[value("{name}")]
-        #[allowed("vtkZLibDataCompressor, or none")] #[hint("ParaView saves with other compressors too")]
+        #[allowed("vtkZLibDataCompressor, or none")] #[hint("choose another compressor in ParaView")]
         Compressor { name: String },
         "vtu.syntax" #[error("`{word}` is not a header type")] #[value("{word}")] #[allowed("UInt32, UInt64")]
         HeaderType { word: String },

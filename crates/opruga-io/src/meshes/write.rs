@@ -30,9 +30,9 @@ opruga_math::messages! {
         NodeValues { name: String },
         "part.left_out" #[error("{}", counted(*count as u64, "value that not all cells have", "values that not all cells have"))]
         GappyValues { count: usize },
-        "part.left_out" #[error("groups: {}", counted(*count as u64, "name", "names"))]
+        "part.left_out" #[error("the names of {}", counted(*count as u64, "group", "groups"))]
         GroupNames { count: usize },
-        "part.left_out" #[error("names of {}: numbers in alphabetical order replace them", counted(*count as u64, "group of cells", "groups of cells"))]
+        "part.left_out" #[error("names of {}, which are replaced by numbers in alphabetical order", counted(*count as u64, "group of cells", "groups of cells"))]
         NamesOfCellGroups { count: usize },
         "part.left_out" #[error("names of {}", counted(*count as u64, "value of cells", "values of cells"))]
         NamesOfCellValues { count: usize },
@@ -58,7 +58,7 @@ opruga_math::messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum MeshWriteError {
         "mesh.write" #[error("the mesh has no cells")] #[value("0")] #[allowed("at least one cell")]
-        #[hint("a filling makes cells in a surface or an outline")]
+        #[hint("a filling makes cells inside a surface or an outline")]
         NoCellsToWrite {},
         "mesh.write" #[error("files ending in `.{ending}` cannot be written")] #[value("{ending}")] #[allowed("{WRITTEN}")]
         Ending { ending: String },

@@ -30,7 +30,7 @@ opruga_math::messages! {
         "recording.no_frame" #[error("the recording has no frame {frame}")] #[value("{frame}")] #[allowed("none: it has no frames")]
         NoFrames { frame: u64 },
         /// It does not contain the state of that frame, which must be computed from an earlier one.
-        "recording.not_kept" #[error("the recording keeps one state in {every} frames, but not that of frame {frame}")] #[value("{frame}")]
+        "recording.not_kept" #[error("the recording keeps one state every {every} frames, but not that of frame {frame}")] #[value("{frame}")]
         #[allowed("every {every}th frame, and the last")]
         NotKept { frame: u64, every: u64 },
         /// The system could not read it.

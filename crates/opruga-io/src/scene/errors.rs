@@ -144,7 +144,7 @@ messages! {
         TurnsInSpace {},
         "part.scene_hint" #[error("[0, 0, 6.2832] turns once a second about z")]
         SpinsInSpace {},
-        "part.scene_hint" #[error("at the start the body lies between {low} and {high}")]
+        "part.scene_hint" #[error("at the start, the body lies between {low} and {high}")]
         Extent { low: String, high: String },
         "part.scene_hint" #[error("every body needs a unique name; use `copies` for many identical bodies")]
         OwnName {},
@@ -154,7 +154,7 @@ messages! {
         Simplices {},
         "part.scene_hint" #[error("rings are counted from 0; `centers` moves them")]
         Centers {},
-        "part.scene_hint" #[error("rings are counted from 0; a hole between them, or a body of its own, keeps two chambers of gas apart")]
+        "part.scene_hint" #[error("rings are counted from 0; to keep two chambers of gas apart, put a hole between them or use two bodies")]
         TwoChambers {},
         "part.scene_hint" #[error("[[0.1, 0], [0, 0]] stretches along x, [[0, 1], [0, 0]] shears")]
         Gradient {},
@@ -203,7 +203,7 @@ messages! {
         NoField { field: String, table: &'static str },
         "scene.unknown_field" #[error("there is no field `{field}`")] #[value("{field}")]
         NoFieldInScene { field: String },
-        "scene.no_effect" #[error("`{field}` has no effect here; it has one only {condition}")] #[value("{value}")]
+        "scene.no_effect" #[error("`{field}` has no effect here; it has an effect only {condition}")] #[value("{value}")]
         NoEffect { field: &'static str, condition: ConditionText, value: String },
         "scene.format" #[error("the format is {value}")] #[value("{value}")] #[allowed("{readable}")]
         #[hint("this version reads opruga-1 only; another version of the program may read this scene")]
@@ -227,7 +227,7 @@ messages! {
         NoCellNumbers { name: String },
         "scene.range" #[error("the density of cell {cell} is {density} kg/m³")] #[value("{density}")] #[allowed("a number > 0")]
         Density { cell: usize, density: f64 },
-        "scene.missing" #[error("the body has no mass")] #[allowed("exactly one of {MASSES}")] #[hint("a body that never moves is `fixed = true`")]
+        "scene.missing" #[error("the body has no mass")] #[allowed("exactly one of {MASSES}")] #[hint("a body that never moves has `fixed = true`")]
         NoMass {},
         "scene.conflict" #[error("the body has `{first}` and `{second}`")] #[allowed("exactly one of {MASSES}")]
         SeveralMasses { first: String, second: String },
@@ -243,7 +243,7 @@ messages! {
         "scene.range" #[error("`{field}` makes it too large: products of such lengths overflow")] #[value("{value}")]
         #[allowed("coordinates within 1e70 m of the origin of the shape")]
         MadeVast { field: &'static str, value: String },
-        "scene.missing" #[error("`density` of a wire needs its width, here `thickness`")] #[allowed("a number > 0")]
+        "scene.missing" #[error("`density` of a wire needs its width, which `thickness` gives")] #[allowed("a number > 0")]
         #[hint("or give the `mass` of the whole body")]
         WireWidth {},
         "scene.missing" #[error("`density` of a sheet needs its `thickness`")] #[allowed("a number > 0")]
@@ -256,7 +256,7 @@ messages! {
         "scene.conflict" #[error("the body has `angular_velocity` and `velocity.angular`")] #[value("{value}")] #[allowed("one of them")]
         TwoSpins { value: String },
         "scene.length" #[error("`gradient` has {}", counted(*count as u64, "row", "rows"))] #[value("{value}")]
-        #[allowed("{dimension} rows of {dimension} finite numbers: how each axis of the velocity changes along every axis")]
+        #[allowed("{dimension} rows of {dimension} finite numbers: the derivatives of each component of the velocity along the axes")]
         Gradient { count: usize, dimension: usize, value: String },
         "scene.no_values" #[error("the nodes of the mesh have no vectors `{name}`")] #[value("{name}")]
         #[hint("vectors of nodes are `$NodeData` of Gmsh, `POINT_DATA` of VTK and `<PointData>` of VTU files")]
@@ -274,11 +274,11 @@ messages! {
         #[allowed("finite numbers for every node")] #[hint("nodes are counted from 0")]
         NodeValue { name: String, node: usize, value: String },
         "scene.dimension" #[error("`{name}` of node {node} leaves the plane")] #[value("{z}")] #[allowed("0 along z")]
-        #[hint("nodes are counted from 0; `dimension = 3` at the top of a scene in space")]
+        #[hint("nodes are counted from 0; a 3D scene has `dimension = 3` at its top")]
         LeavesPlane { name: String, node: usize, z: f64 },
         "scene.range" #[error("{problem}")]
         Rotation { problem: MeshError },
-        "scene.range" #[error("`{name}`, turned with the body, is {value}")] #[value("{value}")] #[allowed("finite numbers")]
+        "scene.range" #[error("`{name}`, rotated with the body, is {value}")] #[value("{value}")] #[allowed("finite numbers")]
         Turned { name: String, value: f64 },
         "scene.conflict"
         #[error("node {node} of body `{body}` is also held by `{pin}`{}, which moves it elsewhere along {axis} at t = {time} s", in_line(line))]
@@ -299,7 +299,7 @@ messages! {
         EndsBefore { until: f64, at: f64 },
         "scene.range" #[error("the command ends at {until} s, before it begins at {at} s")] #[value("{until}")] #[allowed("a time after {at}")]
         LastsNegative { until: f64, at: f64 },
-        "scene.range" #[error("the command ends at {until} s, when it begins at {at} s")] #[value("{until}")] #[allowed("a time after {at}")]
+        "scene.range" #[error("the command ends at {until} s, as soon as it begins at {at} s")] #[value("{until}")] #[allowed("a time after {at}")]
         EndsAtOnce { until: f64, at: f64 },
         "scene.missing" #[error("the command changes nothing")] #[allowed("`models`, `integrator` or both")]
         ChangesNothing {},
@@ -308,7 +308,7 @@ messages! {
         "scene.range" #[error("the command begins at {at} s, after `{body}` is removed at {removed} s")] #[value("{at}")]
         #[allowed("a time before {removed}")]
         AfterRemoved { at: f64, body: String, removed: f64 },
-        "command.never" #[error("the command begins at {at} s, after the end at {end} s")] #[value("{at}")]
+        "command.never" #[error("the command begins at {at} s, but the run ends at {end} s")] #[value("{at}")]
         #[hint("it takes effect only in a run with a larger --seconds")]
         AfterEnd { at: f64, end: f64 },
         "command.never" #[error("the command begins at {at} s, and no frame of the run begins then or later")] #[value("{at}")]
@@ -351,7 +351,7 @@ messages! {
         #[allowed("bodies that have a boundary")] #[hint("a chain has none; `kind = \"force\"` acts on nodes")]
         NoBoundary { body: String },
         "scene.selects_nothing" #[error("the load acts on the volume of cells, and `{body}` has no cells")] #[value("\"body_force\"")]
-        #[allowed("bodies that are filled: `grid`, shapes with a `filling`, volume meshes")]
+        #[allowed("filled bodies: `grid`, shapes with a `filling`, volume meshes")]
         #[hint("`kind = \"force\"` acts on nodes; `world.gravity` on whatever has a mass")]
         NoCellsToLoad { body: String },
         "scene.selects_nothing" #[error("no cell of `{body}` has all of its nodes selected by the load")]
@@ -360,14 +360,14 @@ messages! {
         NoCell { body: String },
         "scene.length" #[error("`record` is empty")] #[value("[]")]
         RecordsNothing {},
-        "scene.duplicate_name" #[error("`{word}` is recorded twice")] #[value("{word}")]
+        "scene.duplicate_name" #[error("`record` contains `{word}` twice")] #[value("{word}")]
         RecordedTwice { word: &'static str },
         "scene.unknown_word" #[error("`record` contains {value}")] #[value("{value}")]
         Records { value: String },
         "scene.no_stress" #[error("`{word}` is recorded for `{body}`, none of whose models has a stress")] #[value("{word}")]
         #[allowed("bodies with a model {kinds}")] #[hint("`reaction` and `contact` are forces, which every body has")]
         NoStress { word: &'static str, body: String, kinds: String },
-        "scene.selector" #[error("a selector has exactly one key, but here are {count}")] #[value("{value}")]
+        "scene.selector" #[error("a selector must have exactly one key, but this one has {count}")] #[value("{value}")]
         #[hint("combine sets with {{ and = [ … ] }} or {{ or = [ … ] }}")]
         Keys { count: usize, value: String },
         "scene.selector" #[error("`{field}` is {value}")] #[value("{value}")] #[allowed("true")]
@@ -380,12 +380,12 @@ messages! {
         NoSelectors { field: String },
         "scene.unknown_field" #[error("there is no selector `{word}`")] #[value("{word}")]
         NoSelector { word: String },
-        "scene.missing" #[error("`{one}` is one corner of a box, and the other one, `{other}`, is missing")]
+        "scene.missing" #[error("`{one}` is one corner of a box, but the other corner, `{other}`, is missing")]
         #[hint("give both corners, or neither to show everything")]
         OneCorner { one: &'static str, other: &'static str },
         "scene.range" #[error("the box that pictures show is empty")] #[value("{high}")] #[allowed("on every axis more than `low` = {low}")]
         EmptyBox { low: String, high: String },
-        "scene.dimension" #[error("`{field}` turns the camera of a scene in space")] #[allowed("in scenes with `dimension = 3`")]
+        "scene.dimension" #[error("`{field}` turns the camera, which only 3D scenes have")] #[allowed("in scenes with `dimension = 3`")]
         Camera { field: &'static str },
     }
 }

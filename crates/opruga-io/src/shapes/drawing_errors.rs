@@ -15,8 +15,8 @@ messages! {
         "svg.unsupported" #[error("the drawing is stretched more one way than the other")] #[value("preserveAspectRatio=\"none\"")]
         #[allowed("a width and a height in proportion to the `viewBox`")]
         Stretched {},
-        "svg.unsupported" #[error("the language that is meant is unknown")] #[value("systemLanguage")]
-        #[hint("leave one element in the <switch>")]
+        "svg.unsupported" #[error("the language to use is unknown")] #[value("systemLanguage")]
+        #[hint("leave only one element in the <switch>")]
         Language {},
         "svg.unsupported" #[error("`{property}` cannot be read")] #[value("{value}")] #[hint("apply it in the drawing program")]
         Property { property: String, value: String },
@@ -36,20 +36,20 @@ messages! {
         "svg.unsupported" #[error("a <use> cannot give an <svg> another size")] #[value("use")]
         #[hint("give the <svg> itself its `width` and `height`")]
         SizeOfUse {},
-        "svg.unsupported" #[error("the size of a `viewBox` is unknown")] #[value("{element}")]
-        #[hint("give its element `width` and `height`")]
+        "svg.unsupported" #[error("the size of an element with a `viewBox` is unknown")] #[value("{element}")]
+        #[hint("give the element `width` and `height`")]
         SizeOfView { element: String },
         "svg.unsupported" #[error("<{element}> has a frame that cuts off {percent} % of its content")] #[value("{element}")]
         #[allowed("content inside the frame")] #[hint("`overflow=\"visible\"` shows all of it")]
         Framed { element: String, percent: String },
         "svg.unsupported" #[error("`clip-path` cuts off {percent} % of what is drawn")] #[value("{value}")]
-        #[allowed("clip paths around all that is drawn")] #[hint("apply it in the drawing program")]
+        #[allowed("clip paths that enclose everything that is drawn")] #[hint("apply it in the drawing program")]
         Clipped { percent: String, value: String },
         "svg.syntax" #[error("`{attribute}` cannot be read: {reason}")] #[value("{found}")]
         Attribute { attribute: String, reason: String, found: String },
         "svg.syntax" #[error("`viewBox` cannot be read: {reason}")] #[value("{value}")] #[allowed("x y width height")]
         ViewBox { reason: String, value: String },
-        "svg.number" #[error("the transform leaves the range of numbers")] #[value("{value}")]
+        "svg.number" #[error("the transform gives coordinates outside the range of numbers")] #[value("{value}")]
         Transform { value: String },
         "svg.unsupported" #[error("length `{attribute}` cannot be read")] #[value("{value}")]
         #[allowed("a finite number without unit, or in px, pt, pc, mm, cm, in, or in % of a drawing with a `viewBox`")]
@@ -58,7 +58,7 @@ messages! {
         Negative { attribute: String, value: f64 },
         "svg.syntax" #[error("`points` has {count} numbers, which is odd")] #[value("{count}")] #[allowed("pairs of numbers")]
         OddPoints { count: usize },
-        "svg.number" #[error("the path leaves the range of numbers")] #[value("inf")]
+        "svg.number" #[error("the path gives coordinates outside the range of numbers")] #[value("inf")]
         Path {},
         "svg.unsupported" #[error("invalid `fill-rule`")] #[value("{value}")] #[allowed("evenodd, nonzero")]
         FillRule { value: String },
@@ -88,7 +88,7 @@ messages! {
     pub(crate) enum SvgNotice {
         "svg.open_path" #[error("{} closed by a straight line", counted(*count as u64, "open path is", "open paths are"))] #[value("{count}")]
         OpenPaths { count: usize },
-        "svg.stroke" #[error("{} instead of strokes", counted(*count as u64, "shape without fill is read by its outline", "shapes without fill are read by their outlines"))] #[value("{count}")]
+        "svg.stroke" #[error("{}; strokes are ignored", counted(*count as u64, "shape without a fill is read as the area enclosed by its outline", "shapes without a fill are read as the areas enclosed by their outlines"))] #[value("{count}")]
         Unfilled { count: usize },
         "svg.empty" #[error("{} left out", counted(*count as u64, "shape without a path or points is", "shapes without a path or points are"))] #[value("{count}")]
         Empty { count: usize },
@@ -96,11 +96,11 @@ messages! {
         Images { count: usize },
         "svg.hidden" #[error("{} left out", counted(*count as u64, "element that cannot be seen is", "elements that cannot be seen are"))] #[value("{count}")]
         Hidden { count: usize },
-        "svg.marker" #[error("{} which are left out", counted(*count as u64, "element has markers", "elements have markers"))] #[value("{count}")]
+        "svg.marker" #[error("{}, which are left out", counted(*count as u64, "element has markers", "elements have markers"))] #[value("{count}")]
         Markers { count: usize },
-        "svg.filter" #[error("{} which is not applied", counted(*count as u64, "element has a filter", "elements have a filter"))] #[value("{count}")]
+        "svg.filter" #[error("{}, which is not applied", counted(*count as u64, "element has a filter", "elements have a filter"))] #[value("{count}")]
         Filters { count: usize },
-        "svg.stroke" #[error("{} which is left out: the outline runs along its middle", counted(*count as u64, "filled shape has a stroke", "filled shapes have a stroke"))]
+        "svg.stroke" #[error("{}, which is left out: the outline runs along the middle of the stroke", counted(*count as u64, "filled shape has a stroke", "filled shapes have a stroke"))]
         #[value("{count}")]
         Strokes { count: usize },
         "svg.animation" #[error("{} left out", counted(*count as u64, "animation is", "animations are"))] #[value("{count}")]
@@ -110,7 +110,7 @@ messages! {
         "svg.style" #[error("{} with a selector that is not read: other colours may be intended", counted(*count as u64, "shape has a rule of a style sheet", "shapes have rules of style sheets"))]
         #[value("{count}")]
         Styled { count: usize },
-        "svg.fill_rule" #[error("{} no `fill-rule` and would have fewer holes by the non-zero rule", counted(*count as u64, "shape names", "shapes name"))] #[value("{count}")]
+        "svg.fill_rule" #[error("{} no `fill-rule` and would have fewer holes under the non-zero rule", counted(*count as u64, "shape names", "shapes name"))] #[value("{count}")]
         #[hint("`fill-rule=\"evenodd\"` or `fill-rule=\"nonzero\"` in the file says which is meant")]
         FillRule { count: usize },
     }
@@ -138,7 +138,7 @@ messages! {
         "map.syntax" #[error("a ring is not closed")] #[value("{count}")] #[allowed("four or more positions, the last like the first")]
         OpenRing { count: usize },
         "map.hole" #[error("hole {hole} lies outside its polygon")] #[value("{position}")]
-        #[allowed("holes inside the first ring of a polygon")] #[hint("islands are polygons of their own")]
+        #[allowed("holes inside the first ring of a polygon")] #[hint("an island must be a separate polygon")]
         Hole { hole: usize, position: String },
         "map.unknown_feature" #[error("`{feature}` is empty")] #[value("{feature}")] #[allowed("features with polygons")]
         Nothing { feature: String },
@@ -165,11 +165,11 @@ messages! {
         PointsAndLines { count: usize },
         "map.empty" #[error("{} no geometry", counted(*count as u64, "feature has", "features have"))] #[value("{count}")]
         Empty { count: usize },
-        "map.antimeridian" #[error("{} in one piece", counted(*count as u64, "outline crosses the antimeridian and is", "outlines cross the antimeridian and are"))] #[value("{count}")]
+        "map.antimeridian" #[error("{} in one piece", counted(*count as u64, "outline crosses the antimeridian and is kept", "outlines cross the antimeridian and are kept"))] #[value("{count}")]
         Over { count: usize },
         "map.antimeridian" #[error("{count} polygons that were cut along the antimeridian are joined again")] #[value("{count}")]
         Cut { count: usize },
-        "map.antimeridian" #[error("{} moved by 360° next to the others", counted(*count as u64, "polygon is", "polygons are"))] #[value("{count}")]
+        "map.antimeridian" #[error("{} moved by 360° to lie next to the others", counted(*count as u64, "polygon is", "polygons are"))] #[value("{count}")]
         Beside { count: usize },
         "map.pole" #[error("{} cut along the antimeridian and closed along the pole", counted(*count as u64, "outline around a pole is", "outlines around a pole are"))]
         #[value("{count}")]
@@ -186,7 +186,7 @@ messages! {
         "font.no_glyph" #[error("`{letter}` is not a letter")] #[value("{letter}")]
         NoLetter { letter: String },
         "font.script" #[error("`{letter}` belongs to a script whose letters are not set one by one from left to right")] #[value("{letter}")]
-        #[allowed("letters such as Latin, Greek or Cyrillic ones, without combining marks")]
+        #[allowed("letters of scripts such as Latin, Greek or Cyrillic, without combining marks")]
         #[hint("write the text in a drawing program and convert it to paths in an SVG file")]
         Script { letter: String },
         "font.no_glyph" #[error("the font `{font}` has no letter `{letter}`")] #[value("{letter}")]

@@ -48,7 +48,7 @@ messages! {
         LargerOrLattice { spacing: Setting, lattice: Setting },
         "part.shape_hint" #[error("use a smaller {spacing}, a larger {size}, {drop_below}, or {lattice}")]
         FinerOutline { spacing: Setting, size: Setting, drop_below: Setting, lattice: Setting },
-        "part.shape_hint" #[error("{union} keeps what any of them covers, {parity} what an odd number encloses")]
+        "part.shape_hint" #[error("{union} keeps what any of them covers, {parity} keeps what an odd number of them encloses")]
         Overlap { union: Setting, parity: Setting },
         "part.shape_hint" #[error("maybe the file is in millimetres: {scale}; {size} sets the length")]
         Millimetres { scale: Setting, size: Setting },
@@ -59,7 +59,7 @@ messages! {
         "part.shape_hint" #[error("{cap} closes it, {sheet} keeps it as cloth")]
         CapOrSheet { cap: Setting, sheet: Setting },
         "part.shape_hint"
-        #[error("{} at the position of another: {weld} joins them; or {cap}, {sheet}", counted(*count as u64, "vertex lies", "vertices lie"))]
+        #[error("{} at the position of another; {weld} joins them. Otherwise, use {cap} or {sheet}", counted(*count as u64, "vertex lies", "vertices lie"))]
         Weld { count: usize, weld: Setting, cap: Setting, sheet: Setting },
     }
 
@@ -76,7 +76,7 @@ messages! {
         "scene.dimension" #[error("this shape does not exist in {dimension}D")]
         Dimension { dimension: usize },
         "scene.shape" #[error("edges of {length} m make the surface cross itself")] #[value("{length}")]
-        #[allowed("a length below the finest parts of the surface")]
+        #[allowed("a length smaller than the finest details of the surface")]
         RemeshCrosses { length: f64 },
         "scene.shape" #[error("edges of {length} m make the surface enclose {part} of its volume")] #[value("{length}")]
         #[allowed("a length that keeps the volume within {percent} %")]
@@ -87,7 +87,7 @@ messages! {
         "shape.no_area" #[error("no outline is left")] #[value("{least}")]
         NoneLeft { least: f64 },
         "limit.nodes" #[error("with nodes {} m apart, there would be {nodes} nodes", number(*spacing))] #[value("{}", number(*spacing))]
-        #[allowed("{least} m or more: at most {most} nodes")]
+        #[allowed("{least} m or more, for at most {most} nodes")]
         TooFineOutline { spacing: f64, nodes: String, least: String, most: u64 },
     }
 
@@ -95,26 +95,26 @@ messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ShapeNotice {
         "shape.lost_volume" #[error("with the filling, {change}")] #[value("{kept}")]
-        #[allowed("{warned} % of the volume, above 25 % is an error")]
+        #[allowed("up to {warned} % of the volume; more than 25 % is an error")]
         Filling { change: Change, kept: String, warned: f64 },
         "shape.lost_volume" #[error("with edges of {} m, {change}", number(*length))] #[value("{kept}")]
         Remeshed { length: f64, change: Change, kept: String },
         "shape.thinned" #[error("{} {nodes} nodes, {} m apart: {change}", counted(*given as u64, "point of the file becomes", "points of the file become"), number(*spacing))]
-        #[value("{given}")] #[hint("a smaller {finer} keeps finer detail, {lattice} carries all of it")]
+        #[value("{given}")] #[hint("a smaller {finer} keeps finer detail, {lattice} keeps all of it")]
         Thinned { given: usize, nodes: usize, spacing: f64, change: Change, finer: Setting, lattice: Setting },
         "shape.thinned" #[error("with {nodes} nodes {} m apart, {change}", number(*spacing))] #[value("{kept}")]
-        #[hint("a smaller {finer} keeps finer detail, {lattice} carries all of it")]
+        #[hint("a smaller {finer} keeps finer detail, {lattice} keeps all of it")]
         Coarse { nodes: usize, spacing: f64, change: Change, kept: String, finer: Setting, lattice: Setting },
-        "shape.nested" #[error("{}", counted(*count as u64, "outline lies within one of another element and is a hole there", "outlines lie within those of other elements and are holes there"))]
+        "shape.nested" #[error("{}", counted(*count as u64, "outline lies within an outline of another element and is a hole there", "outlines lie within outlines of other elements and are holes there"))]
         #[value("{count}")] #[hint("{union} keeps what any element paints, {parity} confirms that holes are intended")]
         Nested { count: usize, union: Setting, parity: Setting },
         "shape.thin_triangles"
         #[error("{count} of {} {} angles below {least}°, the smallest {angle}° at ({x}, {y}): {cause}", counted(*triangles as u64, "triangle", "triangles"), if *count == 1 { "has" } else { "have" })]
-        #[value("{angle}")] #[allowed("angles from {least}°")]
+        #[value("{angle}")] #[allowed("angles of at least {least}°")]
         ThinTriangles { count: usize, triangles: usize, least: f64, angle: String, x: String, y: String, cause: ThinCause },
         "shape.no_area" #[error("{} left out", counted(*count as u64, "outline without area is", "outlines without area are"))] #[value("{count}")]
         LeftOut { count: usize },
-        "shape.dropped" #[error("{count} of {outlines} outlines {} left out: less than {} m²", if *count == 1 { "is" } else { "are" }, number(*least))]
+        "shape.dropped" #[error("{count} of {outlines} outlines {} left out (area below {} m²)", if *count == 1 { "is" } else { "are" }, number(*least))]
         #[value("{count}")]
         Dropped { count: usize, outlines: usize, least: f64 },
         "shape.overlap"

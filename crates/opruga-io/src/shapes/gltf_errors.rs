@@ -7,7 +7,7 @@ terms! {
     /// A part of a binary file whose size is wrong.
     pub(crate) enum Sized = "part.gltf_size" {
         File = "at byte 8, the length of the file",
-        Chunk = "a chunk begins at byte",
+        Chunk = "the position of a chunk",
     }
 }
 
@@ -15,21 +15,21 @@ messages! {
     /// Errors in a glTF file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum GltfError {
-        "gltf.size" #[error("{what}: {length}, but the file has {bytes} bytes")] #[value("{length}")] #[hint("the file is cut off")]
+        "gltf.size" #[error("{what} is {length}, but the file has {bytes} bytes")] #[value("{length}")] #[hint("the file is cut off")]
         CutOff { what: Sized, length: u64, bytes: usize },
-        "gltf.size" #[error("{what}: {length}, but the file has {bytes} bytes")] #[value("{length}")]
-        #[hint("the length covers the whole file: leave out the {more} bytes that follow it")]
+        "gltf.size" #[error("{what} is {length}, but the file has {bytes} bytes")] #[value("{length}")]
+        #[hint("the length in the header must equal the size of the file: remove the {more} bytes at the end")]
         Behind { what: Sized, length: u64, bytes: usize, more: u64 },
-        "gltf.size" #[error("at byte {byte}, the length of a chunk: {length}, but the file has {bytes} bytes")] #[value("{length}")]
+        "gltf.size" #[error("at byte {byte}, the length of a chunk is {length}, but the file has {bytes} bytes")] #[value("{length}")]
         #[hint("the file is cut off")]
         Chunk { byte: usize, length: u64, bytes: usize },
-        "gltf.version" #[error("at byte 4, version {version}")] #[value("{version}")] #[allowed("2")]
+        "gltf.version" #[error("at byte 4, the version is {version}")] #[value("{version}")] #[allowed("2")]
         BinaryVersion { version: u64 },
         "gltf.size" #[error("the file has no JSON chunk")] #[value("0")] #[allowed("a chunk `JSON` at byte 12")]
         NoJson {},
         "gltf.version" #[error("version `{version}` cannot be read")] #[value("{version}")] #[allowed("2.0")]
         Version { version: String },
-        "gltf.unsupported" #[error("the file needs `{extension}`")] #[value("{extension}")]
+        "gltf.unsupported" #[error("the file needs the extension `{extension}`")] #[value("{extension}")]
         #[allowed("no compression and no other required extension")] #[hint("export without compression")]
         Extension { extension: String },
         "gltf.syntax" #[error("the file names no scene")] #[allowed("`scenes` with `nodes`")]
@@ -37,7 +37,7 @@ messages! {
         "gltf.index" #[error("there is no {what} {index}")] #[value("{index}")] #[allowed("below {count}")]
         NoEntry { what: &'static str, index: usize, count: usize },
         "gltf.tree" #[error("node {node} has two parents, or is its own parent")] #[value("{node}")] #[allowed("one parent for every node")]
-        #[hint("give each instance a node of its own that names the same mesh")]
+        #[hint("give each instance its own node, with the same mesh")]
         Parents { node: usize },
         "gltf.depth" #[error("nodes are nested more than {deepest} deep, or contain themselves")] #[value("{node}")] #[allowed("at most {deepest} levels")]
         Depth { deepest: usize, node: usize },
@@ -74,7 +74,7 @@ messages! {
         Scenes { count: usize },
         "gltf.skin" #[error("{} left out", counted(*count as u64, "skin, by which vertices follow bones, is", "skins, by which vertices follow bones, are"))] #[value("{count}")]
         Skins { count: usize },
-        "gltf.morph" #[error("{} left out", counted(*count as u64, "part with morph targets has them", "parts with morph targets have them"))] #[value("{count}")]
+        "gltf.morph" #[error("morph targets of {} left out", counted(*count as u64, "part are", "parts are"))] #[value("{count}")]
         Morphs { count: usize },
         "gltf.animation" #[error("{} left out", counted(*count as u64, "animation is", "animations are"))] #[value("{count}")]
         Animations { count: usize },

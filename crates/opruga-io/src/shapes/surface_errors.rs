@@ -36,7 +36,7 @@ messages! {
         "mesh.degenerate_face" #[error("a face crosses or touches itself, or encloses nothing")]
         #[allowed("{CORNERS}")]
         Crossing {},
-        "mesh.degenerate_face" #[error("a face is far from flat: the distance of a corner from its plane is {off} of its size")]
+        "mesh.degenerate_face" #[error("a face is far from flat: a corner is {off} of the size of the face away from its plane")]
         #[allowed("{CORNERS}")]
         Bent { off: String },
     }
@@ -89,9 +89,9 @@ messages! {
         "mesh.self_intersection"
         #[error("the surface meets itself: triangle {first} around ({first_center}) crosses, touches or overlaps triangle {second} around ({second_center})")]
         #[value("{}", pairs(*count, *complete))] #[allowed("triangles that meet only at common vertices and edges")]
-        #[hint("{keep} takes the surface as it is")]
+        #[hint("{keep} accepts the surface as it is")]
         MeetsItself { first: u32, first_center: String, second: u32, second_center: String, count: usize, complete: bool, keep: Setting },
-        "mesh.size" #[error("the surface has no extent, or one out of range")] #[value("{extent}")] #[allowed("an extent from 1e-150 to 1e150")]
+        "mesh.size" #[error("the extent of the surface is zero or out of range")] #[value("{extent}")] #[allowed("an extent from 1e-150 to 1e150")]
         Extent { extent: String },
         "scene.not_finite" #[error("a coordinate of vertex {vertex} is {value}")] #[value("{value}")] #[allowed("a finite number")]
         NotFiniteVertex { vertex: usize, value: String },
@@ -102,14 +102,14 @@ messages! {
     /// Parts of a surface that are omitted, changed or remarkable.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum SurfaceNotice {
-        "mesh.concave_face" #[error("{count} of {} {} concave: cut along diagonals inside", polygons(*faces), are(*count))] #[value("{count}")]
+        "mesh.concave_face" #[error("{count} of {} {} concave; they were divided along diagonals that lie inside", polygons(*faces), are(*count))] #[value("{count}")]
         Concave { count: usize, faces: usize },
-        "mesh.bent_face" #[error("{count} of {} {} not flat, by up to {off} of their size: cut along the better diagonals", polygons(*faces), are(*count))]
+        "mesh.bent_face" #[error("{count} of {} {} not flat (by up to {off} of their size); they were divided along the better diagonals", polygons(*faces), are(*count))]
         #[value("{count}")]
         BentFaces { count: usize, faces: usize, off: String },
         "mesh.sliver"
         #[error("{count} of {} {}; the thinnest is triangle {thinnest}, with an area of {} of its longest edge squared", counted(*triangles as u64, "triangle", "triangles"), if *count == 1 { "is a sliver" } else { "are slivers" }, number(*area))]
-        #[value("{count}")] #[allowed("areas from {least}")] #[hint("{remesh} makes nearly equilateral triangles")]
+        #[value("{count}")] #[allowed("areas of at least {least}")] #[hint("{remesh} makes nearly equilateral triangles")]
         Slivers { count: usize, triangles: usize, thinnest: usize, area: f64, least: String, remesh: Setting },
         "mesh.unreferenced" #[error("{} left out", counted(*count as u64, "vertex that no triangle uses is", "vertices that no triangle uses are"))] #[value("{count}")]
         UnreferencedVertices { count: usize },
@@ -125,7 +125,7 @@ messages! {
         Against { count: usize },
         "mesh.flipped" #[error("{} flipped", counted(*count as u64, "component that is inside out is", "components that are inside out are"))] #[value("{count}")]
         InsideOut { count: usize },
-        "mesh.not_compared" #[error("too many triangles lie over one another: not all were compared, and some may cross")]
+        "mesh.not_compared" #[error("too many triangles lie close together: not all were compared, and some may cross")]
         NotCompared {},
         "mesh.self_intersection" #[error("{} of triangles cross, touch or overlap", pairs(*count, true))] #[value("{count}")]
         Crossings { count: usize },
@@ -168,7 +168,7 @@ messages! {
     /// Parts of an OBJ file that are omitted.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ObjNotice {
-        "obj.weight" #[error("{} other than 1, which triangles do not have", counted(*count as u64, "vertex has a weight", "vertices have weights"))]
+        "obj.weight" #[error("{} other than 1, which triangles cannot use", counted(*count as u64, "vertex has a weight", "vertices have weights"))]
         #[value("{count}")]
         Weights { count: usize },
     }
@@ -251,9 +251,9 @@ messages! {
     /// Parts of an STL file that are ignored.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum StlNotice {
-        "stl.normal" #[error("{}: the order of the corners determines the side", counted(*count as u64, "normal is not a number", "normals are not numbers"))] #[value("{count}")]
+        "stl.normal" #[error("{}; the order of the corners determines the side instead", counted(*count as u64, "normal is not a number", "normals are not numbers"))] #[value("{count}")]
         Broken { count: usize },
-        "stl.normal" #[error("{}: the order of the corners determines the side", counted(*count as u64, "normal points against its triangle", "normals point against their triangles"))]
+        "stl.normal" #[error("{}; the order of the corners determines the side instead", counted(*count as u64, "normal points against its triangle", "normals point against their triangles"))]
         #[value("{count}")]
         Against { count: usize },
     }

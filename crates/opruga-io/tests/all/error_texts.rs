@@ -158,7 +158,7 @@ scene.toml:14:10: error[scene.unknown_field]: there is no field `selct` in `pin`
  7 | [[body]]
    | ^^^^^^^^
   = allowed: exactly one of mass, density, density_of_cells, node_mass
-  = hint: a body that never moves is `fixed = true`"#,
+  = hint: a body that never moves has `fixed = true`"#,
         ),
         (
             with("mass = 2\n"),

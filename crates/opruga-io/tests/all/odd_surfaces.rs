@@ -72,7 +72,7 @@ fn words_of_stl_are_read_in_any_case_and_a_glb_is_as_long_as_it_says() {
     let error = surface("a.glb", &long).expect_err("too long").remove(0);
     assert_eq!((error.code, error.value), ("gltf.size", Some(length.to_string())));
     assert!(
-        error.hint.as_deref().is_some_and(|hint| hint.contains("leave out the 4 bytes that follow it")),
+        error.hint.as_deref().is_some_and(|hint| hint.contains("remove the 4 bytes at the end")),
         "{:?}",
         error.hint
     );

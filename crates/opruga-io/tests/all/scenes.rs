@@ -333,7 +333,7 @@ fn commands_that_never_act_are_told() {
         (remove(0.99), Some((format!("the command begins at 0.99 s, {last}"), 14))),
         (remove(1.0), Some((format!("the command begins at 1 s, {last}"), 14))),
         (push(0.99, 2.0), Some((format!("the command begins at 0.99 s, {last}"), 14))),
-        (remove(1.5), Some(("the command begins at 1.5 s, after the end at 1 s".into(), 14))),
+        (remove(1.5), Some(("the command begins at 1.5 s, but the run ends at 1 s".into(), 14))),
     ];
     for (commands, expected) in cases {
         let text = format!("{HEAD}{BALL}{commands}");

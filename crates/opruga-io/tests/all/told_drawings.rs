@@ -145,8 +145,11 @@ fn an_element_painted_within_another_is_a_hole_and_counted() {
     let ring = "<path fill-rule=\"evenodd\" d=\"M0 0h10v10h-10z M1 1h8v8h-8z\"/>";
     let dot = "<circle cx=\"3\" cy=\"5\" r=\"0.4\"/>";
     for (inside, told) in [
-        (format!("{square}{}", disc(5.0)), Some(("1", "1 outline lies within one of another element"))),
-        (format!("{}{square}\n{}", disc(3.0), disc(7.0)), Some(("2", "2 outlines lie within those of other elements"))),
+        (format!("{square}{}", disc(5.0)), Some(("1", "1 outline lies within an outline of another element"))),
+        (
+            format!("{}{square}\n{}", disc(3.0), disc(7.0)),
+            Some(("2", "2 outlines lie within outlines of other elements")),
+        ),
         // A dot on the disc is an area again.
         (format!("{square}{}{dot}", disc(3.0)), Some(("1", "1 outline lies"))),
         (ring.to_string(), None),

@@ -528,7 +528,7 @@ fn added_bodies_count_and_thin_ones_need_a_thickness() {
     for (scene, expected) in [
         (body(3, sheet, ""), "`density` of a sheet needs its `thickness`"),
         (body(3, sheet, "thickness = 1e-3\n"), ""),
-        (body(2, chain, ""), "`density` of a wire needs its width, here `thickness`"),
+        (body(2, chain, ""), "`density` of a wire needs its width, which `thickness` gives"),
         (body(2, chain, "thickness = 0.1\n"), ""),
         (body(3, filled, ""), ""),
     ] {

@@ -15,7 +15,7 @@ for chains in 3D; k = E t³/12 · l²/(A₁ + A₂) for an edge of length l betw
 cylinder; a sheet that may warp deflects more, by an eighth on regular triangles and by a quarter on right ones. With these values a ring of radius \
 R buckles under the outer pressure 3EI/R³, and a strip clamped by two nodes (the clamp acts halfway between them) bends like an Euler–Bernoulli \
 beam. Angles beyond ±180° from θ₀ are taken the short way round. Edges without length and triangles without area have no angle and give no force; \
-close to that the force is large (k θ/ℓ). Source: Grinspun et al. 2003, Discrete shells; Seung and Nelson 1988.",
+close to such shapes, the force is large (k θ/ℓ). Source: Grinspun et al. 2003, Discrete shells; Seung and Nelson 1988.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -23,7 +23,7 @@ close to that the force is large (k θ/ℓ). Source: Grinspun et al. 2003, Discr
             Allowed::NOT_NEGATIVE,
             "N·m",
             Default::OneOf(STIFFNESS),
-            "Moment per angle k of every hinge; exactly one of `stiffness` and `modulus`.",
+            "Moment per angle k of every hinge; give exactly one of `stiffness` and `modulus`.",
         )
         .starts_at(0.02),
         Field::new(
@@ -39,7 +39,7 @@ close to that the force is large (k θ/ℓ). Source: Grinspun et al. 2003, Discr
             Allowed::POSITIVE,
             "m",
             Default::Absent,
-            "Thickness t of the wall, or diameter of the wire of a chain in 3D; with `modulus`.",
+            "Thickness t of the wall, or diameter of the wire of a chain in 3D; used with `modulus`.",
         )
         .starts_at(0.02),
         Field::new(
@@ -47,7 +47,7 @@ close to that the force is large (k θ/ℓ). Source: Grinspun et al. 2003, Discr
             Allowed::NOT_NEGATIVE,
             "N·m·s",
             Default::Number(0.0),
-            "Moment per rate of the angle c of every hinge; zero under rigid motion.",
+            "Moment per angular rate c of every hinge; zero under rigid motion.",
         ),
         Field::new(
             "rest",

@@ -48,31 +48,31 @@ messages! {
         Crossing { count: usize, first: u32, second: u32 },
         /// A facet without a normal.
         "model.degenerate_facet"
-        #[error("facet {facet} is degenerate: its measure is {} and an edge of it has {} m", number(*measure), number(*edge))]
-        #[allowed("more than 1e-10 of the edge (in space, of its square)")]
+        #[error("facet {facet} is degenerate: its measure is {} and one of its edges is {} m long", number(*measure), number(*edge))]
+        #[allowed("a measure above 1e-10 of the edge (in space, of its square)")]
         Degenerate { facet: usize, measure: f64, edge: f64 },
         /// Nodes that are not on the surface.
         "model.inner_nodes"
         #[error("{count} of {nodes} nodes are not on the boundary; the first is node {first}")]
         #[allowed("only nodes of the boundary, because the method has no others")]
-        #[hint("the surface without its filling, such as `polygon` or `svg` in the plane and `box`, `icosphere` or `surface` in space")]
+        #[hint("use the surface without its filling, such as `polygon` or `svg` in the plane and `box`, `icosphere` or `surface` in space")]
         InnerNodes { count: usize, nodes: usize, first: usize },
         /// Several solids.
         "model.several_solids"
         #[error("the boundary encloses {solids} solids that do not touch")]
         #[allowed("one, with cavities")]
-        #[hint("a body for each")]
+        #[hint("make a body for each of them")]
         SeveralSolids { solids: usize },
         /// A boundary inside another one, while the solid is the exterior.
         "model.nested_exterior"
         #[error("`exterior` is true, but facet {facet} belongs to a boundary inside another one")] #[parameters("exterior")]
-        #[allowed("cavities beside one another")]
+        #[allowed("cavities that do not contain one another")]
         NestedExterior { facet: u32 },
         /// More vertices than dense matrices allow.
         "limit.memory"
         #[error("the boundary has {nodes} vertices, whose dense matrices take about {} bytes during their assembly", number(*bytes))]
         #[allowed("at most {most} vertices")]
-        #[hint("a coarser surface (`spacing`), or `fem` on its filling")]
+        #[hint("use a coarser surface (`spacing`), or fill it and use `fem`")]
         TooMany { nodes: usize, bytes: f64, most: usize },
         /// The page has no dense systems.
         "model.not_on_the_page"
@@ -86,7 +86,7 @@ messages! {
         /// A singular system.
         "model.singular"
         #[error("the equations of the boundary have no solution: {reason}")]
-        #[hint("facets of more uniform size")]
+        #[hint("use facets of more uniform size")]
         Singular { reason: NoSolution },
     }
 }

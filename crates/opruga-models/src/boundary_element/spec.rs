@@ -6,14 +6,14 @@ use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
 pub const SPEC: Spec = Spec {
     kind: "boundary_element",
     summary: "an elastic solid by its boundary alone: Kelvin's solution on the edges of an outline or the triangles of a surface",
-    documentation: "Linear elasticity of the solid inside a closed boundary, without any mesh inside: displacements are linear on each edge \
-(triangle), tractions too, with one at each vertex for every smooth part of the boundary that meets there. The stiffness K of the boundary is dense; \
-it is made symmetric and free of forces under rigid motion, and readings give both changes. The force is the gradient of U = ½ uᵀKu with u = Rᵀ(x − \
-x̄) − X, where R is the rotation nearest to the deformation of the whole body, so the body may turn and fly; strain must be small in the frame R. \
-The mass lies on the boundary, so frequencies differ from those of a solid with the same mass inside. `exterior = true` is the infinite medium \
-around the boundary, which does not turn. Limits: one solid with cavities, at most 2000 vertices; large strain and bending by large angles are those \
-of linear elasticity in one frame. Equations and measurements: docs/boundary-elements.md. Source: Brebbia, Telles, Wrobel 1984, Boundary element \
-techniques; James, Pai 1999, ArtDefo.",
+    documentation: "Linear elasticity of the solid inside a closed boundary, without any mesh inside: displacements and tractions are linear on each \
+edge (triangle). A vertex has one traction for every smooth part of the boundary that meets there. The stiffness K of the boundary is dense; it is \
+made symmetric and free of forces under rigid motion, and readings report the size of both changes. The force is the gradient of U = ½ uᵀKu with u = \
+Rᵀ(x − x̄) − X, where R is the rotation nearest to the deformation of the whole body, so the body may rotate and fly; strain must be small in the \
+frame R. The mass lies on the boundary, so frequencies differ from those of a solid whose mass is spread through its volume. `exterior = true` is \
+the infinite medium around the boundary, which does not turn. Limits: one solid with cavities, at most 2000 vertices; large strain and bending by \
+large angles are those of linear elasticity in one frame. Equations and measurements: docs/boundary-elements.md. Source: Brebbia, Telles, Wrobel \
+1984, Boundary element techniques; James, Pai 1999, ArtDefo.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("youngs_modulus", Allowed::POSITIVE, "Pa", Default::Required, "Young's modulus E.").starts_at(1e5),

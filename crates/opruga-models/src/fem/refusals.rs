@@ -36,11 +36,11 @@ messages! {
         NoGrowth { cell: u32, growth: f64, expansion: f64, reference: f64, now: f64 },
         /// Linear cells near incompressibility.
         "model.locking" #[error("`poissons_ratio` is {ratio} for linear {cells}, which lock near incompressibility")] #[value("{ratio}")] #[parameters("poissons_ratio")] #[allowed("at most {most}")]
-        #[hint("`order = 2` for the body, or `locking = \"nodal_volume\"`")]
+        #[hint("use `order = 2` for the body, or `locking = \"nodal_volume\"`")]
         LinearCellsLock { ratio: f64, cells: Simplices, most: f64 },
         /// Nodal volumes together with thermal expansion.
         "model.locking" #[error("`locking` is \"nodal_volume\", which does not support thermal expansion, but the body has it")] #[value("\"nodal_volume\"")] #[parameters("locking")]
-        #[allowed("\"refuse\" or \"accept\"")] #[hint("`order = 2` for the body, or quadrilaterals and hexahedra, do not lock either")]
+        #[allowed("\"refuse\" or \"accept\"")] #[hint("bodies with `order = 2`, quadrilaterals and hexahedra do not lock either")]
         NodalVolumeAndHeat {},
         /// Nodal volumes in plane stress.
         "model.locking" #[error("`locking` is \"nodal_volume\" in plane stress, where the thickness is free and nothing locks")] #[value("\"nodal_volume\"")] #[parameters("locking")]

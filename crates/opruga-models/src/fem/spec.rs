@@ -10,14 +10,14 @@ pub const SPEC: Spec = Spec {
     summary: "an elastic solid by finite elements, with a choice of materials",
     documentation: "Energy U = Σ V ψ(F) over the points of the cells, F = ∂x/∂X; force −∂U/∂x. Triangles and tetrahedra of first and second order, \
 quadrilaterals and hexahedra. In every material, E and ν are Young's modulus and Poisson's ratio at small strain; μ = E/2(1 + ν), λ = Eν/((1 + ν)(1 \
-− 2ν)). Quadratic triangles and tetrahedra (`order = 2` of the body, the default) neither lock in bending nor near incompressibility. Quadrilaterals \
+− 2ν)). Quadratic triangles and tetrahedra (`order = 2` of the body, the default) lock neither in bending nor near incompressibility. Quadrilaterals \
 and hexahedra bend and twist with the strains of assumed stresses: exactly if they are rectangular, up to ν = 0.4999. Linear triangles and \
-tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` says otherwise: `nodal_volume` is the remedy. In the \
-plane the body is a slice of a long one (plane strain) or a plate that thins freely (plane stress), as deep as the body's `thickness`. Damping is \
-that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's strain: none under rigid motion. Heat: with `thermal_expansion` an \
-unconstrained body expands by the factor g = 1 + α (T − T₀) and has no stress, U = Σ V g³ ψ(F/g) (`linear`: ψ(ε − αΔT 1)); in plane strain it \
-expands by the factor 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature while the scene runs. Equations, sources and measurements: \
-docs/finite-elements.md.",
+tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` says otherwise; with `nodal_volume`, they do not lock. \
+In the plane the body is a slice of a long one (plane strain) or a plate that thins freely (plane stress), as deep as the body's `thickness`. \
+Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's strain: none under rigid motion. Heat: with \
+`thermal_expansion` an unconstrained body expands by the factor g = 1 + α (T − T₀) and has no stress, U = Σ V g³ ψ(F/g) (`linear`: ψ(ε − αΔT 1)); in \
+plane strain it expands by the factor 1 + (1 + ν) α (T − T₀) in the plane. `set` changes the temperature while the scene runs. Equations, sources \
+and measurements: docs/finite-elements.md.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -32,14 +32,14 @@ docs/finite-elements.md.",
             Allowed::POSITIVE,
             "Pa",
             Default::OneOf(&YOUNGS_MODULUS),
-            "Young's modulus E; exactly one of `youngs_modulus` and `youngs_modulus_of_cells`.",
+            "Young's modulus E; give exactly one of `youngs_modulus` and `youngs_modulus_of_cells`.",
         ),
         Field::new(
             "youngs_modulus_of_cells",
             Allowed::Text,
             "",
             Default::OneOf(&YOUNGS_MODULUS),
-            "The name of the numbers in the mesh file, one per cell, that are Young's modulus [Pa].",
+            "The name of the values in the mesh file that give Young's modulus of each cell [Pa].",
         ),
         Field::new(
             "poissons_ratio",
@@ -54,7 +54,7 @@ docs/finite-elements.md.",
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of the numbers in the mesh file, one per cell, that are Poisson's ratio.",
+            "The name of the values in the mesh file that give Poisson's ratio of each cell.",
         ),
         Field::new(
             "damping",
@@ -69,7 +69,7 @@ docs/finite-elements.md.",
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of the numbers in the mesh file, one per cell, that are the retardation time [s].",
+            "The name of the values in the mesh file that give the retardation time of each cell [s].",
         ),
         Field::new(
             "thermal_expansion",
@@ -85,7 +85,7 @@ is 0.",
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of the numbers in the mesh file, one per cell, that are the coefficient of thermal expansion [1/K].",
+            "The name of the values in the mesh file that give the coefficient of thermal expansion of each cell [1/K].",
         ),
         Field::new(
             "temperature",
@@ -100,7 +100,7 @@ is 0.",
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of the numbers in the mesh file, one per cell, that are the temperature [K].",
+            "The name of the values in the mesh file that give the temperature of each cell [K].",
         )
         .applies(&[Condition::GivenOneOf(&EXPANSION)]),
         Field::new(
@@ -116,7 +116,7 @@ is 0.",
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of the numbers in the mesh file, one per cell, that are the temperature of rest [K].",
+            "The name of the values in the mesh file that give the reference temperature of each cell [K].",
         )
         .applies(&[Condition::GivenOneOf(&EXPANSION)]),
         Field::new(

@@ -75,7 +75,7 @@ opruga_math::messages! {
         NotRectangular { cell: usize, deviation: f64 },
         /// The cells of a surface differ in their spacing.
         "model.uneven_grid"
-        #[error("cell {cell} has a spacing of {} m where cell 0 has {} m", number(*spacing), number(*first))]
+        #[error("cell {cell} has a spacing of {} m, but cell 0 has {} m", number(*spacing), number(*first))]
         #[allowed("equal spacings")]
         Uneven { cell: usize, spacing: f64, first: f64 },
         /// A curve or a surface needs a thickness.
@@ -89,7 +89,7 @@ opruga_math::messages! {
         SolidThickness {},
         /// Torsion of a surface or solid.
         "model.torsion_of_surface"
-        #[error("`torsion` belongs to curves (`line`, `ring`, `polyline`); a surface or solid resists its own shear")] #[parameters("torsion")]
+        #[error("`torsion` belongs to curves (`line`, `ring`, `polyline`); surfaces and solids resist shear without it")] #[parameters("torsion")]
         TorsionOfSurface {},
         /// Torsion of a curve without curvature.
         "model.no_torsion"
@@ -110,8 +110,8 @@ opruga_math::messages! {
     pub enum FiniteDifferenceWarning {
         /// Edges are crushed or folded.
         "finite_difference.folded"
-        #[error("edges of a curve or a surface are shorter than 0.58 of their length at rest, where their law softens, or are folded back on their neighbours; they may stay so; counted in the last state")]
-        #[hint("lower loads, or shorter steps before it folds; springs (`mass_spring`) resist any compression")]
+        #[error("edges of a curve or a surface are shorter than 0.58 of their length at rest, where their law softens, or are folded back on their neighbours, and may stay so (counted in the last state)")]
+        #[hint("use lower loads, or shorter steps before it folds; springs (`mass_spring`) resist any compression")]
         Folded {},
     }
 }

@@ -12,18 +12,18 @@ messages! {
         /// A body without cells.
         "model.no_cells"
         #[error("the body has no cells: it is an outline, a surface or a chain")]
-        #[allowed("triangles, quadrilaterals, tetrahedra and hexahedra, as `grid`, shapes from files with a `filling` and volume meshes have")]
+        #[allowed("triangles, quadrilaterals, tetrahedra or hexahedra, as in `grid`, shapes from files with a `filling`, and volume meshes")]
         NoCells {},
         /// Cells with nodes at the midpoints of edges.
         "model.quadratic_cells"
-        #[error("the body has {count} quadratic cells, which have no dual faces here")]
+        #[error("the body has {count} quadratic cells, for which this model has no dual faces")]
         #[allowed("linear cells")]
-        #[hint("`order = 1` for the body")]
+        #[hint("use `order = 1` for the body")]
         Quadratic { count: usize },
         /// A cell that has no volume or is inverted.
         "model.inverted_cell"
         #[error("cell {cell} has no volume or is inverted at rest: det ∂X/∂ξ = {} for a cell {} m long", number(*determinant), number(*size))]
-        #[allowed("more than 1e-12 of its size")]
+        #[allowed("more than 1e-12 of its length squared (in space, cubed)")]
         InvertedCell { cell: usize, determinant: f64, size: f64 },
         /// Linear cells near incompressibility.
         "model.locking"

@@ -12,8 +12,8 @@ between the middles of edges, sides and cells. On triangles and tetrahedra F is 
 elements (`fem` with `order = 1`). On quadrilaterals and hexahedra F is taken at the middle of each dual face; forces are then not a gradient, their \
 tangent is not symmetric, and only explicit integrators and `equilibrium` can step them. The ledger has no elastic energy of such bodies. Materials, \
 E and ν, plane strain and plane stress have the same meaning as in `fem`. Limits: triangles and tetrahedra lock in bending and above ν = 0.45, where \
-they are refused unless `locking` says otherwise; there is no damping of its own (`world.drag`). Equations and measurements: docs/finite-volumes.md. \
-Source: Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003, Finite volume methods for the simulation of skeletal muscle.",
+they are refused unless `locking` says otherwise; the model has no damping of its own (use `world.drag`). Equations and measurements: \
+docs/finite-volumes.md. Source: Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003, Finite volume methods for the simulation of skeletal muscle.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(

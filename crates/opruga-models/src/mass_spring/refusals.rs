@@ -16,7 +16,7 @@ messages! {
         "model.zero_length" #[error("edge {edge} has no length; `modulus` needs one")] #[parameters("modulus")]
         NoLengthOfSpring { edge: usize },
         /// A modulus without an area.
-        "model.no_area" #[error("`modulus` needs triangles next to the edges")] #[parameters("modulus")] #[hint("give `stiffness` for a chain or outline")]
+        "model.no_area" #[error("`modulus` needs triangles next to the edges")] #[parameters("modulus")] #[hint("for a chain or an outline, give `stiffness`")]
         NoTriangles {},
         /// A mesh whose areas cannot be determined.
         "model.mesh" #[error("{problem}")]

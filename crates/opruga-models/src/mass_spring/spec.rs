@@ -19,7 +19,7 @@ resists neither bending nor a change of its enclosed area. Source: Nealen et al.
             Allowed::NOT_NEGATIVE,
             "N/m",
             Default::OneOf(STIFFNESS),
-            "Spring constant k of every spring; exactly one of `stiffness` and `modulus`.",
+            "Spring constant k of every spring; give exactly one of `stiffness` and `modulus`.",
         )
         .starts_at(400.0),
         Field::new(

@@ -344,11 +344,11 @@ opruga_math::messages! {
     pub enum PressureWarning {
         /// A limit acted.
         "pressure.limited"
-        #[error("the pressure of a gas was limited to its `largest_pressure`, or to that at its `smallest_volume`; counted per substep and body")]
+        #[error("the pressure of a gas was limited to its `largest_pressure`, or to the pressure at its `smallest_volume` (counted once per substep and body)")]
         Limited {},
         /// A chamber without volume.
         "pressure.inverted"
-        #[error("a chamber enclosed nothing or was inverted; its gas pushes it open, as the reference describes; an outline that passed through itself may stay so; counted per substep and body")]
+        #[error("a chamber enclosed nothing or was inverted; its gas pushes it open, as the reference describes, but an outline that passed through itself may stay so (counted once per substep and body)")]
         Inverted {},
     }
 }

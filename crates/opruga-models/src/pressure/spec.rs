@@ -10,19 +10,19 @@ pub const SPEC: Spec = Spec {
     kind: "pressure",
     summary: "ideal gas inside closed boundaries: isothermal or adiabatic, with ambient pressure, ramp, leak and heating",
     documentation: "P V = nRT (isothermal, U = −nRT ln(V/V₀) + P_a V) or P V^γ = P₀ V₀^γ (adiabatic, U = P₀ V₀^γ V^{1−γ}/(γ−1) + P_a V); force (P − \
-P_a) ∂V/∂x on every node, which is half of that on an edge in 2D and a third of that on a triangle in 3D. V is the enclosed area times thickness in \
-2D and the enclosed volume in 3D, by the divergence theorem. The sides of quadratic cells and of boxes are curved in V as they are in the cells, so \
-that a uniform pressure causes a uniform stress. Holes count as negative because of their orientation. Every closed boundary that lies in no other \
-one is a chamber of its own with the same parameters. In a solid body the gas belongs in the cavities: with `inside = \"cavities\"`, each cavity is \
-a chamber of its own. `diagnostics.csv` has the columns `NAME.volume` [m³], `NAME.pressure` [Pa] and `NAME.nRT` [J]: volume and nRT (P V also for an \
-adiabatic gas, whose temperature changes) of all chambers of the body NAME, and the mean of their pressures weighted by volume. A body with several \
-chambers also has `NAME.chamber1.volume`, `NAME.chamber1.pressure`, `NAME.chamber1.nRT`, `NAME.chamber2.volume` and so on. Chambers are in the order \
-of the boundaries in the shape, each at the place of its first facet. Below V_s = max(`smallest_volume` V₀, the volume of `largest_pressure`) the \
-pressure keeps the value P(V_s), also when the volume passes zero and the body is inverted. U is then still a function of V with a continuous slope, \
-so no energy is created. The smaller V_s is, the shorter is this passage. A step that does not resolve it loses a few per cent of the energy; the \
-ledger shows the loss. If V_s is much smaller than the default, use shorter steps: a step that jumps from a thousandth of the volume to the other \
-side of zero feels a force a thousand times as large, and each such jump adds energy. Without ambient pressure U has no minimum in V. Source: Matyka \
-and Ollila 2003; thesis 3.3.",
+P_a) ∂V/∂x on every node, which is half of the force on an edge in 2D and a third of the force on a triangle in 3D. V is the enclosed area times \
+thickness in 2D and the enclosed volume in 3D, by the divergence theorem. The sides of quadratic cells and of boxes are curved in V as they are in \
+the cells, so that a uniform pressure causes a uniform stress. Holes count as negative because of their orientation. Every closed boundary that lies \
+in no other one is a chamber of its own with the same parameters. In a solid body the gas belongs in the cavities: with `inside = \"cavities\"`, \
+each cavity is a chamber of its own. `diagnostics.csv` has the columns `NAME.volume` [m³], `NAME.pressure` [Pa] and `NAME.nRT` [J]: volume and nRT \
+(P V also for an adiabatic gas, whose temperature changes) of all chambers of the body NAME, and the mean of their pressures weighted by volume. A \
+body with several chambers also has `NAME.chamber1.volume`, `NAME.chamber1.pressure`, `NAME.chamber1.nRT`, `NAME.chamber2.volume` and so on. \
+Chambers are numbered in the order in which their first facets appear in the shape. Below V_s = max(`smallest_volume` V₀, the volume of \
+`largest_pressure`) the pressure keeps the value P(V_s), also when the volume passes zero and the body is inverted. U is then still a function of V \
+with a continuous slope, so no energy is created. The smaller V_s is, the shorter this passage is. A step that does not resolve the passage loses a \
+few per cent of the energy; the ledger shows the loss. If V_s is much smaller than the default, use shorter steps: a step that jumps from a \
+thousandth of the volume to the other side of zero feels a force a thousand times as large, and each such jump adds energy. Without ambient pressure \
+U has no minimum in V. Source: Matyka and Ollila 2003; thesis 3.3.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -30,8 +30,8 @@ and Ollila 2003; thesis 3.3.",
             Allowed::NOT_NEGATIVE,
             "J",
             Default::OneOf(AMOUNT),
-            "Amount of gas times temperature; exactly one of `nRT` and `pressure`. A command that sets either one refills the chamber, whatever has \
-leaked.",
+            "Amount of gas times temperature; give exactly one of `nRT` and `pressure`. A command that sets either one refills the chamber, no \
+matter how much has leaked.",
         )
         .starts_at(20.0),
         Field::new(

@@ -19,7 +19,7 @@ messages! {
         "model.cluster_misses"
         #[error("{missed} of {nodes} nodes are in no cluster; the first is node {first}")]
         #[allowed("every node in at least one")]
-        #[hint("also name a group of the other nodes")]
+        #[hint("also name a group that contains the other nodes")]
         Misses { missed: usize, nodes: usize, first: usize },
         /// Regions much smaller than the distance between nodes.
         "model.region"
@@ -35,13 +35,13 @@ messages! {
         GoalStep { share: f64, stiffness: f64 },
         /// A substep that differs from the declared one.
         "model.step_changed"
-        #[error("the substep is {} s, but `goal_step` applies to the {} s that the scene declared", number(*now), number(*declared))] #[parameters("goal_step")]
+        #[error("the substep is {} s, but `goal_step` applies to the substep of {} s that the scene declares", number(*now), number(*declared))] #[parameters("goal_step")]
         #[allowed("that step")]
         #[hint("`stiffness = {}` means the same with any step", number(*stiffness))]
         StepChanged { now: f64, declared: f64, stiffness: f64 },
         /// The reason why the published scheme has no potential, as a part of a refusal.
         "part.no_potential"
-        #[error("`scheme` is \"as_published\", whose goal (the fitted map over the root of its determinant) is not the gradient of a potential; `scheme = \"potential\"` has second derivatives, and they are symmetric")] #[parameters("scheme")]
+        #[error("`scheme` is \"as_published\", whose goal (the fitted map divided by a root of its determinant) is not the gradient of a potential; `scheme = \"potential\"` has second derivatives, and they are symmetric")] #[parameters("scheme")]
         NoPotentialOfGoal {},
     }
 }
@@ -52,8 +52,8 @@ messages! {
     pub enum MatchingWarning {
         /// A mirrored cluster.
         "shape_matching.mirrored"
-        #[error("a cluster was mirrored: rotations do not restore a mirrored shape, so overlapping clusters that are all mirrored may stay folded; counted per substep and cluster")]
-        #[hint("fewer, larger clusters")]
+        #[error("a cluster was mirrored: rotations do not restore a mirrored shape, so overlapping clusters that are all mirrored may stay folded (counted once per substep and cluster)")]
+        #[hint("use fewer, larger clusters")]
         Mirrored {},
     }
 }

@@ -11,13 +11,13 @@ pub const SPEC: Spec = Spec {
     summary: "clusters of nodes that are pulled to their rest shape, rotated or fitted to the positions of the nodes",
     documentation: "Energy U = (1 − β) U_R + β U_A with U = ½ κ Σ m |x − g|² over the nodes of every cluster: U_R is the least over all rotations \
 and translations of the rest shape, U_A the least over all linear or quadratic maps of it. The force is the gradient, the Hessian is exact. κ is a \
-stiffness per mass. Motions that no map of the cluster can follow swing with √κ, strains that a linear map can follow swing with √((1 − β)κ), and \
-rotation and translation do not swing, for every step and every number of nodes. Without `region` and `groups` the whole body is one cluster. \
-Clusters overlap; the mass of a node is shared evenly among its clusters. It needs no edges and no cells; directions in which a cluster has no \
-extent stay free. `scheme = \"as_published\"` is the goal of the paper with the fitted map divided by the D-th root of its determinant: it has no \
-potential, so only explicit integrators can step it; with `goal_step` its stiffness α/h² depends on the step of the scene. Limits: κ is not Young's \
-modulus, and stiffness does not increase with smaller cells. Equations and measurements: docs/shape-matching.md. Source: Müller, Heidelberger, \
-Teschner, Gross 2005, Meshless deformations based on shape matching.",
+stiffness per mass. Motions that no map of the cluster can follow oscillate with the angular frequency √κ, and strains that a linear map can follow \
+with √((1 − β)κ). Rotation and translation do not oscillate. This holds for every step size and every number of nodes. Without `region` and `groups` \
+the whole body is one cluster. Clusters overlap; the mass of a node is shared evenly among its clusters. It needs no edges and no cells; directions \
+in which a cluster has no extent stay free. `scheme = \"as_published\"` is the goal of the paper with the fitted map divided by the D-th root of its \
+determinant: it has no potential, so only explicit integrators can step it; with `goal_step` its stiffness α/h² depends on the step of the scene. \
+Limits: κ is not Young's modulus, and stiffness does not increase with smaller cells. Equations and measurements: docs/shape-matching.md. Source: \
+Müller, Heidelberger, Teschner, Gross 2005, Meshless deformations based on shape matching.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -25,7 +25,7 @@ Teschner, Gross 2005, Meshless deformations based on shape matching.",
             Allowed::NOT_NEGATIVE,
             "1/s²",
             Default::OneOf(STIFFNESS),
-            "Stiffness per mass κ; exactly one of `stiffness` and `goal_step`.",
+            "Stiffness per mass κ; give exactly one of `stiffness` and `goal_step`.",
         )
         .starts_at(1000.0),
         Field::new(
@@ -58,7 +58,7 @@ Teschner, Gross 2005, Meshless deformations based on shape matching.",
             Allowed::POSITIVE,
             "m",
             Default::Absent,
-            "Edge of the boxes, in the rest shape, that form clusters; neighbouring boxes overlap by half.",
+            "Side of the boxes that form clusters in the rest shape; neighbouring boxes overlap by half.",
         )
         .applies(&[Condition::NotGiven("groups")]),
         Field::new(

@@ -17,7 +17,12 @@ const LOAD_CHILDREN: &[Child] = &[
         true,
         "The body, from the scene or added by a command; the name of a body with copies means all of them, `NAME[i]` means one.",
     ),
-    child("select", Holds::Selector, false, "Which nodes; the default is all. Positions move along with every copy."),
+    child(
+        "select",
+        Holds::Selector,
+        false,
+        "The selected nodes; the default is all nodes. For copies, positions in the selector are shifted with each copy.",
+    ),
 ];
 
 /// `[[load]]`, by `kind`.
@@ -42,7 +47,7 @@ pub const LOADS: &[Section] = &[
                     Allowed::ANY,
                     "N",
                     Default::Required,
-                    "The force on every node; negative: away from the point.",
+                    "The force on every node; a negative value points away from the point.",
                 ),
                 Field::new("center", Allowed::Vector, "m", Default::Required, "The point, the same for all copies."),
                 CURVE,
@@ -54,7 +59,7 @@ pub const LOADS: &[Section] = &[
         spec: &section(
             "traction",
             "A force per area of the boundary at rest",
-            "It is spread over the facets of the boundary all of whose nodes are selected.",
+            "It is spread over the facets of the boundary whose nodes are all selected.",
             &[Field::new("value", Allowed::Vector, "Pa", Default::Required, "The force per area."), CURVE],
         ),
         children: LOAD_CHILDREN,
@@ -62,10 +67,16 @@ pub const LOADS: &[Section] = &[
     Section {
         spec: &section(
             "pressure",
-            "A pressure on the boundary, along its present inner normal",
-            "It acts on the facets of the boundary all of whose nodes are selected.",
+            "A pressure on the boundary, along its current inward normal",
+            "It acts on the facets of the boundary whose nodes are all selected.",
             &[
-                Field::new("value", Allowed::ANY, "Pa", Default::Required, "The pressure; positive presses inwards."),
+                Field::new(
+                    "value",
+                    Allowed::ANY,
+                    "Pa",
+                    Default::Required,
+                    "The pressure; a positive value presses inwards.",
+                ),
                 CURVE,
             ],
         ),
@@ -75,8 +86,8 @@ pub const LOADS: &[Section] = &[
         spec: &section(
             "body_force",
             "A force per volume at rest",
-            "It is spread over the cells all of whose nodes are selected, by their shape functions: the force on a node is the value times the \
-integral of its function over the volume; in 2D the volume is the area times the body's `thickness`.",
+            "It is spread over the cells whose nodes are all selected, by their shape functions: the force on a node is the value times the integral \
+of its function over the volume; in 2D the volume is the area times the body's `thickness`.",
             &[Field::new("value", Allowed::Vector, "N/m³", Default::Required, "The force per volume."), CURVE],
         ),
         children: LOAD_CHILDREN,
@@ -202,7 +213,7 @@ body.",
             "change",
             "Give a body other models or another integrator while it moves",
             "Positions and velocities do not change. The first model of a kind keeps what the body's model of that kind remembers, such as the \
-amount of its gas; a kind that the body did not have begins as at the start of a scene. What is not given does not change.",
+amount of its gas; a kind that the body did not have begins as at the start of a scene. Fields that are not given do not change.",
             &[AT],
         ),
         children: &[
@@ -262,7 +273,7 @@ around it, weighted by their volume at rest. The mean over the nodes is written,
     ),
     children: &[
         child("body", Holds::BodyReference, true, "The body; for copies, one of them: `NAME[i]`."),
-        child("select", Holds::Selector, false, "Which nodes; the default is all."),
+        child("select", Holds::Selector, false, "The selected nodes; the default is all nodes."),
         child(
             "record",
             Holds::Words(&["position", "velocity", "reaction", "contact", "stress", "volume_ratio"]),

@@ -8,16 +8,17 @@ const FRICTION: &str =
 const RESTITUTION: &str =
     "Ratio of the normal speeds after and before an impact of two points; two bodies use the mean of their values.";
 const THICKNESS: &str = "The distance between the surfaces in contact; two bodies use the mean of their values. The default is a hundredth of the \
-mean edge of the surface.";
+mean edge length of the surface.";
 
 /// `[contact]`.
 pub const CONTACT: Section = Section {
     spec: &section(
         "contact",
         "How deformable bodies touch one another and themselves",
-        "Without this section bodies pass through one another. Boundaries, open surfaces and wires touch, or points if a body has none of these; a \
-body filled by a lattice touches with the surface that it carries. Not only nodes, but also edges and facets touch the corners and edges of \
-obstacles. A substep moves all bodies freely, and then gives impulses to pairs of a vertex and a facet, and in space to pairs of edges.",
+        "Without this section bodies pass through one another. Contact acts on boundaries, open surfaces and wires; a body that has none of these is \
+in contact with its points. A body filled by a lattice uses the surface that it carries. Obstacles act not only on nodes: edges and facets meet the \
+corners and edges of obstacles. A substep moves all bodies freely, and then applies impulses to pairs of a vertex and a facet, and in space to pairs \
+of edges.",
         &[
             Field::new(
                 "response",
@@ -32,8 +33,8 @@ bound as a gap closes, with implicit integrators.",
                 Allowed::POSITIVE,
                 "m",
                 Default::Absent,
-                "The gap, beyond the thickness, at which the barrier begins to push. The default is a fiftieth of the mean edge of all surfaces, and \
-at most half of the shortest edge.",
+                "The gap, beyond the thickness, at which the barrier begins to push. The default is a fiftieth of the mean edge length of all \
+surfaces, but at most half of the shortest edge.",
             )
             .applies(&[Condition::Word("response", &["barrier"])]),
             Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Number(0.0), FRICTION),
@@ -51,8 +52,8 @@ at most half of the shortest edge.",
                 Allowed::POSITIVE,
                 "m/s",
                 Default::Number(0.5),
-                "The speed at which bodies that overlap are moved apart. Only positions are changed; the work of this against forces is entered as \
-`work_correction`.",
+                "The speed at which bodies that overlap are moved apart. Only positions are changed; the work that this does against forces is \
+entered as `work_correction`.",
             ),
             Field::new("self", Allowed::Boolean, "", Default::Boolean(true), "Whether bodies touch themselves."),
             Field::new(
@@ -73,7 +74,7 @@ pub const CONTACT_PAIR: Section = Section {
         "contact.pair",
         "What happens where two groups of bodies touch",
         "A body belongs to the group that its `contact` names, or otherwise to the group with its own name, which copies share. If there are several \
-entries for two groups, the last one counts.",
+entries for two groups, the last one applies.",
         &[
             Field::new("first", Allowed::Text, "", Default::Required, "A group."),
             Field::new(
@@ -121,7 +122,7 @@ pub const BODY_CONTACT: Section = Section {
                 "",
                 Default::Text("skin"),
                 "The surface with which a body filled by a lattice touches other bodies: `skin` is the surface that the lattice carries and that is \
-drawn; `cells` is the boundary of its cells, which reaches beyond that.",
+drawn; `cells` is the boundary of its cells, which lies outside the skin.",
             ),
             Field::new("touch", Allowed::Boolean, "", Default::Boolean(true), "Whether it touches anything at all."),
         ],

@@ -8,10 +8,10 @@ const SPACING: Field = Field::new(
     Allowed::POSITIVE,
     "m",
     Default::Required,
-    "The approximate distance between nodes, before `scale`. Corners of an outline are turns by more than 45° within a spacing. Between its corners \
-an outline is divided into equal pieces whose length along it is as close to this as possible; a whole outline has at least three. Finer detail is \
-left out; its amount is reported if the area changes by more than 5 %, or if the file has more than four points per node. With `filling = \
-\"lattice\"` it is the side of the squares, and the outline keeps all of its points.",
+    "The approximate distance between nodes, before `scale`. An outline has a corner where it turns by more than 45° within this distance. Between \
+corners, it is divided into equal pieces whose length along the outline is as close to this as possible; a whole outline has at least three pieces. \
+Finer detail is left out; its amount is reported if the area changes by more than 5 %, or if the file has more than four points per node. With \
+`filling = \"lattice\"`, this is the side of the squares, and the outline keeps all of its points.",
 );
 const SIZE: Field =
     Field::new("size", Allowed::POSITIVE, "m", Default::Required, "The longer side of its bounding box.");
@@ -38,7 +38,7 @@ pub(super) const SPACING_OF_FILLINGS: Field = Field::new(
     Allowed::POSITIVE,
     "m",
     Default::Absent,
-    "The side of the cubes of their lattice, before `scale`; nodes lie at their corners and centres.",
+    "The side of the cubes of the lattice, before `scale`; nodes lie at the corners and centres of the cubes.",
 )
 .applies(&[Condition::Word("filling", &["lattice", "tetrahedra"])]);
 const OVERLAP: Field = Field::new(
@@ -48,7 +48,7 @@ const OVERLAP: Field = Field::new(
     Default::Text("refuse"),
     "What happens if outlines cross or touch: \"refuse\" is an error, \"union\" keeps what any part covers, \"even_odd\" keeps what an odd number of \
 outlines enclose; the number of joined outlines is reported. Areas that touch only at points stay separate there. An outline inside another one is a \
-hole, and an outline inside a hole is an area again, also if they belong to different elements of a drawing; with \"union\", everything that any \
+hole, and an outline inside a hole is an area again, even if they belong to different elements of a drawing; with \"union\", everything that any \
 element paints is inside.",
 );
 const DROP_BELOW: Field = Field::new(
@@ -63,7 +63,7 @@ static SVG: Spec = Spec {
     kind: "svg",
     summary: "the outline of a drawing",
     documentation: "Paths, rectangles, circles, ellipses and polygons of an SVG file, with their transforms; y points up in the scene. Holes follow \
-the even-odd rule, or the non-zero rule if `fill-rule` says so. Style sheets are applied: rules with selectors that are names, classes and ids. A \
+the even-odd rule, or the non-zero rule if `fill-rule` says so. Rules of style sheets are applied if their selectors are names, classes or ids. A \
 clip path that cuts nothing off has no effect; one that cuts something off is an error.",
     dimensions: &[2],
     fields: &[
@@ -140,7 +140,7 @@ static TEXT: Spec = Spec {
     dimensions: &[2],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The font, looked up relative to the scene."),
-        Field::new("text", Allowed::Text, "", Default::Required, "What is written."),
+        Field::new("text", Allowed::Text, "", Default::Required, "The text to write."),
         SPACING,
         SIZE,
         CENTER,
@@ -205,14 +205,15 @@ file.",
             Allowed::Choice(&["y", "z"]),
             "",
             Default::Text("y"),
-            "Which axis of the file points up, along y.",
+            "The axis of the file that points up; it becomes y.",
         ),
         Field::new(
             "weld",
             Allowed::NOT_NEGATIVE,
             "m",
             Default::Absent,
-            "Vertices at most this far apart in the file are joined and counted. In STL files, vertices at the same position are always joined.",
+            "Vertices of the file that are at most this far apart are joined and counted. In STL files, vertices at the same position are always \
+joined.",
         ),
         Field::new(
             "open",

@@ -170,7 +170,7 @@ fn copies_are_counted_and_the_first_is_named() {
     }
     let told = world.other_balances().expect("two bodies in a point");
     assert_eq!(told.count, 2);
-    assert!(told.message.starts_with("at t = 0 s 2 bodies hold more energy in their cells"), "{}", told.message);
+    assert!(told.message.starts_with("at t = 0 s, 2 bodies hold more energy in their cells"), "{}", told.message);
     assert!(told.message.contains("the first is body `body[2]` with"), "{}", told.message);
 }
 

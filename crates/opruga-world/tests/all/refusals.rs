@@ -176,7 +176,7 @@ fn the_hint_of_inverted_cells_names_no_law_that_the_body_has() {
     for (law, hint) in [
         ("linear", "a material that pushes such cells back (`stable_neo_hookean`, `fixed_corotated`)"),
         ("stable_neo_hookean", "back from a stronger inversion (`fixed_corotated`)"),
-        ("fixed_corotated", "smaller cells, or less compression of them"),
+        ("fixed_corotated", "smaller cells, or less compression"),
     ] {
         let mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [1; 2]).expect("a square");
         let fields = [("material", text(law)), ("youngs_modulus", Value::Number(1e3))];

@@ -250,7 +250,7 @@ fn every_piece_of_a_body_has_to_be_held_with_weight_and_without() {
         let told = refusal(&islands).expect("a refusal");
         assert_eq!(
             told,
-            "the body is in 2 pieces, and for that of 4 nodes around (2.5, 0.5) m nothing prevents translation along x, \
+            "the body is in 2 pieces. For the piece of 4 nodes around (2.5, 0.5) m, nothing prevents translation along x, \
              translation along y, rotation: 3 rigid modes",
             "{weight}"
         );
@@ -295,7 +295,7 @@ fn a_piece_that_a_smooth_floor_alone_holds_is_named_with_the_way_it_slides() {
     islands.colliders = vec![floor()];
     let mut world = World::new(islands.clone(), Options::default()).unwrap();
     let told = world.frame().expect_err("a refusal").to_string();
-    let wanted = "the body is in 2 pieces, and that of 4 nodes around (2.5, 0.";
+    let wanted = "the body is in 2 pieces. The piece of 4 nodes around (2.5, 0.";
     assert!(told.contains(wanted) && told.contains("nor a pin prevents translation along x; "), "{told}");
     pin(&mut islands, 2, [true, false]);
     World::new(islands, Options::default()).unwrap().frame().unwrap();

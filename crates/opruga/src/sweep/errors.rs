@@ -8,8 +8,8 @@ terms! {
         Ends = "the ends of the range are not numbers",
         TwoLogs = "the range has `log` twice",
         TwoWholes = "the range has `whole` twice",
-        TwoCounts = "the range has two numbers of values",
-        Count = "the range has an invalid number of values; the least is 2",
+        TwoCounts = "the range gives the number of values twice",
+        Count = "the range has an invalid number of values; it needs at least 2",
         Word = "the range has an unknown part",
         Order = "the lower end is not below the upper end",
         Ratios = "a range of equal ratios must begin above 0",
@@ -38,7 +38,7 @@ messages! {
     pub enum SweepError {
         "sweep.values" #[error("a value contains a control character")] #[value("{text}")] #[allowed("values on one line")]
         ControlCharacter { text: String },
-        "sweep.values" #[error("the list lacks a value")] #[value("{text}")] #[allowed("values with single commas between them")]
+        "sweep.values" #[error("a value is missing in the list")] #[value("{text}")] #[allowed("values with single commas between them")]
         NoValue { text: String },
         "sweep.range" #[error("{fault}")] #[value("{text}")]
         #[allowed("LOW..HIGH:COUNT, with :log for equal ratios and :whole for whole numbers")]
@@ -49,9 +49,9 @@ messages! {
         NothingVaries {},
         "sweep.axes" #[error("the parameter varies twice")]
         VariesTwice {},
-        "sweep.range" #[error("a sample chooses the number of values itself")] #[value("{range}")] #[allowed("{range}")]
+        "sweep.range" #[error("with a sample, the range must not have a number of values")] #[value("{range}")] #[allowed("{range}")]
         SampleWithCount { range: String },
-        "sweep.range" #[error("the range lacks its number of values")] #[value("{range}")] #[allowed("{range}:COUNT, or --sample COUNT")]
+        "sweep.range" #[error("the range has no number of values")] #[value("{range}")] #[allowed("{range}:COUNT, or --sample COUNT")]
         NoCount { range: String },
         "sweep.range" #[error("a sample of 0 points is empty")] #[value("--sample 0")] #[allowed("1 to {most}")]
         #[hint("for example --sample 20")]

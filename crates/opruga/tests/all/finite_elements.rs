@@ -198,7 +198,7 @@ fn a_linear_body_that_only_its_weight_would_hold_is_refused_with_its_rotation() 
         head + &body(material, "[1.0, 2.0, 3.0]", "[1, 2, 2]", pins)
     };
     let (node, edge) = ("{ select = { nodes = [0] } }", "{ select = { nodes = [0, 1] } }");
-    let told = "its forces are linear, so a moment rotates it without end";
+    let told = "The forces of this body are linear, so a moment would rotate it for ever";
     for (error, what) in [
         (refused(&flat("linear", node)), "prevents rotation: 1 rigid mode; "),
         (

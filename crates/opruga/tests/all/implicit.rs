@@ -300,7 +300,8 @@ fn refusals_say_what_is_wrong_and_what_helps() {
     let error = world.frame().unwrap_err();
     assert_eq!(error.code(), "run.not_converged");
     let text = error.in_full();
-    for part in ["did not converge in 2 iterations at t = 0 s", "out of balance by", "allowed:", "hint: more substeps"]
+    for part in
+        ["did not converge in 2 iterations at t = 0 s", "out of balance by", "allowed:", "hint: use more substeps"]
     {
         assert!(text.contains(part), "{text}");
     }

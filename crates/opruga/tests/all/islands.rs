@@ -194,5 +194,5 @@ fn an_integrator_of_a_body_that_does_not_exist_is_told_with_its_place() {
     }
     let mut world = built(plane(&scene("")));
     let error = world.set("body.r.integrator.order", Value::Integer(2)).expect_err("it has none of its own");
-    assert!(error.to_string().contains("follows the integrator of the scene"), "{error}");
+    assert!(error.to_string().contains("uses the integrator of the scene"), "{error}");
 }

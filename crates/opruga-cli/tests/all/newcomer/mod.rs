@@ -47,7 +47,8 @@ fn a_resumed_run_with_nothing_left_to_do_says_so() {
         assert_eq!(code(&output), 2, "{}", said(&output));
         assert!(said(&output).contains("the checkpoint is at t = 0.5 s") && said(&output).contains(text));
         assert!(
-            said(&output).contains("= hint: --seconds is the simulated time at which the run ends: give one above 0.5"),
+            said(&output)
+                .contains("= hint: --seconds is the simulated time at which the run ends; it must be above 0.5"),
             "{}",
             said(&output)
         );
@@ -345,7 +346,7 @@ fn warnings_are_told_once_and_failures_say_where_the_output_lies() {
     assert_eq!(code(&output), 2);
     let told = "h.toml:19:9: error[step.unstable]: at t = 0.05 s: the command `set`: the step h = ";
     assert!(said(&output).contains(told), "{}", said(&output));
-    assert!(said(&output).contains("= hint: another `value`, or substeps >= "), "{}", said(&output));
+    assert!(said(&output).contains("= hint: use another `value`, or substeps >= "), "{}", said(&output));
     assert!(said(&output).contains("written to h/\n"), "{}", said(&output));
     // Any other command that steps through the scene names the command as well.
     let timed = ["bench", "scene", "h.toml", "--frames", "9"];
@@ -383,7 +384,7 @@ fn a_command_that_makes_the_step_unstable_is_named_with_what_helps() {
     let all = said(&output);
     assert!(all.contains("s.toml:17:6: error[step.unstable]: at t = 0.05 s: the command `add`: the step"), "{all}");
     assert!(
-        all.contains("for body `hard`") && all.contains("= hint: a softer or heavier body, or substeps >= "),
+        all.contains("for body `hard`") && all.contains("= hint: use a softer or heavier body, or substeps >= "),
         "{all}"
     );
     let set = format!("time.substeps={}", number_after(&all, "--set time.substeps="));
@@ -391,7 +392,7 @@ fn a_command_that_makes_the_step_unstable_is_named_with_what_helps() {
     // An override remains in effect until a command sets the same parameter, so it is not offered then.
     let both = format!("{}{hard}", coarse.replace("value = 1", "value = 20"));
     let all = said(&run(&both, &[]));
-    assert!(all.contains("when the command begins, set by an earlier command") && !all.contains("--set"), "{all}");
+    assert!(all.contains("an earlier command that sets substeps >= ") && !all.contains("--set"), "{all}");
 }
 
 #[test]
@@ -432,7 +433,7 @@ fn a_command_after_the_end_is_told() {
     std::fs::write(folder.path().join("s.toml"), late).expect("a file");
     let output = opruga(folder.path(), &["check", "s.toml"]);
     assert_eq!(code(&output), 0, "{}", said(&output));
-    assert!(said(&output).contains("warning[command.never]: the command begins at 0.5 s, after the end at 0.1 s"));
+    assert!(said(&output).contains("warning[command.never]: the command begins at 0.5 s, but the run ends at 0.1 s"));
     // A user who asks for a shorter run knows what is omitted.
     let output = opruga(folder.path(), &["check", "s.toml", "--set", "time.seconds=0.2"]);
     assert!(!said(&output).contains("command.never"), "{}", said(&output));

@@ -53,11 +53,11 @@ fn parameters_that_make_no_sense() {
         (ring(16, "{ kind = \"mass_spring\", stiffness = -1 }", ""), "error[scene.range]: `stiffness` is -1"),
         (
             ring(16, "{ kind = \"mass_spring\" }", ""),
-            "error[model.one_of]: exactly one of `stiffness`, `modulus` must be given; none of them is given",
+            "error[model.one_of]: exactly one of `stiffness`, `modulus` must be given; none of them is",
         ),
         (
             ring(16, "{ kind = \"mass_spring\", stiffness = 1, modulus = 1 }", ""),
-            "exactly one of `stiffness`, `modulus` must be given; given are `stiffness`, `modulus`",
+            "exactly one of `stiffness`, `modulus` must be given, not `stiffness`, `modulus`",
         ),
         (ring(16, "{ kind = \"bending\", stiffness = -0.1 }", ""), "error[scene.range]: `stiffness` is -0.1"),
         (ring(16, BALL, &FLOOR.replace("friction = 0.5", "friction = -0.5")), "error[scene.range]: `friction` is -0.5"),
@@ -116,7 +116,7 @@ fn parameters_that_make_no_sense() {
         ),
         (
             ring(16, BALL, "[[command]]\ndo = \"push\"\nat = 1\nuntil = 1\nbody = \"b\"\nforce = [1, 0]"),
-            "error[scene.range]: the command ends at 1 s, when it begins at 1 s",
+            "error[scene.range]: the command ends at 1 s, as soon as it begins at 1 s",
         ),
         (ring(16, "{ kind = \"mass_spring\", stiffness = 1, damping = 1e12 }", ""), "step.unstable: the step h = "),
         // 53: gas
