@@ -16,7 +16,7 @@ messages! {
     /// What helps if a scene is refused, in addition to the hints of the world.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum RefusalHint {
-        "part.refusal_hint" #[error("substeps >= {substeps}, such as --set time.substeps={substeps}; or another integrator")]
+        "part.refusal_hint" #[error("use substeps >= {substeps}, such as --set time.substeps={substeps}, or another integrator")]
         Substeps { substeps: u32 },
         "part.refusal_hint" #[error("use another `value`: a frame has at most {most} substeps")]
         OtherValue { most: u32 },

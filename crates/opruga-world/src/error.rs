@@ -9,9 +9,9 @@ use opruga_math::words::number;
 /// A hint that names the number of substeps that would be stable, if there is one.
 fn remedy(substeps: u32) -> String {
     match substeps {
-        ..=MOST_SUBSTEPS => format!("substeps >= {substeps}"),
+        ..=MOST_SUBSTEPS => format!("use substeps >= {substeps}"),
         _ => format!(
-            "a frame has at most {MOST_SUBSTEPS} substeps: a shorter one, a softer or heavier body, or another integrator"
+            "a frame has at most {MOST_SUBSTEPS} substeps: use a shorter frame, a softer or heavier body, or another integrator"
         ),
     }
 }

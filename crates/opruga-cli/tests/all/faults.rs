@@ -309,7 +309,7 @@ fn calls_that_make_no_sense_are_explained() {
         // The number of substeps that it would need is too large to be offered.
         (
             run("time.frame=1e6"),
-            "= hint: a frame has at most 1000000 substeps: a shorter one, a softer or heavier body, or another integrator",
+            "= hint: a frame has at most 1000000 substeps: use a shorter frame, a softer or heavier body, or another integrator",
         ),
         (run("time.substeps=1"), "error[step.unstable]: the step h = 0.0166667 s"),
         (run("time.seconds=1e300"), "error[scene.range]"),

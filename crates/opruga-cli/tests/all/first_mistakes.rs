@@ -32,7 +32,10 @@ fn a_body_that_begins_inside_an_obstacle_is_told_of() {
     let all = printed(&output);
     let line = all.lines().find(|l| l.contains("contact.starts_inside")).unwrap_or_else(|| panic!("it is told: {all}"));
     assert!(line.contains("body `it` begins inside obstacle 0 (half_space)"), "{line}");
-    assert!(line.contains("deepest, by 0.1 m") && line.contains("a shift by (0, 0.1) m would free it"), "{line}");
+    assert!(
+        line.contains(", up to 0.1 m deep (node ") && line.contains("a shift by (0, 0.1) m would free it"),
+        "{line}"
+    );
     // The run reports it once, before it begins, and counts it.
     let output = opruga(folder.path(), &["run", "s.toml", "--no-pictures", "--out", "a"]);
     assert_eq!(said(&output).matches("contact.starts_inside").count(), 1, "{}", said(&output));
@@ -260,7 +263,7 @@ fn a_long_run_says_how_long_it_will_take() {
     for part in [
         " more (",
         " frames of ",
-        "Shorter: --set integrator.accuracy=real_time",
+        "To shorten it: --set integrator.accuracy=real_time",
         "--set integrator=symplectic_euler --set time.substeps=",
     ] {
         assert!(line.contains(part), "{part}: {line}");

@@ -99,7 +99,7 @@ fn statics_follows_pins_as_far_as_a_model_goes_and_says_where_it_ends() {
     assert_eq!(refused["code"], "run.model");
     assert!(refused["message"].as_str().is_some_and(|message| message.contains("thickness")), "{refused}");
     let hint = refused["hint"].as_str().expect("a hint");
-    assert!(hint.starts_with("`when_not_converged = \"halve\"`") && !hint.contains("last good frame"), "{refused}");
+    assert!(hint.starts_with("use `when_not_converged = \"halve\"`") && !hint.contains("last good frame"), "{refused}");
 
     let folder = tempfile::tempdir().expect("a folder");
     write(folder.path(), &scene(""));

@@ -186,7 +186,7 @@ scene.toml:14:10: error[scene.unknown_field]: there is no field `selct` in `pin`
             r#"scene.toml:12:19: error[scene.selects_nothing]: the selector selects no node of `ball`
  12 | pin = [{ select = { box = [[5, 5], [6, 6]] } }]
     |                   ^^^^^^^^^^^^^^^^^^^^^^^^^^
-  = hint: at the start the body lies between [-1.0, -1.0] and [1.0, 1.0]"#,
+  = hint: at the start, the body lies between [-1.0, -1.0] and [1.0, 1.0]"#,
         ),
         (
             with("pin = [{ select = { and = [] } }]\n"),

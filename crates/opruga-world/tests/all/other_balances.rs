@@ -130,7 +130,7 @@ fn what_is_twisted_once_round_or_drawn_to_a_point_is_told_of() {
     let [(_, boxes), ..] = &bars([1.0; 3], [2; 3])[..] else { panic!("boxes") };
     // At a point this law has no force.
     let said = told(boxes, "stable_neo_hookean", &|_| [0.5; 3]).expect("a body in a point");
-    assert!(said.contains("of which 0 J are accounted for, V/V₀ = 0, and cell 0 at J = 0;"), "{said}");
+    assert!(said.contains("of which 0 J are accounted for, V/V₀ = 0, and cell 0 with J = 0;"), "{said}");
 }
 
 /// A body with internal motion is still moving and is not reported; rigid flight and rotation do not matter.
@@ -199,7 +199,7 @@ fn a_held_body_that_rests_folded_is_told_of() {
     assert!(world.cell_states(0).iter().all(|cell| cell.smallest_volume_ratio > 0.5));
     assert_eq!(codes(&world), ["ledger.numerical_damping", "cells.other_balance"]);
     let told = world.other_balances().expect("a folded body").message;
-    for words in ["body `body` with 969.9 J", "V/V₀ = 0.9146, and cell 17 at J = 0.6772"] {
+    for words in ["body `body` with 969.9 J", "V/V₀ = 0.9146, and cell 17 with J = 0.6772"] {
         assert!(told.contains(words), "{told}");
     }
 }

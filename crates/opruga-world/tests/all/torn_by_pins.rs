@@ -123,7 +123,7 @@ fn a_way_that_a_model_refuses_is_gone_in_halves_where_that_is_asked_for() {
     let (outcome, mut world) = lead("error");
     let (code, told) = outcome.expect_err("a refusal");
     assert!(code == "run.model" && told.contains("has no positive thickness"), "{code}: {told}");
-    assert!(told.contains("hint: `when_not_converged = \"halve\"`"), "{told}");
+    assert!(told.contains("hint: use `when_not_converged = \"halve\"`"), "{told}");
     assert_eq!((world.solver_work().halved, tension(&mut world)), (0, 0.0));
     let (outcome, mut world) = lead("halve");
     outcome.expect("half of the way, and the other half");

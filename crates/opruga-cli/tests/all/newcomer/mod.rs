@@ -132,10 +132,10 @@ fn an_unstable_step_is_explained_line_by_line() {
     );
     assert_eq!(lines[1], " 5 | substeps = 1");
     assert!(lines[3].starts_with("  = allowed: h <= ") && lines[3].contains("rad/s"), "{text}");
-    assert!(lines[4].starts_with("  = hint: substeps >= ") && lines[4].contains("--set time.substeps="), "{text}");
+    assert!(lines[4].starts_with("  = hint: use substeps >= ") && lines[4].contains("--set time.substeps="), "{text}");
     assert!(lines.iter().all(|l| l.chars().count() < 120), "{text}");
     // The hint is right, and a value given by --set is not searched for in the file.
-    let hint = lines[4].split("--set ").nth(1).and_then(|h| h.split(';').next()).expect("a hint");
+    let hint = lines[4].split("--set ").nth(1).and_then(|h| h.split(',').next()).expect("a hint");
     assert_eq!(code(&opruga(folder.path(), &["check", "s.toml", "--set", hint])), 0, "{hint}");
     let output = opruga(folder.path(), &["check", "s.toml", "--set", "time.substeps=2"]);
     assert!(said(&output).starts_with("--set time.substeps=2: error[step.unstable]"), "{}", said(&output));
@@ -373,7 +373,7 @@ fn a_command_that_makes_the_step_unstable_is_named_with_what_helps() {
     assert_eq!(code(&output), 2);
     let all = said(&output);
     assert!(all.contains("s.toml:19:9: error[step.unstable]: at t = 0.05 s: the command `set`: the step"), "{all}");
-    let enough = number_after(&all, "= hint: a `value` of ");
+    let enough = number_after(&all, "= hint: use a `value` of ");
     let output = run(&coarse.replace("value = 1", &format!("value = {enough}")), &[]);
     assert_eq!(code(&output), 0, "{enough}: {}", said(&output));
 

@@ -145,7 +145,7 @@ fn what_the_window_says_is_seen_after_what_the_session_has_said() {
     let mut window = Window::open("ball", SIZE);
     window.studio().ask(Request::Set("world.gravity".into(), Value::Number(1.0)));
     window.until("a refusal", |shown| shown.message.is_some());
-    let says = |window: &Window| window.harness.query_by_label_contains("The link is copied").is_some();
+    let says = |window: &Window| window.harness.query_by_label_contains("The link has been copied").is_some();
     assert!(!says(&window));
     window.harness.state_mut().as_mut().expect("a window").report(Severity::Done, Report::LinkCopied);
     window.frames(3);
