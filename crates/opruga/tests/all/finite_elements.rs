@@ -200,10 +200,10 @@ fn a_linear_body_that_only_its_weight_would_hold_is_refused_with_its_rotation() 
     let (node, edge) = ("{ select = { nodes = [0] } }", "{ select = { nodes = [0, 1] } }");
     let told = "The forces of this body are linear, so a moment would rotate it for ever";
     for (error, what) in [
-        (refused(&flat("linear", node)), "prevents rotation: 1 rigid mode; "),
+        (refused(&flat("linear", node)), "prevents rotation: 1 rigid mode. "),
         (
             World::new(space(&solid("linear", edge)), Options::default()).expect_err("it turns about its edge"),
-            "prevents rotation about an axis along x: 1 rigid mode; ",
+            "prevents rotation about an axis along x: 1 rigid mode. ",
         ),
     ] {
         let message = error.in_full();

@@ -218,7 +218,7 @@ fn what_cannot_be_a_temperature_is_refused_with_a_hint() {
         "thermal_expansion = 1e-3, temperature = 300.0, poissons_ratio = 0.49, locking = \"nodal_volume\"",
         "simplices = true\norder = 1\n",
     );
-    assert!(refused(&nodal).in_full().contains("hint: `order = 2`"), "{}", refused(&nodal));
+    assert!(refused(&nodal).in_full().contains("hint: bodies with `order = 2`"), "{}", refused(&nodal));
     let unknown = refused(&scene("thermal_expansion = 1e-3, temperature_of_cells = \"T\"", "")).in_full();
     assert!(
         unknown.contains("`temperature_of_cells` is \"T\"") && unknown.contains("`temperature` gives one"),
