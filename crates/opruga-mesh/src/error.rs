@@ -130,10 +130,10 @@ messages! {
         /// The spacing of a filling is missing.
         "part.mesh" #[error("`spacing` is missing: the side of the cubes that the filling is made of [m]")]
         NoSpacing {},
-        /// A filling is not connected as its surface is, because it is too coarse.
+        /// A filling is so coarse that it is not connected in the same way as its surface.
         "part.mesh" #[error("with a spacing of {} m, the filling of {} falls into {pieces} pieces", number(*spacing), counted(*parts as u64, "closed surface", "closed surfaces"))]
         Torn { spacing: f64, pieces: usize, parts: usize },
-        /// A filling has much less or more volume than its surface encloses, because it is too coarse.
+        /// A filling is so coarse that its volume differs much from that enclosed by its surface.
         "part.mesh" #[error("with a spacing of {} m, the filling would have {kept:.2} of the volume{}", number(*spacing), keeps(*finer))]
         Lost { spacing: f64, kept: f64, finer: Option<f64> },
         /// A three-dimensional element in a plane mesh, or a filled plane cell in a mesh in space.
