@@ -22,7 +22,7 @@ impl<const D: usize> Touching<D> {
         let mut all = std::mem::take(&mut self.found);
         self.divide(&mut all);
         let touching = &*self;
-        threads::each(self.threads, &mut all, |found| Finder { touching, found, h }.find());
+        threads::each_in_pool(&mut all, |found| Finder { touching, found, h }.find());
         all.iter_mut().for_each(|found| self.take_in(found));
         self.found = all;
         self.put_passing(h);

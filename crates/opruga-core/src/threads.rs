@@ -6,6 +6,7 @@
 //! `threads` says whether work may be distributed.
 
 use opruga_math::Team;
+use rayon::prelude::*;
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -61,6 +62,15 @@ pub fn each<T: Send>(threads: usize, pieces: &mut [T], work: impl Fn(&mut T) + S
     match team_for(threads, pieces.len()) {
         Some(team) => team.each(pieces, work),
         None => pieces.iter_mut().for_each(work),
+    }
+}
+
+/// Does the work on every piece on the threads of the pool in which the caller runs. Unlike a team, these threads sleep in between: for pieces that take
+/// tens of microseconds, between longer work on one thread.
+pub fn each_in_pool<T: Send>(pieces: &mut [T], work: impl Fn(&mut T) + Sync + Send) {
+    match pieces {
+        [piece] => work(piece),
+        _ => pieces.par_iter_mut().for_each(work),
     }
 }
 

@@ -89,19 +89,11 @@ fn go_through<const D: usize>(
         jobs.iter_mut().for_each(|job| job.run(plan, hands));
         return;
     }
-    // Groups with large bodies, and groups with more than their share of all nodes, are stepped one after another on all threads; then the others in
-    // parallel. A body that waits for its threads must not be given another body that uses the same workspace.
+    // Groups with large bodies are stepped one after another, each large body on all threads; then the others in parallel. A body that waits for its
+    // threads must not be given another body that uses the same workspace.
     let number = rayon::current_num_threads();
-    let all: usize = jobs.iter().map(Job::nodes).sum();
-    let is_shared = |job: &Job<'_, D>| {
-        let nodes = job.nodes();
-        nodes >= SHARED_FROM && number * nodes > all
-            || job.islands.iter().any(|island| island.is_shared_by(number, hands.islands))
-    };
-    for job in jobs.iter_mut().filter(|job| is_shared(job)) {
-        threads::together(number, || job.run(plan, hands));
-    }
-    let hands = Hands { threaded: false, ..hands };
+    let is_shared = |job: &Job<'_, D>| job.islands.iter().any(|island| island.is_shared_by(number, hands.islands));
+    jobs.iter_mut().filter(|job| is_shared(job)).for_each(|job| job.run(plan, hands));
     jobs.par_iter_mut().filter(|job| !is_shared(job)).for_each(|job| job.run(plan, hands));
 }
 
@@ -119,13 +111,9 @@ impl<const D: usize> Job<'_, D> {
         self.group.progress = outcome.err().map_or(Progress::Done, |(trouble, time)| Progress::Stuck(trouble, time));
     }
 
-    /// The number of nodes of all bodies.
-    fn nodes(&self) -> usize {
-        self.islands.iter().map(|island| island.system.nodes * island.system.bodies).sum()
-    }
-
     fn step_through(&mut self, plan: &FramePlan<'_, D>, hands: Hands<'_, D>) -> Result<(), (Trouble, f64)> {
-        let hands = Hands { threaded: hands.threaded && self.nodes() >= SHARED_FROM, ..hands };
+        let nodes: usize = self.islands.iter().map(|island| island.system.nodes * island.system.bodies).sum();
+        let hands = Hands { threaded: hands.threaded && nodes >= SHARED_FROM, ..hands };
         let Job { islands, group: Group { meetings, .. } } = self;
         let failed = |islands: &[&mut Island<D>]| islands.iter().any(|island| island.outcome.is_err());
         islands.iter_mut().for_each(|island| island.begin_together(plan));
@@ -191,16 +179,17 @@ fn touch<const D: usize>(
         let outcome = if alone { meeting.solve(step) } else { Ok(()) };
         outcome.map_err(|trouble| (meeting.in_scene(trouble), step.time))
     };
-    if let [meeting] = meetings {
-        meeting.touching.threads = threads;
-        solve(meeting)?;
-    } else {
-        let mut outcomes: Vec<_> = meetings.iter_mut().map(|meeting| (meeting, Ok(()))).collect();
-        threads::each(threads, &mut outcomes, |(meeting, outcome)| {
-            meeting.touching.threads = 1;
-            *outcome = solve(meeting);
-        });
-        outcomes.into_iter().try_for_each(|(_, outcome)| outcome)?;
+    match meetings {
+        [meeting] => {
+            meeting.touching.threads = threads;
+            solve(meeting)?;
+        }
+        _ if threads > 1 => {
+            meetings.iter_mut().for_each(|meeting| meeting.touching.threads = 1);
+            let outcomes: Vec<_> = meetings.par_iter_mut().map(solve).collect();
+            outcomes.into_iter().collect::<Result<(), _>>()?;
+        }
+        _ => meetings.iter_mut().try_for_each(solve)?,
     }
     for meeting in meetings.iter_mut().filter(|meeting| !meeting.is_one()) {
         if meeting.is_pushed() {
@@ -253,9 +242,8 @@ impl<const D: usize> Hands<'_, D> {
             }
         }
         if self.threaded {
-            let own = islands.iter_mut().enumerate().filter(|(number, island)| !shared(island) && alone(*number));
-            let mut own: Vec<_> = own.map(|(_, island)| island).collect();
-            threads::each(number, &mut own, |island| step(island));
+            let own = islands.par_iter_mut().enumerate().filter(|(number, island)| !shared(island) && alone(*number));
+            own.for_each(|(_, island)| step(island));
         }
     }
 }

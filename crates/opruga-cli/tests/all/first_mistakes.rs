@@ -61,7 +61,10 @@ fn a_body_that_begins_inside_an_obstacle_is_told_of() {
         &["check", "s.toml", "--set", "body.it.copies={ count = [1, 5], spacing = [2, -0.01] }"],
     ));
     assert_eq!(copies.matches("contact.starts_inside").count(), 1, "{copies}");
-    assert!(copies.contains("`it[4]`") && copies.contains("up to 0.14 m deep") && copies.contains("(5 times)"), "{copies}");
+    assert!(
+        copies.contains("`it[4]`") && copies.contains("up to 0.14 m deep") && copies.contains("(5 times)"),
+        "{copies}"
+    );
 }
 
 /// The displacement frees a body from any obstacle: inside a box, in the corner of a room, across a ball, in a convex block.
