@@ -11,33 +11,30 @@ pub(crate) struct Unclear {
     /// Its index among the candidates.
     pub(crate) candidate: usize,
     pub(crate) features: [u32; 2],
-    /// The distance at the start of the step [m].
+    /// The distance at the start of the step, or a bound of it [m].
     pub(crate) distance: f64,
 }
 
-/// The distances of pairs of a vertex and a facet, or of two edges, with the points at `x` [m].
+/// Computes the distances of pairs of a vertex and a facet, or of two edges, with the points at `x` [m].
 ///
 /// The distance of a vertex and a facet is negative if the vertex lies behind the plane of the facet.
 pub(crate) struct Distances<'a, const D: usize> {
     pub(crate) surface: &'a Surface<D>,
     pub(crate) x: &'a [[f64; D]],
-    pub(crate) pairs: &'a [Unclear],
+    pub(crate) pairs: &'a mut [Unclear],
     /// Whether the pairs are those of a vertex and a facet.
     pub(crate) with_facet: bool,
-    /// The distance of every pair [m].
-    pub(crate) distances: &'a mut Vec<f64>,
 }
 
 impl<const D: usize> Work for Distances<'_, D> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
-        let Distances { surface, x, pairs, with_facet, distances } = self;
-        distances.clear();
-        for eight in pairs.chunks(WIDTH) {
+        let Distances { surface, x, pairs, with_facet } = self;
+        for eight in pairs.chunks_mut(WIDTH) {
             // The last pair fills the places that are left over.
             let mut own = [eight[eight.len() - 1].features; WIDTH];
-            own.iter_mut().zip(eight).for_each(|(own, pair)| *own = pair.features);
+            own.iter_mut().zip(&*eight).for_each(|(own, pair)| *own = pair.features);
             let found = if with_facet {
                 let mut facet = [[P::zero(); D]; D];
                 for (k, corner) in facet.iter_mut().enumerate() {
@@ -53,7 +50,7 @@ impl<const D: usize> Work for Distances<'_, D> {
                 }
                 of_edges(&edges[0], &edges[1])
             };
-            distances.extend_from_slice(&found.to_array()[..eight.len()]);
+            eight.iter_mut().zip(found.to_array()).for_each(|(pair, distance)| pair.distance = distance);
         }
     }
 }

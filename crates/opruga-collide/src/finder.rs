@@ -30,8 +30,9 @@ impl<const D: usize> Finder<'_, D> {
     /// Computes the gaps of all candidates that may touch, in the order of their features.
     pub(crate) fn find(&mut self) {
         self.find_unclear();
-        let unclear = std::mem::take(&mut self.found.unclear);
-        for own in unclear[0].chunk_by(|a, b| a.features[0] == b.features[0]) {
+        let mut unclear = std::mem::take(&mut self.found.unclear);
+        self.found.notes.clear();
+        for own in unclear[0].chunk_by_mut(|a, b| a.features[0] == b.features[0]) {
             self.take_gaps_of_vertex(own);
         }
         unclear[1].iter().for_each(|unclear| self.take_gap_of_edges(unclear));
@@ -43,7 +44,7 @@ impl<const D: usize> Finder<'_, D> {
     fn find_unclear(&mut self) {
         let Touching { surface, before: [x, _], candidates, clearance, thickest, began_inside, at_once, .. } =
             self.touching;
-        let Found { part, unclear, distances, .. } = &mut *self.found;
+        let Found { part, unclear, .. } = &mut *self.found;
         let of_obstacle = |point: u32| usize::from(surface.is_of_obstacle(point));
         unclear.iter_mut().for_each(Vec::clear);
         let mut inside = began_inside.iter().peekable();
@@ -63,21 +64,19 @@ impl<const D: usize> Finder<'_, D> {
             }
         }
         for (list, pairs) in unclear.iter_mut().enumerate() {
-            candidates.simd.run(Distances { surface, x, pairs, with_facet: list == 0, distances });
-            for (pair, distance) in pairs.iter_mut().zip(distances.iter()) {
-                pair.distance = *distance;
-            }
+            candidates.simd.run(Distances { surface, x, pairs, with_facet: list == 0 });
         }
     }
 
     /// Computes the gaps of the candidates of one vertex that may touch.
-    fn take_gaps_of_vertex(&mut self, unclear: &[Unclear]) {
+    fn take_gaps_of_vertex(&mut self, unclear: &mut [Unclear]) {
         let vertex = unclear[0].features[0];
         self.found.around.clear();
         let close = self.found.close[0].len();
         let mut inside = false;
-        for Unclear { candidate, distance, .. } in unclear {
-            inside |= self.take_gap_of_vertex(*candidate, 0.0, *distance);
+        for Unclear { candidate, distance, .. } in unclear.iter_mut() {
+            *distance = self.take_gap_of_vertex(*candidate, 0.0, *distance);
+            inside |= *distance == f64::NEG_INFINITY;
         }
         let candidates = self.candidates_of(unclear);
         if inside {
@@ -127,7 +126,6 @@ impl<const D: usize> Finder<'_, D> {
         let edges = pair.map(|e| self.touching.surface.edges[e as usize]);
         let bodies = self.touching.clearance.bodies(1, candidate);
         let law = *self.touching.laws.of(bodies[0], bodies[1]);
-        self.found.notes[1].push((candidate, distance));
         if self.stay_apart(distance, law.thickness, &edges[0], &edges[1])
             || self.touching.reach.apart(&edges[0], &edges[1]) > law.thickness
         {
@@ -193,14 +191,16 @@ impl<const D: usize> Finder<'_, D> {
             if !all && self.touching.clearance.is_clear(0, k, farthest) {
                 continue;
             }
-            inside |= self.take_gap_of_vertex(k, distance, f64::NEG_INFINITY);
+            let known = self.take_gap_of_vertex(k, distance, f64::NEG_INFINITY);
+            self.found.notes.push((k, known));
+            inside |= known == f64::NEG_INFINITY;
         }
         inside
     }
 
     /// Computes the gap of a candidate of a vertex if it may come closer than a distance [m], given its present one (negative behind the plane of the
-    /// facet). Returns whether the vertex seems to be inside another body.
-    fn take_gap_of_vertex(&mut self, candidate: usize, distance: f64, mut separation: f64) -> bool {
+    /// facet). Returns a bound of the distance, for later steps: −∞ if the vertex seems to be inside another body and has to come out, however deep it is.
+    fn take_gap_of_vertex(&mut self, candidate: usize, distance: f64, mut separation: f64) -> f64 {
         let pair @ [vertex, facet] = self.touching.candidates.vertex_facet[candidate];
         let corners = &self.touching.surface.facets[facet as usize];
         let [own, other] = self.touching.clearance.bodies(0, candidate);
@@ -210,13 +210,11 @@ impl<const D: usize> Finder<'_, D> {
             separation = separation.abs();
         }
         if self.stay_apart(separation, law.thickness + distance, &[vertex], corners) {
-            self.found.notes[0].push((candidate, separation));
-            return false;
+            return separation;
         }
         let apart = self.touching.reach.apart(&[vertex], corners);
         if apart > law.thickness + distance {
-            self.found.notes[0].push((candidate, apart.larger(separation)));
-            return false;
+            return apart.larger(separation);
         }
         let mut gap = Gap::of_vertex_and_facet(&self.touching.surface, &self.touching.before[0], vertex, facet);
         if distance == 0.0 {
@@ -226,11 +224,8 @@ impl<const D: usize> Finder<'_, D> {
             // Contact of a body with itself acts on both sides.
             (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
         }
-        // A vertex inside has to come out, however deep it is.
-        let inside = gap.gap < 0.0;
-        self.found.notes[0].push((candidate, if inside { f64::NEG_INFINITY } else { gap.gap }));
         self.push(gap, &law, pair, true, distance);
-        inside
+        if gap.gap < 0.0 { f64::NEG_INFINITY } else { gap.gap }
     }
 
     /// Adds a row for the gap of a vertex and a facet, or of two edges, unless they stay farther apart than a distance [m].

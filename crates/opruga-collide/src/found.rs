@@ -17,14 +17,30 @@ pub(crate) struct Found<const D: usize> {
     pub(crate) inactive: Vec<Row<D>>,
     pub(crate) spread: Spread,
     pub(crate) close: [Vec<([u32; 2], f64)>; 2],
-    /// Candidates and their distances at the start of the step, or a bound of them [m].
-    pub(crate) notes: [Vec<(usize, f64)>; 2],
-    /// The candidates that may touch in the step by the bounds of their distances, and their distances [m].
+    /// The candidates that may touch in the step by the bounds of their distances.
     pub(crate) unclear: [Vec<Unclear>; 2],
-    pub(crate) distances: Vec<f64>,
+    /// Candidates of a vertex and a facet that were examined again, and bounds of their distances at the start of the step [m].
+    pub(crate) notes: Vec<(usize, f64)>,
     /// The pairs of one vertex, or of two edges, and whether they meet by themselves; and which of them are kept.
     pub(crate) around: Vec<(ClosePair<D>, bool)>,
     pub(crate) keep: Vec<bool>,
     /// Positions at an impact within a step.
     pub(crate) impact: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Found<D> {
+    /// Bytes on the heap.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        let lists = |list: usize| {
+            size_of::<([u32; 2], f64)>() * self.close[list].capacity()
+                + size_of::<Unclear>() * self.unclear[list].capacity()
+        };
+        size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity() + self.inactive.capacity())
+            + 16 * self.heads.capacity()
+            + self.spread.heap_bytes()
+            + lists(0)
+            + lists(1)
+            + size_of::<(usize, f64)>() * self.notes.capacity()
+            + 8 * D * self.impact.capacity()
+    }
 }

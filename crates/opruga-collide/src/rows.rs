@@ -1,6 +1,7 @@
 //! The pairs of a step, found on one thread or several.
 
 use crate::close_pair::ClosePair;
+use crate::distances::Unclear;
 use crate::finder::Finder;
 use crate::found::Found;
 use crate::gap::Gap;
@@ -21,6 +22,7 @@ impl<const D: usize> Touching<D> {
         self.close.iter_mut().for_each(Vec::clear);
         let mut all = std::mem::take(&mut self.found);
         self.divide(&mut all);
+        self.lend_lists(&mut all[0]);
         let touching = &*self;
         threads::each_in_pool(&mut all, |found| Finder { touching, found, h }.find());
         all.iter_mut().for_each(|found| self.take_in(found));
@@ -71,10 +73,22 @@ impl<const D: usize> Touching<D> {
         append(&mut self.heads, &mut found.heads);
         for list in 0..2 {
             append(&mut self.close[list], &mut found.close[list]);
-            for (candidate, distance) in found.notes[list].drain(..) {
-                self.clearance.note(list, candidate, distance);
+            for Unclear { candidate, distance, .. } in &found.unclear[list] {
+                self.clearance.note(list, *candidate, *distance);
             }
         }
+        for (candidate, distance) in &found.notes {
+            self.clearance.note(0, *candidate, *distance);
+        }
+    }
+
+    /// Gives the memory of the lists to a part of the candidates, which gives it back with what it finds.
+    fn lend_lists(&mut self, found: &mut Found<D>) {
+        std::mem::swap(&mut self.rows, &mut found.rows);
+        std::mem::swap(&mut self.watched, &mut found.watched);
+        std::mem::swap(&mut self.inactive, &mut found.inactive);
+        std::mem::swap(&mut self.heads, &mut found.heads);
+        std::mem::swap(&mut self.close, &mut found.close);
     }
 
     /// A pair whose gap must not become negative within the step.

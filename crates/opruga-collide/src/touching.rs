@@ -561,7 +561,8 @@ impl<const D: usize> Touching<D> {
             + self.spread.heap_bytes()
             + self.candidates.heap_bytes()
             + self.clearance.heap_bytes()
-            + core::mem::size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity())
+            + size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity() + self.inactive.capacity())
+            + self.found.iter().map(Found::heap_bytes).sum::<usize>()
     }
 }
 
