@@ -1,4 +1,4 @@
-//! Lower bounds of the distances of candidates, with which most candidates need not be examined in a step.
+//! Lower bounds on the distances of candidates. They make it unnecessary to examine most candidates in a step.
 
 use crate::candidates::Candidates;
 use crate::reach::{MOST_WIDTHS, beyond};

@@ -43,7 +43,7 @@ pub(crate) struct NodePaths<const D: usize> {
     /// Whether a node is to be processed, and whether another contact is already active at it in this step: above 0.
     pub(crate) asked: [f64; WIDTH],
     pub(crate) active: [f64; WIDTH],
-    /// The size below which distances there are rounding [m].
+    /// Distances below this size are rounding errors [m].
     pub(crate) small: [f64; WIDTH],
 }
 

@@ -107,7 +107,7 @@ static LINE: Spec = Spec {
 static POLYLINE: Spec = Spec {
     kind: "polyline",
     summary: "a chain through points",
-    documentation: "Node i is point i; it encloses nothing, even if it is closed.",
+    documentation: "A polyline encloses nothing, even if it is closed. Node i is point i.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("points", Allowed::Points, "m", Default::Required, "The nodes."),
@@ -138,7 +138,8 @@ static GRID: Spec = Spec {
 static QUADRILATERAL: Spec = Spec {
     kind: "quadrilateral",
     summary: "a filled quadrilateral of cells between four corners",
-    documentation: "A grid stretched over a convex quadrilateral. Node (i, j) has number i + (n+1)·j. Groups: bottom from corner 0 to 1, right from 1 to 2, top from 3 to 2, left from 0 to 3.",
+    documentation: "A grid stretched over a convex quadrilateral. Node (i, j) has number i + (n+1)·j. Groups: bottom from corner 0 to 1, right \
+from 1 to 2, top from 3 to 2, left from 0 to 3.",
     dimensions: &[2],
     fields: &[
         Field::new("corners", Allowed::Points, "m", Default::Required, "Its four corners, counter-clockwise."),
@@ -156,7 +157,8 @@ static QUADRILATERAL: Spec = Spec {
 static SHEET: Spec = Spec {
     kind: "sheet",
     summary: "an open flat surface: cloth",
-    documentation: "A parallelogram of triangles with alternating diagonals. Node (i, j) has number i + (nu+1)·j. Groups: left, right (along u), bottom, top (along v).",
+    documentation: "A parallelogram of triangles with alternating diagonals. Node (i, j) has number i + (nu+1)·j. Groups: left, right (along u), \
+bottom, top (along v).",
     dimensions: &[3],
     fields: &[
         CORNER,

@@ -13,7 +13,7 @@ pub(super) struct Chain<'a, 'v, L, const D: usize> {
     pub(super) view: &'a View<'v, D>,
     /// The index of the first node of the first pair.
     pub(super) a: usize,
-    /// The index of the first pair among the parameters.
+    /// The index of the first pair's parameters.
     pub(super) first: usize,
     /// The number of indices of all pairs.
     pub(super) length: usize,

@@ -43,7 +43,7 @@ Euler. Each body is an island of its own.",
     roles: &[],
 };
 
-/// The displacement of the last step [m], the velocity at its start [m/s], and its length [s]; zero if there was no last step.
+/// The displacement of the previous step [m], the velocity at its start [m/s], and its length [s]; zero before the first step.
 const DISPLACEMENT: PerNode = PerNode::new("bdf2.displacement");
 const VELOCITY: PerNode = PerNode::new("bdf2.velocity");
 const STEP: PerBody<f64> = PerBody::new("bdf2.step");

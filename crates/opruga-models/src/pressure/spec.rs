@@ -14,8 +14,9 @@ P_a) ∂V/∂x on every node, which is half of the force on an edge in 2D and a 
 thickness in 2D and the enclosed volume in 3D, by the divergence theorem. The sides of quadratic cells and of boxes are curved in V as they are in \
 the cells, so that a uniform pressure causes a uniform stress. Holes count as negative because of their orientation. Every closed boundary that lies \
 in no other one is a chamber of its own with the same parameters. In a solid body the gas belongs in the cavities: with `inside = \"cavities\"`, \
-each cavity is a chamber of its own. `diagnostics.csv` has the columns `NAME.volume` [m³], `NAME.pressure` [Pa] and `NAME.nRT` [J]: volume and nRT \
-(P V also for an adiabatic gas, whose temperature changes) of all chambers of the body NAME, and the mean of their pressures weighted by volume. A \
+each cavity is a chamber of its own. For each body NAME, `diagnostics.csv` has the columns `NAME.volume` [m³] and `NAME.nRT` [J], which are sums \
+over all chambers, and `NAME.pressure` [Pa], the mean pressure weighted by volume. nRT is P V, also for an adiabatic gas, whose temperature \
+changes. A \
 body with several chambers also has `NAME.chamber1.volume`, `NAME.chamber1.pressure`, `NAME.chamber1.nRT`, `NAME.chamber2.volume` and so on. \
 Chambers are numbered in the order in which their first facets appear in the shape. Below V_s = max(`smallest_volume` V₀, the volume of \
 `largest_pressure`) the pressure keeps the value P(V_s), also when the volume passes zero and the body is inverted. U is then still a function of V \
