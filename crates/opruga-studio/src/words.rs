@@ -131,7 +131,7 @@ words! {
     normals: "Normals", "Normale";
     contact: "Contact", "Dodir";
     bodies_touch: "Bodies touch one another", "Tijela se dodiruju";
-    bodies_touch_hint: "Without contact, bodies pass through one another. Contact can be switched on and off only at the start, and works with explicit integrators", "Bez dodira tijela prolaze jedno kroz drugo. Uključuje se i isključuje na početku, a radi uz eksplicitne integratore";
+    bodies_touch_hint: "Without contact, bodies pass through one another. Contact can be switched on and off only at the start", "Bez dodira tijela prolaze jedno kroz drugo. Uključuje se i isključuje samo na početku";
     contacts: "Contact forces", "Sile dodira";
     arrow_of_velocity: "velocity", "brzina";
     arrow_of_normal: "normal", "normala";
