@@ -75,7 +75,7 @@ fn a_picture_that_cannot_be_is_refused_with_its_place() {
         ("low = [0, 0]", "scene.missing", "`high`"),
         ("high = [1, 1]", "scene.missing", "`low`"),
         ("low = [0, 0]\nhigh = [1, 0]", "scene.range", "is empty"),
-        ("azimuth = 20", "scene.dimension", "in space"),
+        ("azimuth = 20", "scene.dimension", "only 3D scenes"),
         ("panels = 0", "scene.range", "panels"),
         ("pannels = 4", "scene.unknown_field", "pannels"),
     ] {
