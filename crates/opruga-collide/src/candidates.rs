@@ -5,7 +5,7 @@ use crate::overlaps::{Columns, Overlaps};
 use crate::reach::around;
 use crate::surface::Surface;
 use crate::vector::Bounds;
-use opruga_math::{Lane, Simd};
+use opruga_math::{Lane, Simd, WIDTH};
 
 /// Pairs of a vertex and a facet, and in 3D of two edges, whose boxes are closer than a distance; ascending, each once.
 ///
@@ -61,8 +61,8 @@ fn merge(pairs: &mut Vec<[u32; 2]>, fresh: &mut [[u32; 2]], merged: &mut Vec<[u3
     std::mem::swap(pairs, merged);
 }
 
-/// If a body has up to this number of features, each of the other body is compared with all of them, eight at a time: finding the cells of a
-/// feature takes as long as a thousand comparisons.
+/// Up to this number of features, or of packs of pairs, the features of two bodies are compared with one another, eight at a time. Larger sets are
+/// sorted into cells: finding the cells of a feature takes as long as a thousand comparisons.
 const FEW: usize = 1024;
 
 impl<const D: usize> Candidates<D> {
@@ -215,7 +215,7 @@ impl<const D: usize> Candidates<D> {
 
     /// Calls `visit` with the features of both lists whose boxes overlap.
     fn join(&mut self, mut visit: impl FnMut(u32, u32)) {
-        if self.second.len() <= FEW {
+        if self.second.len() <= FEW || self.first.len() * self.second.len() <= FEW * WIDTH {
             let Candidates { first, second, columns, simd, .. } = self;
             columns.fill(second);
             return simd.run(Overlaps { first, second, columns, visit });

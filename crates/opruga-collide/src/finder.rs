@@ -78,12 +78,11 @@ impl<const D: usize> Finder<'_, D> {
             *distance = self.take_gap_of_vertex(*candidate, 0.0, *distance);
             inside |= *distance == f64::NEG_INFINITY;
         }
-        let candidates = self.candidates_of(unclear);
         if inside {
             // The nearest facet is needed there, whatever was known before.
             self.found.around.clear();
             self.found.close[0].truncate(close);
-            self.take_gaps_of(candidates.clone(), 0.0, true);
+            self.take_gaps_of(self.candidates_of(unclear), 0.0, true);
         }
         // A vertex that seems to be deep inside may be outside, in front of a facet that is nearer but beyond the reach.
         let known = -self.touching.reach.push_of(vertex) - self.thickest_at(vertex);
@@ -91,10 +90,10 @@ impl<const D: usize> Finder<'_, D> {
         if self.touching.at_once || self.found.around.iter().any(|(row, _)| row.gap < known) {
             inside |= self.touching.at_once;
             self.found.around.clear();
-            self.take_gaps_of(candidates.clone(), 0.25 * self.touching.margin, inside);
+            self.take_gaps_of(self.candidates_of(unclear), 0.25 * self.touching.margin, inside);
         }
         if self.touching.began_inside.binary_search(&vertex).is_ok() {
-            self.take_exit(candidates);
+            self.take_exit(self.candidates_of(unclear));
         }
         self.keep_the_nearest();
         self.take_around(false);

@@ -474,9 +474,11 @@ impl<const D: usize> Touching<D> {
         inactive.retain(|row| {
             let enough = turns.enough(row, spread, inverse_mass, &surface.body, exact);
             let holds = dot(&subtract(&row.mean(spread, v), &row.carry), &row.normal) >= row.target - enough;
-            let mut row = *row;
-            if !holds && row.can_move(spread, inverse_mass) {
-                rows.push(row);
+            if !holds {
+                let mut row = *row;
+                if row.can_move(spread, inverse_mass) {
+                    rows.push(row);
+                }
             }
             holds
         });

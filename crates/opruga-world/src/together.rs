@@ -179,17 +179,14 @@ fn touch<const D: usize>(
         let outcome = if alone { meeting.solve(step) } else { Ok(()) };
         outcome.map_err(|trouble| (meeting.in_scene(trouble), step.time))
     };
-    match meetings {
-        [meeting] => {
-            meeting.touching.threads = threads;
-            solve(meeting)?;
-        }
-        _ if threads > 1 => {
-            meetings.iter_mut().for_each(|meeting| meeting.touching.threads = 1);
-            let outcomes: Vec<_> = meetings.par_iter_mut().map(solve).collect();
-            outcomes.into_iter().collect::<Result<(), _>>()?;
-        }
-        _ => meetings.iter_mut().try_for_each(solve)?,
+    // Several clusters share the threads; a single one looks for its pairs on all of them.
+    let several = meetings.len() > 1;
+    meetings.iter_mut().for_each(|meeting| meeting.touching.threads = if several { 1 } else { threads });
+    if several && threads > 1 {
+        let outcomes: Vec<_> = meetings.par_iter_mut().map(solve).collect();
+        outcomes.into_iter().collect::<Result<(), _>>()?;
+    } else {
+        meetings.iter_mut().try_for_each(solve)?;
     }
     for meeting in meetings.iter_mut().filter(|meeting| !meeting.is_one()) {
         if meeting.is_pushed() {

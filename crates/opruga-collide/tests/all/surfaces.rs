@@ -122,6 +122,10 @@ fn candidates_are_those_of_all_pairs() {
             compare_with_all_pairs(&[ring.clone(), wire.clone(), ring.clone(), square.clone(), ring.clone()], seed);
     }
     assert!(found > 1000, "{found}");
+    // So many features are sorted into cells.
+    let large = Mesh::<2>::ring(1.0, 1500, [0.0, 0.0], 0.0).expect("a ring");
+    let found = compare_with_all_pairs(&[large.clone(), wire, ring, large], 8);
+    assert!(found > 1000, "{found}");
     let ball = Mesh::<3>::icosphere(1.0, 2).expect("a ball");
     let cube = Mesh::<3>::grid([0.0; 3], [1.0; 3], [3, 3, 3]).expect("a cube");
     let string = Mesh::<3>::line([0.0; 3], [1.0, 0.3, -0.2], 30).expect("a wire");

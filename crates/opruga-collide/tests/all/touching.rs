@@ -445,39 +445,20 @@ fn carried_points_meet() {
     }
 }
 
-/// The cost of contact in the steps of many balls, printed with `--nocapture`.
+/// Of many rings that fill a box, each part of the candidates goes to a thread of its own.
 #[test]
-#[ignore = "a measurement"]
-fn the_cost_of_many_balls() {
-    let mut bodies = Vec::new();
-    for k in 0..1000 {
-        let (i, j) = (k % 40, k / 40);
-        let at = [0.51 * f64::from(i) + 0.005 * f64::from(j % 3), 0.3 + 0.51 * f64::from(j)];
-        bodies.push((ring(36, 0.25), at, [0.0; 2]));
-    }
-    let mut toy = Toy::new(&bodies, law(0.3, 0.0));
-    (toy.gas, toy.gravity) = (5.0, 9.81);
-    toy.floor = vec![(1, 0.0, 1.0), (0, -0.26, 1.0), (0, 0.51 * 39.0 + 0.27, -1.0)];
-    for part in 0..4 {
-        let (mut free, mut whole) = (0.0, 0.0);
-        let before = toy.touching.counts;
-        for _ in 0..100 {
-            let start = std::time::Instant::now();
-            toy.free(1.0 / 1920.0);
-            free += start.elapsed().as_secs_f64();
-            toy.touching.step(1.0 / 1920.0, None).expect("few pairs");
-            whole += start.elapsed().as_secs_f64();
-        }
-        let c = toy.touching.counts;
-        println!(
-            "{part}: free {:.3} ms, contact {:.3} ms a step; searches {}, candidates {}, pairs {}, contacts {}, turns {} a step",
-            10.0 * free,
-            10.0 * (whole - free),
-            (c.searches - before.searches) as f64 / 100.0,
-            (c.candidates - before.candidates) / 100,
-            (c.pairs - before.pairs) / 100,
-            (c.contacts - before.contacts) / 100,
-            (c.turns - before.turns) / 100
-        );
-    }
+fn threads_change_no_bit_of_many_rings() {
+    let run = |threads: usize| {
+        let at = |k: i32| [0.51 * f64::from(k % 12) + 0.005 * f64::from(k / 12 % 3), 0.3 + 0.51 * f64::from(k / 12)];
+        let bodies: Vec<_> = (0..120).map(|k| (ring(36, 0.25), at(k), [0.0; 2])).collect();
+        let mut toy = Toy::new(&bodies, law(0.3, 0.0));
+        (toy.gas, toy.gravity, toy.touching.threads) = (5.0, 9.81, threads);
+        toy.floor = vec![(1, 0.0, 1.0), (0, -0.26, 1.0), (0, 0.51 * 11.0 + 0.27, -1.0)];
+        (0..200).for_each(|_| toy.step(1.0 / 1920.0));
+        let counts = toy.touching.counts;
+        assert!(counts.candidates > 4096 * counts.steps && counts.contacts > 100 * counts.steps, "{counts:?}");
+        toy.touching.after.iter().flatten().flatten().map(|c| c.to_bits()).collect::<Vec<_>>()
+    };
+    let one = run(1);
+    assert!(run(2) == one && run(5) == one);
 }
