@@ -16,7 +16,7 @@ use opruga::io::safe_write::{safe_write, try_write};
 use opruga::io::scene::{self, Limits};
 use opruga::io::shapes::{Problem, body, kind_of_file};
 use opruga::io::{Files, Notice, SceneError, meshes};
-use opruga::math::message::Setting;
+use opruga::math::message::{Replacing, Setting};
 use opruga::math::words::{counted, number, rounded};
 use opruga::mesh::{CellQuality, Element, Mesh, triangle_parts};
 use serde_json::json;
@@ -194,7 +194,8 @@ fn option(setting: &Setting) -> Setting {
 /// An error in the terms of the call: with its options, and without a path in a scene.
 fn of_call(call: &Call, name: &str, error: SceneError) -> SceneError {
     let file = placed(call, name, &error.file);
-    SceneError { file, path: String::new(), ..error.replaced(&option) }
+    let by = Replacing { setting: &option, name: &str::to_string };
+    SceneError { file, path: String::new(), ..error.replaced(&by) }
 }
 
 fn finish<const D: usize>(

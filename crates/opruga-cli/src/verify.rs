@@ -9,7 +9,6 @@ use opruga::Registries;
 use opruga::core::spec::nearest;
 use opruga::io::output_folder::{Existing, OutputFolder};
 use opruga::io::problem::visible;
-use opruga::io::safe_write::WriteError;
 use opruga::math::words::counted;
 use opruga_verify::{Case, Check, Family, Lab, Row};
 use serde_json::json;
@@ -30,12 +29,7 @@ pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failu
     let stop = interrupt::asked_to_stop();
     // Checks before the work whether the report can be written.
     let existing = if call.force { Existing::Replace } else { Existing::Refuse };
-    let folder = call.report.as_ref().map(|path| OutputFolder::open(path, existing)).transpose();
-    // The option for folders has another name in this command.
-    let folder = folder.map_err(|e| {
-        let about = e.about.renamed(&str::to_string, &|text| text.replace("--out", "--report"));
-        WriteError { about, ..e }
-    })?;
+    let folder = call.report.as_ref().map(|path| OutputFolder::open(path, existing)).transpose()?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let threads = call.threads.map_or(cores, usize::from);
     let bar = progress_bar(cases.len());

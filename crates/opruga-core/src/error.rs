@@ -1,6 +1,6 @@
 //! Errors while a world is built or stepped.
 
-use opruga_math::message::{AnyMessage, Field, IntoField};
+use opruga_math::message::{AnyMessage, Field, IntoField, Replacing};
 use opruga_math::messages;
 use opruga_math::words::{counted, number};
 
@@ -39,6 +39,9 @@ impl BuildError {
 impl IntoField for BuildError {
     fn field(&self) -> Field {
         Source::Of { kind: self.kind.clone(), about: self.about.clone() }.field()
+    }
+    fn replaced(&self, by: &Replacing<'_>) -> BuildError {
+        BuildError { kind: self.kind.clone(), about: self.about.replaced(by) }
     }
 }
 

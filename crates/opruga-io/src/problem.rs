@@ -200,11 +200,11 @@ impl SceneError {
     pub fn text(&self, translation: Option<&Translation>) -> String {
         describe(self, Label::Error, translation)
     }
-    /// The same error with the names that are used instead of the settings of a scene outside of scenes.
+    /// The same error with other settings and names.
     #[must_use]
-    pub fn replaced(mut self, settings: &Replacing<'_>) -> SceneError {
+    pub fn replaced(mut self, by: &Replacing<'_>) -> SceneError {
         for message in [&mut self.about, &mut self.advice, &mut self.allowance].into_iter().flatten() {
-            *message = IntoField::replaced(message, settings);
+            *message = IntoField::replaced(message, by);
         }
         let Some(about) = &self.about else { return self };
         let text = |message: &Option<AnyMessage>| message.as_ref().map(AnyMessage::to_string);

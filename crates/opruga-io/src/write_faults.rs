@@ -14,10 +14,10 @@ messages! {
     pub enum WriteFault {
         "write.exists" #[error("the file already exists")] #[hint("--force replaces it")]
         FileExists {},
-        "write.exists" #[error("the folder already contains {file}")] #[hint("--force replaces them, --out chooses another folder")]
+        "write.exists" #[error("the folder already contains {file}")] #[hint("use --force to replace them, or choose another folder")]
         HoldsFile { file: String },
         "write.exists" #[error("the folder already contains {count} files, among them {file}")]
-        #[hint("--force replaces them, --out chooses another folder")]
+        #[hint("use --force to replace them, or choose another folder")]
         HoldsFiles { count: usize, file: String },
         "write.failed" #[error("writing stopped after {bytes} bytes: {reason}")]
         Stopped { bytes: u64, reason: String },
@@ -37,7 +37,7 @@ messages! {
         RecordingEnded {},
         "write.locked" #[error("another process is writing this file")] #[hint("wait for it, or choose another name")]
         FileLocked {},
-        "write.locked" #[error("another process is writing into this folder")] #[hint("wait for it, or choose another folder with --out")]
+        "write.locked" #[error("another process is writing into this folder")] #[hint("wait for it, or choose another folder")]
         FolderLocked {},
         "write.folder" #[error("the folder cannot be {doing}: {reason}")]
         Folder { doing: Doing, reason: String },

@@ -55,8 +55,13 @@ impl fmt::Display for Setting {
     }
 }
 
-/// A function that replaces each setting that a message names.
-pub type Replacing<'r> = dyn Fn(&Setting) -> Setting + 'r;
+/// The functions that replace the parts of a message that have another name for its reader.
+pub struct Replacing<'r> {
+    /// The replacement of a setting.
+    pub setting: &'r dyn Fn(&Setting) -> Setting,
+    /// The replacement of a name or another text from outside.
+    pub name: &'r dyn Fn(&str) -> String,
+}
 
 /// An error, a warning, or a part of one.
 pub trait Message: std::error::Error + Send + Sync + 'static {
@@ -82,8 +87,8 @@ pub trait Message: std::error::Error + Send + Sync + 'static {
     fn hint(&self) -> Option<String> {
         None
     }
-    /// The same message with other settings; `None` if it names no settings.
-    fn replaced(&self, _settings: &Replacing<'_>) -> Option<AnyMessage> {
+    /// The same message with other settings and names; `None` if it has no fields that could contain any.
+    fn replaced(&self, _by: &Replacing<'_>) -> Option<AnyMessage> {
         None
     }
     /// The English text with the allowed values and the hint: `text; allowed: …; hint: …`.
@@ -127,72 +132,30 @@ impl<M: Message> From<M> for AnyMessage {
     }
 }
 
-/// A message with changed fields and texts.
-#[derive(Debug)]
-struct Restated {
+/// A text in English only.
+#[derive(Debug, thiserror::Error)]
+#[error("{english}")]
+struct Plain {
     code: &'static str,
-    variant: &'static str,
-    fields: Vec<(&'static str, Field)>,
-    /// The English text, the value, the allowed values and the hint.
     english: String,
-    beside: [Option<String>; 3],
-    parameters: Vec<String>,
 }
 
-impl fmt::Display for Restated {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.english)
-    }
-}
-
-impl std::error::Error for Restated {}
-
-impl Message for Restated {
+impl Message for Plain {
     fn code(&self) -> &'static str {
         self.code
     }
     fn variant(&self) -> &'static str {
-        self.variant
+        "Plain"
     }
     fn fields(&self) -> Vec<(&'static str, Field)> {
-        self.fields.clone()
-    }
-    fn value(&self) -> Option<String> {
-        self.beside[0].clone()
-    }
-    fn parameters(&self) -> Vec<String> {
-        self.parameters.clone()
-    }
-    fn allowed(&self) -> Option<String> {
-        self.beside[1].clone()
-    }
-    fn hint(&self) -> Option<String> {
-        self.beside[2].clone()
+        vec![("text", Field::Text(self.english.clone()))]
     }
 }
 
 impl AnyMessage {
     /// A message with a text in English only, for a program that adds its own kinds.
     pub fn plain(code: &'static str, english: String) -> AnyMessage {
-        let fields = vec![("text", Field::Text(english.clone()))];
-        let (beside, parameters) = ([None, None, None], Vec::new());
-        AnyMessage::from(Restated { code, variant: "Plain", fields, english, beside, parameters })
-    }
-
-    /// The same message with other names: `name` changes fields that are names, and `text` changes names within an English
-    /// text.
-    #[must_use]
-    pub fn renamed(&self, name: &dyn Fn(&str) -> String, text: &dyn Fn(&str) -> String) -> AnyMessage {
-        let field = |field: Field| match field {
-            Field::Text(old) => Field::Text(name(&old)),
-            Field::Message(part) => Field::Message(part.renamed(name, text)),
-            other => other,
-        };
-        let fields = self.fields().into_iter().map(|(of, value)| (of, field(value))).collect();
-        let beside = [self.value(), self.allowed(), self.hint()].map(|old| old.map(|old| text(&old)));
-        let english = text(&self.to_string());
-        let (code, variant, parameters) = (self.code(), self.variant(), self.parameters());
-        AnyMessage::from(Restated { code, variant, fields, english, beside, parameters })
+        AnyMessage::from(Plain { code, english })
     }
 }
 
@@ -236,9 +199,9 @@ impl fmt::Display for Field {
 pub trait IntoField: Clone {
     /// The value as a field for catalogues.
     fn field(&self) -> Field;
-    /// The same value with other names of settings, if it contains any.
+    /// The same value with other settings and names, if it contains any.
     #[must_use]
-    fn replaced(&self, _settings: &Replacing<'_>) -> Self {
+    fn replaced(&self, _by: &Replacing<'_>) -> Self {
         self.clone()
     }
 }
@@ -247,8 +210,8 @@ impl IntoField for Setting {
     fn field(&self) -> Field {
         Field::Text(self.to_string())
     }
-    fn replaced(&self, settings: &Replacing<'_>) -> Setting {
-        settings(self)
+    fn replaced(&self, by: &Replacing<'_>) -> Setting {
+        (by.setting)(self)
     }
 }
 
@@ -274,7 +237,19 @@ macro_rules! texts {
         }
     })* };
 }
-texts!(String &'static str Box<str> char bool);
+texts!(&'static str char bool);
+
+macro_rules! names {
+    ($($type:ty)*) => { $(impl IntoField for $type {
+        fn field(&self) -> Field {
+            Field::Text(self.to_string())
+        }
+        fn replaced(&self, by: &Replacing<'_>) -> $type {
+            (by.name)(self).into()
+        }
+    })* };
+}
+names!(String Box<str>);
 
 macro_rules! lists {
     ($($type:ty)*) => { $(impl IntoField for $type {
@@ -297,8 +272,8 @@ impl IntoField for AnyMessage {
     fn field(&self) -> Field {
         Field::Message(self.clone())
     }
-    fn replaced(&self, settings: &Replacing<'_>) -> AnyMessage {
-        Message::replaced(&*self.0, settings).unwrap_or_else(|| self.clone())
+    fn replaced(&self, by: &Replacing<'_>) -> AnyMessage {
+        Message::replaced(&*self.0, by).unwrap_or_else(|| self.clone())
     }
 }
 
@@ -307,8 +282,8 @@ impl<T: IntoField> IntoField for Box<T> {
     fn field(&self) -> Field {
         T::field(self)
     }
-    fn replaced(&self, settings: &Replacing<'_>) -> Box<T> {
-        Box::new(T::replaced(self, settings))
+    fn replaced(&self, by: &Replacing<'_>) -> Box<T> {
+        Box::new(T::replaced(self, by))
     }
 }
 
@@ -316,8 +291,8 @@ impl<T: IntoField> IntoField for Option<T> {
     fn field(&self) -> Field {
         self.as_ref().map_or_else(|| Field::Text(String::new()), IntoField::field)
     }
-    fn replaced(&self, settings: &Replacing<'_>) -> Option<T> {
-        self.as_ref().map(|value| value.replaced(settings))
+    fn replaced(&self, by: &Replacing<'_>) -> Option<T> {
+        self.as_ref().map(|value| value.replaced(by))
     }
 }
 
@@ -400,8 +375,8 @@ macro_rules! messages {
             fn hint(&self) -> Option<String> {
                 match self { $($name::$variant { $($field),* } => $crate::text_beside!($($($hint)*)?),)* }
             }
-            fn replaced(&self, settings: &$crate::message::Replacing<'_>) -> Option<$crate::message::AnyMessage> {
-                Some($crate::message::IntoField::replaced(self, settings).into())
+            fn replaced(&self, by: &$crate::message::Replacing<'_>) -> Option<$crate::message::AnyMessage> {
+                Some($crate::message::IntoField::replaced(self, by).into())
             }
         }
         impl $name {
@@ -418,10 +393,10 @@ macro_rules! messages {
             fn field(&self) -> $crate::message::Field {
                 $crate::message::Field::Message(self.clone().into())
             }
-            fn replaced(&self, settings: &$crate::message::Replacing<'_>) -> $name {
+            fn replaced(&self, by: &$crate::message::Replacing<'_>) -> $name {
                 match self {
                     $($name::$variant { $($field),* } => $name::$variant {
-                        $($field: $crate::message::IntoField::replaced($field, settings)),*
+                        $($field: $crate::message::IntoField::replaced($field, by)),*
                     },)*
                 }
             }
@@ -550,7 +525,8 @@ mod tests {
         let names: Vec<_> = any.fields().into_iter().map(|(name, value)| format!("{name}={value}")).collect();
         assert_eq!(names, ["edge=3", "length=0.3", "place=body `ball`", "least=0"]);
         assert_ne!(any, Refusal::None {}.into());
-        let other = any.renamed(&|name| name.replace("ball", "box"), &|text| text.replace("`ball`", "`box`"));
+        let by = Replacing { setting: &Setting::clone, name: &|name| name.replace("ball", "box") };
+        let other = IntoField::replaced(&any, &by);
         assert_eq!(other.to_string(), "edge 3 of body `box` is 0.3 m long");
         let [_, _, (_, Field::Message(place)), _] = &other.fields()[..] else { panic!("{other:?}") };
         assert_eq!((place.variant(), place.to_string()), ("Body", "body `box`".into()));
@@ -577,7 +553,7 @@ mod tests {
             option => option.clone(),
         };
         let hint = |message: &dyn Message| message.hint().expect("a hint");
-        let replaced = IntoField::replaced(&around, &option);
+        let replaced = IntoField::replaced(&around, &Replacing { setting: &option, name: &str::to_string });
         let [(_, Field::Message(part))] = &replaced.fields()[..] else { panic!("{replaced:?}") };
         assert_eq!(hint(&large), "use `scale = 0.001`, or a smaller `size`");
         assert_eq!(hint(&**part), "use --scale 0.001, or a smaller --size");

@@ -4,7 +4,7 @@ use crate::error::{Part, WorldError};
 use crate::faults::{BlueprintFault, NameFault};
 use crate::path_faults::{Content, PathFault, Promised, SnapshotFault};
 use crate::refusals::Refusal;
-use opruga_math::message::{AnyMessage, if_any};
+use opruga_math::message::{AnyMessage, IntoField, Replacing, if_any};
 use opruga_math::words::{counted, number, rounded};
 use opruga_math::{messages, terms};
 
@@ -50,6 +50,16 @@ impl Warning {
     pub fn new(about: impl Into<AnyMessage>, count: u64) -> Warning {
         let about = about.into();
         Warning { code: about.code().into(), message: about.in_full(), count, about: Some(about) }
+    }
+
+    /// The same warning with other settings and names.
+    #[must_use]
+    pub fn replaced(self, by: &Replacing<'_>) -> Warning {
+        let Some(about) = self.about.as_ref().map(|about| about.replaced(by)) else { return self };
+        if self.about.as_ref() == Some(&about) {
+            return self;
+        }
+        Warning { message: about.in_full(), about: Some(about), ..self }
     }
 
     /// The text of the field with this name, which is the same in all languages.

@@ -166,7 +166,7 @@ fn old_output_is_not_replaced_unasked() {
     assert_eq!(
         said(&output),
         "o: error[write.exists]: the folder already contains 4 files, among them checkpoint\n  \
-         = hint: --force replaces them, --out chooses another folder\n"
+         = hint: use --force to replace them, or choose another folder\n"
     );
     assert_eq!(contents(&folder.path().join("o")), before);
     assert_eq!(code(&opruga(folder.path(), &[&SHORT[..], &["o", "--force"]].concat())), 0);

@@ -52,6 +52,21 @@ fn diagnostics_have_as_many_rows_as_are_asked_for_and_no_more_than_a_table_may_h
     assert!(std::fs::metadata(at.join("short/diagnostics.csv")).expect("a table").len() < 68_000_000);
 }
 
+/// The run itself would take minutes: the test ends it after the warning.
+#[test]
+fn pictures_that_need_more_memory_than_allowed_are_thinned_with_a_warning_before_the_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // 60,000 pictures of 2,000 nodes with three numbers of four bytes are 1.44e9 bytes, above 2^30.
+    let run = ["run", "ball", "--set", "body.0.shape.vertices=2000", "--set", "time.substeps=200", "--seconds=1000"];
+    let mut child = program(folder.path(), &run).arg("--fps=60").spawn().expect("the program runs");
+    let stderr = std::io::BufReader::new(child.stderr.take().expect("standard error"));
+    let told = std::io::BufRead::lines(stderr).map_while(Result::ok).find(|line| line.contains("[pictures.thinned]"));
+    child.kill().expect("the program still runs");
+    child.wait().expect("it ends");
+    let says = "warning[pictures.thinned]: pictures of 2000 nodes would take 1373 MiB; one frame in 2 is kept";
+    assert_eq!(told.as_deref(), Some(says));
+}
+
 #[test]
 fn a_run_whose_last_frame_ends_elsewhere_than_asked_for_says_when() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -2,10 +2,7 @@
 
 use crate::exploded::Exploded;
 use crate::report::Report;
-use opruga::core::error::StepError;
-use opruga::io::SceneError;
-use opruga::math::message::AnyMessage;
-use opruga::world::error::Part;
+use opruga::math::message::{IntoField, Replacing, Setting};
 use opruga::{Warning, WorldError};
 
 /// How bodies were renamed, and which ones exist.
@@ -39,15 +36,6 @@ impl Titles {
         if self.present.iter().any(|other| other == title) { name } else { title }
     }
 
-    /// Replaces names in the parts of a text that are in quotes: a name, or a path that begins with a name.
-    pub(super) fn in_text(&self, text: &str) -> String {
-        if self.is_empty() {
-            return text.into();
-        }
-        let quoted = |(index, words): (usize, &str)| if index % 2 == 1 { self.in_path(words) } else { words.into() };
-        text.split('`').enumerate().map(quoted).collect::<Vec<_>>().join("`")
-    }
-
     /// A name, or a path such as `body.ball-2.models.0.damping`.
     fn in_path(&self, path: &str) -> String {
         let Some(below) = path.strip_prefix("body.") else { return self.of(path).into() };
@@ -64,9 +52,9 @@ impl Titles {
     pub(super) fn in_report(&self, report: Report) -> Report {
         let of = |name: &String| self.of(name).to_string();
         match report {
-            Report::World(error) => Report::World(self.in_error(error)),
+            Report::World(error) => Report::World(self.replaced(&error)),
             Report::Scene(errors) => {
-                Report::Scene(errors.into_iter().map(|error| self.in_scene_error(error)).collect())
+                Report::Scene(errors.into_iter().map(|error| self.replacing(|by| error.replaced(by))).collect())
             }
             Report::Exploded(exploded) => Report::Exploded(Exploded { body: of(&exploded.body), ..exploded }),
             Report::AtTheEnd(time, list) => {
@@ -81,58 +69,24 @@ impl Titles {
         }
     }
 
-    fn in_scene_error(&self, mut error: SceneError) -> SceneError {
-        let texts = [Some(&mut error.message), error.allowed.as_mut(), error.hint.as_mut()];
-        texts.into_iter().flatten().for_each(|text| *text = self.in_text(text));
-        for message in [&mut error.about, &mut error.advice, &mut error.allowance].into_iter().flatten() {
-            *message = self.in_message(message);
-        }
-        error
-    }
-
-    fn in_message(&self, message: &AnyMessage) -> AnyMessage {
-        message.renamed(&|name| self.in_path(name), &|text| self.in_text(text))
-    }
-
     /// Replaces the names in a warning.
     pub(super) fn in_warning(&self, warning: Warning) -> Warning {
-        let about = warning.about.map(|message| self.in_message(&message));
-        Warning { message: self.in_text(&warning.message), about, ..warning }
+        self.replacing(|by| warning.replaced(by))
     }
 
-    fn in_error(&self, mut error: WorldError) -> WorldError {
-        match &mut error {
-            WorldError::UnstableStep { body, .. } | WorldError::Diverged { body, .. } => {
-                *body = self.of(body).to_string()
-            }
-            WorldError::NotConverged { body, cause } | WorldError::Step { body, cause } => {
-                *body = self.of(body).to_string();
-                if let StepError::Model { about, .. } = &mut **cause {
-                    *about = self.in_message(about);
-                }
-            }
-            WorldError::Build { part, source } => {
-                if let Part::Body { name } | Part::IntegratorOf { name } = part {
-                    *name = self.of(name).to_string();
-                }
-                source.about = self.in_message(&source.about);
-            }
-            WorldError::Meet { first, second, .. } | WorldError::LedThrough { first, second, .. } => {
-                (*first, *second) = (self.of(first).to_string(), self.of(second).to_string());
-            }
-            WorldError::Path { path, about } => (*path, *about) = (self.in_path(path), self.in_message(about)),
-            WorldError::Snapshot { .. }
-            | WorldError::Overflow { .. }
-            | WorldError::TooManyContacts { .. }
-            | WorldError::BrokenOff {} => {}
-        }
-        error
+    fn replaced(&self, error: &WorldError) -> WorldError {
+        self.replacing(|by| error.replaced(by))
+    }
+
+    fn replacing<T>(&self, replace: impl FnOnce(&Replacing<'_>) -> T) -> T {
+        replace(&Replacing { setting: &Setting::clone, name: &|name| self.in_path(name) })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use opruga::io::SceneError;
     use opruga::world::PathFault;
 
     fn names(list: &[&str]) -> Vec<String> {
@@ -144,11 +98,10 @@ mod tests {
     }
 
     #[test]
-    fn names_and_paths_in_quotes_are_those_that_a_person_knows_and_nothing_else_is_touched() {
+    fn names_and_paths_are_those_that_a_person_knows_and_nothing_else_is_touched() {
         let known = titles(&[("ball", "ball-2"), ("ball-2", "ball-3")], &["ball-3", "box"]);
         assert_eq!((known.of("ball-3"), known.of("ball-2"), known.of("box")), ("ball", "ball", "box"));
-        let text = "body `ball-3`: `body.ball-3.models.0.damping` and ball-3, `ball-33`, `box`";
-        assert_eq!(known.in_text(text), "body `ball`: `body.ball.models.0.damping` and ball-3, `ball-33`, `box`");
+        assert_eq!(known.in_path("body.ball-3.models.0.damping"), "body.ball.models.0.damping");
         assert_eq!(known.in_path("body.ball-33.models"), "body.ball-33.models");
         let lost = |body: &str| WorldError::Path {
             path: "load".into(),
@@ -156,6 +109,10 @@ mod tests {
         };
         let (error, told) = (lost("ball-3"), lost("ball"));
         assert_eq!(known.in_report(Report::World(error)), Report::World(told));
+        let scene = |body: &str| SceneError::of(PathFault::NoBodyCalled { name: body.into(), nearest: None });
+        assert_eq!(known.in_report(Report::Scene(vec![scene("ball-3")])), Report::Scene(vec![scene("ball")]));
+        let warning = |body: &str| Warning::new(PathFault::NoBodyCalled { name: body.into(), nearest: None }, 1);
+        assert_eq!(known.in_warning(warning("ball-3")), warning("ball"));
         assert_eq!(known.in_report(Report::SetDown), Report::SetDown);
     }
 
@@ -163,9 +120,8 @@ mod tests {
     fn a_name_that_another_body_has_is_not_given_twice_and_names_in_a_circle_come_to_an_end() {
         let known = titles(&[("ball", "ball-2")], &["ball", "ball-2"]);
         assert_eq!(known.of("ball-2"), "ball-2");
-        assert_eq!(known.in_text("body `ball-2`"), "body `ball-2`");
         let circle = titles(&[("a", "b"), ("b", "a"), ("a", "b")], &["b"]);
         assert_eq!(circle.of("b"), "a");
-        assert_eq!(Titles::default().in_text("body `a`"), "body `a`");
+        assert_eq!(Titles::default().of("a"), "a");
     }
 }
