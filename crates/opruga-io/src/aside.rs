@@ -1,5 +1,4 @@
-//! Files that are written under a temporary name before they get their own: which of them are held by a process, and which were
-//! abandoned.
+//! Files that are first written under a temporary name. This module distinguishes those that a process is still writing from abandoned ones.
 //!
 //! A file is locked while its bytes are written. The system frees the lock when the process ends, however it ends. A file of this kind that can be
 //! locked was therefore left by a killed process, and is removed. Process numbers would not identify it: they are reused, and several machines may
@@ -13,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// The ending of files while they are being written.
 const WRITING: &str = ".writing";
 
-/// The temporary name under which the writer of this number writes a file.
+/// The temporary name of a file while the writer with this number writes it.
 fn name_of(name: &OsStr, writer: u64) -> OsString {
     let mut aside = OsString::from(".");
     aside.push(name);
@@ -51,7 +50,7 @@ pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, Fi
                     }
                     _ => {}
                 }
-                // Between its creation and its lock, another process may have considered the file abandoned.
+                // Before the file was locked, another process may have considered it abandoned and removed it.
                 if is_the_file(&file, &aside) {
                     return Ok((aside, file));
                 }
@@ -80,7 +79,7 @@ pub(crate) fn remove_the_dead(folder: &Path, name: Option<&OsStr>) {
 fn remove_if_dead(aside: &Path) -> bool {
     match File::open(aside) {
         Ok(file) => match file.try_lock() {
-            // It is removed while it is locked, because afterwards its name may mean another file.
+            // The file is removed while it is still locked: once it is unlocked, its name may belong to another file.
             Ok(()) => is_the_file(&file, aside) && fs::remove_file(aside).is_ok(),
             Err(TryLockError::WouldBlock | TryLockError::Error(_)) => false,
         },

@@ -13,7 +13,8 @@ fn value(letter: u8) -> Option<u8> {
     })
 }
 
-/// Decodes letters to bytes; none if there are other letters. Any group of four may be padded with `=`, as when several texts follow one another.
+/// Decodes letters to bytes; none if one of them does not belong to Base64. Any group of four may be padded with `=`, as when several texts follow
+/// one another.
 pub fn decode(letters: &[u8]) -> Option<Vec<u8>> {
     decode_up_to(letters, usize::MAX).map(|found| found.0)
 }

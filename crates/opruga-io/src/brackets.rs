@@ -46,7 +46,7 @@ pub(crate) fn unclosed(text: &str) -> Option<Unclosed> {
                 continue;
             }
             b'[' | b'{' => open.push(at),
-            // A bracket that closes nothing is an error of its own line.
+            // A bracket that closes nothing is an error in its own line.
             b']' | b'}' => _ = open.pop(),
             _ => {}
         }

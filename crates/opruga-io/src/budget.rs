@@ -1,4 +1,4 @@
-//! Limits of the work that a file may ask for, in cases where a small file can ask for a lot.
+//! Limits on the work that a file may ask for, in cases where a small file can ask for a lot.
 //!
 //! The time and memory for most files are proportional to their size in bytes, which is itself limited. The items listed here can grow faster: points
 //! of curves, elements and triangles that are named repeatedly, short texts that expand to long ones, and compressed data. Each limit is far above
@@ -35,7 +35,7 @@ terms! {
 }
 
 messages! {
-    /// A request of a file beyond a limit; the code is that of the limit.
+    /// A request of a file that exceeds a limit. The error has the code of the limit.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum LimitError {
         "part.limit" #[error("the file requires {count} {what} or more")] #[value("{count}")] #[allowed("at most {most} {what}")]
@@ -54,7 +54,8 @@ pub(crate) struct Limit {
     what: Counted,
 }
 
-/// Closed curves of a drawing, a map, a text or a picture, each of which is a part of a body. A chessboard of pixels, or noise, has a million.
+/// Closed curves of a drawing, a map, a text or a picture, each of which is a part of a body. A picture of a chessboard of pixels, or of noise, has a
+/// million of them.
 pub(crate) const OUTLINES: Limit = Limit { code: "limit.outlines", most: 1 << 16, what: Counted::Outlines };
 
 /// Points of these curves. If points are repeated by `use`, by arcs of a topology or by letters, they count every time. A curve counts as the points
@@ -64,7 +65,8 @@ pub(crate) const POINTS: Limit = Limit { code: "limit.points", most: 1 << 21, wh
 /// Pixels of a picture. They are read row by row; only contours are kept.
 pub(crate) const PIXELS: Limit = Limit { code: "limit.pixels", most: 1 << 26, what: Counted::Pixels };
 
-/// Elements of a drawing, counted as often as `use` draws them: elements that each use another one twice could draw nothing 2⁶⁰ times.
+/// Elements of a drawing, counted as often as `use` draws them: in a chain of 61 elements, each of which uses the next one twice, the last one is
+/// drawn 2⁶⁰ times.
 pub(crate) const ELEMENTS: Limit = Limit { code: "limit.elements", most: 1 << 19, what: Counted::Elements };
 
 /// Bytes to which the entities of an XML file, or the parts of composite letters, expand.
@@ -73,21 +75,21 @@ pub(crate) const EXPANSION: Limit = Limit { code: "limit.expansion", most: 1 << 
 /// Comparisons of style sheet rules with elements.
 pub(crate) const RULES: Limit = Limit { code: "limit.rules", most: 1 << 26, what: Counted::Rules };
 
-/// Vertices, or corners of triangles, of a glTF file beyond those that the file contains, because they are drawn repeatedly; also the parts of its
-/// meshes.
+/// Vertices, or corners of triangles, that a glTF file draws beyond those that it contains, because it draws some of them repeatedly. The parts of
+/// its meshes count, too.
 pub(crate) const INSTANCES: Limit = Limit { code: "limit.instances", most: 1 << 22, what: Counted::Vertices };
 
 /// Numbers in the arrays of a compressed file, besides [`NUMBERS_PER_BYTE`] for each of its bytes.
 pub(crate) const NUMBERS: Limit = Limit { code: "limit.numbers", most: 1 << 20, what: Counted::Numbers };
 
-/// A compressed mesh takes about one byte for one or two numbers, or one byte for a thousand numbers that are zero.
+/// The numbers that a file may have for each of its bytes. A compressed mesh has about one or two, or a thousand if they are zero.
 pub(crate) const NUMBERS_PER_BYTE: u64 = 8;
 
 /// Values of cells, numbers of nodes, and cells in groups. The count is the number of names times the number of cells, even if a file omits most
 /// values.
 pub(crate) const VALUES: Limit = Limit { code: "limit.values", most: 1 << 25, what: Counted::Values };
 
-/// The largest number of omitted things that are listed; the rest are counted.
+/// The largest number of omitted parts that are listed; the rest are only counted.
 pub(crate) const NOTICES: usize = 50;
 
 impl Limit {

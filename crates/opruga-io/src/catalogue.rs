@@ -34,7 +34,7 @@ pub(crate) fn dimensions(kind: &[&'static Spec]) -> Vec<usize> {
     dimensions
 }
 
-/// The fields of a kind in their order, one for each name and meaning, with the specifications that have it.
+/// The fields of a kind in their order, one for each name and meaning, each with the specifications that have this field.
 pub(crate) fn fields(kind: &[&'static Spec]) -> Vec<(&'static Field, Vec<&'static Spec>)> {
     let mut fields: Vec<(&'static Field, Vec<&'static Spec>)> = Vec::new();
     for spec in kind {

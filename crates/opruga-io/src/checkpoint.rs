@@ -1,4 +1,4 @@
-//! The container of a checkpoint: the scene itself and the state of the world, checked byte by byte.
+//! The container of a checkpoint: the scene itself and the state of the world, with checksums over every byte.
 //!
 //! ```text
 //! 0   8  "OPRUGA\x1a\n"         magic: refuses texts and files that a transfer has changed
@@ -56,7 +56,7 @@ messages! {
 }
 
 impl CheckpointError {
-    /// A stable word for programs.
+    /// The code of the error: a stable word that programs can rely on.
     pub fn code(&self) -> &'static str {
         opruga_math::message::Message::code(self)
     }

@@ -14,7 +14,7 @@ use toml::de::{DeTable, DeValue};
 pub(crate) enum Location {
     /// The range of bytes in the scene.
     Bytes(usize, usize),
-    /// In the override of this number.
+    /// In the override with this number.
     Override(usize),
 }
 
@@ -248,7 +248,7 @@ fn node(value: Spanned<DeValue<'_>>) -> Node {
     Node { location, data }
 }
 
-/// Parses the value of an override: a TOML value or a bare word. The limits of its depth and size are those of a value in a scene.
+/// Parses the value of an override: a TOML value or a bare word. Its depth and size have the same limits as those of a value in a scene.
 ///
 /// # Errors
 /// `set.value`, `scene.depth` or `scene.too_large`, without a location.

@@ -1,6 +1,6 @@
-//! Limits of the cost of a scene.
+//! Limits on the cost of a scene.
 
-/// Limits of the cost of a scene, checked before anything is allocated.
+/// Limits on the cost of a scene, checked before anything is allocated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limits {
     /// The largest scene file [bytes].

@@ -1,4 +1,4 @@
-//! The folder that a run writes to: its lock, and files that get their names together.
+//! The folder that a run writes to. It is locked, and several of its files can be replaced together.
 
 use crate::aside::{aside_name, is_the_file, remove_the_dead};
 use crate::safe_write::{
@@ -30,7 +30,7 @@ pub struct OutputFolder {
 /// A prepared change of the folder.
 #[derive(Debug)]
 enum Change {
-    /// Gives a file its name; before that, the file that has the name now gets the second one.
+    /// Gives a file its name. If there is a second name, the file that had the name before is kept under it.
     Name { file: Aside, second: Option<PathBuf> },
     /// Removes a file.
     Remove(PathBuf),
@@ -82,7 +82,7 @@ impl OutputFolder {
         let mut lock = open().map_err(|e| cannot(Doing::Written, &e))?;
         let mut locked = lock.try_lock();
         while locked.is_ok() && !is_the_file(&lock, &path.join(LOCK)) {
-            // The last owner of the lock has just removed its file, so no one else would find the lock that is taken here.
+            // The previous owner has just removed the file of the lock. A lock on a removed file keeps no other process out.
             lock = open().map_err(|e| cannot(Doing::Written, &e))?;
             locked = lock.try_lock();
         }
@@ -164,8 +164,8 @@ impl OutputFolder {
     }
 }
 
-/// Changes of a folder that are all made one right after the other once all of them are ready. If the disk fills up before that, everything stays as
-/// it was.
+/// Changes to a folder. They are made right after one another, but only once all of them are ready. If the disk fills up before that, everything
+/// stays as it was.
 #[derive(Debug)]
 #[must_use = "nothing changes before the end"]
 pub struct Together<'a> {
@@ -238,7 +238,7 @@ fn keep(from: &Path, to: &Path) -> Result<(), WriteError> {
     }
     let aside = to.with_file_name(aside_name(to.file_name().unwrap_or_default()));
     let _ = fs::remove_file(&aside);
-    // Some file systems do not support second names; there the file is copied.
+    // Some file systems do not support two names for one file; there the file is copied.
     let copied = || fs::copy(from, &aside).and_then(|_| File::open(&aside)?.sync_all());
     let kept = fs::hard_link(from, &aside).or_else(|_| copied()).and_then(|()| fs::rename(&aside, to));
     kept.and_then(|()| sync_folder(folder_of(to))).map_err(|e| {

@@ -1,4 +1,4 @@
-//! Outputs that would destroy an input or each other: they are found before anything is computed, and refused even with `--force`.
+//! Finds outputs that would destroy an input or one another. They are refused before anything is computed, even with `--force`.
 //!
 //! `--force` lets a call replace the output of an earlier one. It does not let a call replace an input, because the lost file may be a drawing or a
 //! scene that cannot be computed again.
@@ -102,7 +102,7 @@ fn twice(path: &Path, one: &Use, other: &Use) -> WriteError {
 }
 
 impl Folder {
-    /// The path under which the command would write this file, if it would.
+    /// The path under which the command would write this file; none if it would not.
     fn goal(&self, file: &Found) -> Option<PathBuf> {
         if let (Some(folder), Some(name)) = (file.real.parent(), file.real.file_name().and_then(|name| name.to_str()))
             && folder == self.real
@@ -137,7 +137,8 @@ impl Found {
     }
 
     /// Whether two names mean the same file, or will once they are written. On many systems, names that do not exist yet and differ only by case or
-    /// by the Unicode form of their letters are the same file. Whether a system is of this kind shows only when it is too late.
+    /// by the Unicode form of their letters are the same file. Whether a system is of this kind would be known too late, so such names count as the
+    /// same file.
     fn would_be(&self, other: &Found) -> bool {
         let form = |found: &Found| crate::canonical::decomposed(&found.real.to_string_lossy().to_lowercase());
         self.is(other) || self.number.is_none() && other.number.is_none() && form(self) == form(other)

@@ -35,7 +35,7 @@ opruga_math::messages! {
 /// An error in a scene, with its location.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneError {
-    /// A stable word for programs, such as `scene.unknown_field`.
+    /// The code: a stable word that programs can rely on, such as `scene.unknown_field`.
     pub code: &'static str,
     /// What is wrong, in one sentence without a full stop.
     pub message: String,
@@ -269,8 +269,8 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// Notices about things that the scene itself asks for, or that are usual (such as a flat face with all of its corners). They are worth knowing, but
-/// are not errors when warnings are treated as errors.
+/// Notices about what the scene itself asks for, or about what is usual in files, such as concave faces. They are worth knowing, but do not become
+/// errors when warnings are treated as errors.
 const ASKED_FOR: [&str; 3] = ["shape.overlap", "shape.dropped", "mesh.concave_face"];
 
 impl Notice {

@@ -165,7 +165,7 @@ pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String,
     }
 }
 
-/// Converts the error with which a running command of a scene was refused: adds the location of the command and a hint for that command.
+/// Converts the error of a command of a scene that was refused during the run: adds the location of the command and a hint for that command.
 #[must_use]
 pub fn of_command(
     error: &WorldError,
@@ -256,7 +256,7 @@ fn location(root: &Node, path: &str, parameters: &[String]) -> Option<Location> 
     named.or_else(changed).or(location)
 }
 
-/// The location of a table is that of its key; that of another value is the value itself.
+/// A table is located at its key, any other value at the value itself.
 fn shown_at(entry: &Entry) -> Location {
     match entry.value.data {
         Data::Table(_) | Data::Array(_) => entry.location,

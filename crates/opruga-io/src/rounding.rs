@@ -23,7 +23,7 @@ opruga_math::messages! {
     }
 }
 
-/// Rounding above this fraction of the distance of neighbouring nodes is reported: strains and angles have errors of the same size.
+/// Rounding above this fraction of the distance between neighbouring nodes is reported: strains and angles have errors of the same size.
 const WARNED: f64 = 1e-3;
 /// Above this fraction the file is refused, because the shape has changed.
 const REFUSED: f64 = 0.1;
@@ -35,7 +35,7 @@ pub(crate) struct Stored {
     rounding: f64,
     /// The largest coordinate [m].
     farthest: f64,
-    /// The mean distance of neighbouring nodes [m].
+    /// The mean distance between neighbouring nodes [m].
     apart: f64,
     /// Whether numbers have 4 bytes.
     single: bool,
@@ -65,12 +65,12 @@ impl Stored {
         Stored { rounding: 0.5 * step, farthest, apart, single }
     }
 
-    /// The rounding as a fraction of the distance of neighbours; zero if there is no such distance.
+    /// The rounding as a fraction of the distance between neighbours; zero if there is no such distance.
     fn part(&self) -> f64 {
         if self.apart > 0.0 && self.apart.is_finite() { self.rounding / self.apart } else { 0.0 }
     }
 
-    /// Returns the part that has lost more, of two parts of a file.
+    /// Returns whichever of two parts of a file has lost more.
     pub(crate) fn worse(self, other: Stored) -> Stored {
         if other.part() > self.part() { other } else { self }
     }

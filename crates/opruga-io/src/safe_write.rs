@@ -105,7 +105,7 @@ pub fn try_write(path: &Path, force: bool) -> Result<(), WriteError> {
     }
     safe_write(&trial, true, |w| w.write_all(b"opruga\n"))
         .and_then(|_| match fs::remove_file(&trial) {
-            // Another process that has started in this folder in the meantime has removed it.
+            // If the file no longer exists, a process that started in this folder in the meantime has removed it.
             Err(e) if e.kind() != io::ErrorKind::NotFound => Err(WriteError::failed(path, 7, &e)),
             _ => Ok(()),
         })

@@ -218,7 +218,7 @@ pub struct SolverSummary {
     pub accepted: u64,
     /// Number of steps that were divided into halves.
     pub halved: u64,
-    /// Number of real-time steps that may be less accurate than that setting promises.
+    /// Number of steps with `accuracy = "real_time"` that may be less accurate than this setting promises.
     pub cut_off: u64,
     /// The largest residual of such a step, as the displacement that it would cause if only one node could move [m].
     pub largest_left: f64,
@@ -241,7 +241,7 @@ pub struct MomentumSummary {
 /// A counted warning.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct WarningSummary {
-    /// A stable word for programs.
+    /// The code: a stable word that programs can rely on.
     pub code: String,
     /// One sentence.
     pub message: String,

@@ -83,7 +83,7 @@ impl Assembly<'_> {
 
     /// The dimension of the elements that make up the body.
     fn dimension<const D: usize>(&self) -> Result<usize, SceneError> {
-        // The first of them in the file.
+        // The first element of the highest dimension in the file.
         let Some(highest) = self.found.items.iter().rev().max_by_key(|item| item.kind.dimension()) else {
             return Err(self.file(SceneError::of(MeshFileError::NoElements {})));
         };

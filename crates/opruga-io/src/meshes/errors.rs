@@ -13,7 +13,7 @@ fn one(name: &ElementName) -> String {
     format!("{} {name}", if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
 }
 
-/// Says how many of the cells share the fault of the cell that is named.
+/// Returns a phrase with the number of cells that share the fault of the named cell; empty if there is only one.
 fn among(count: usize, cells: usize) -> String {
     if count == 1 { String::new() } else { format!(" ({count} of {cells} are)") }
 }
@@ -67,7 +67,7 @@ messages! {
         Two { first: &'static str, second: &'static str },
     }
 
-    /// Errors in words and numbers of any format; the code is that of the format.
+    /// Errors in words and numbers of any format. Each error gets the code of its format.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum ScanError {
         "part.scan" #[error("the file ends where {wanted} should follow")]

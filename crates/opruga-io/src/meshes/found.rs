@@ -98,11 +98,11 @@ pub(crate) struct Found {
     pub(crate) item_values: BTreeMap<String, Vec<f64>>,
     /// Named numbers and vectors of nodes; NaN for nodes without one.
     pub(crate) node_values: BTreeMap<String, NodeValues>,
-    /// The omitted parts, up to a number.
+    /// The first omitted parts, at most [`NOTICES`].
     notices: Vec<SceneError>,
     /// The number of omitted parts that are not listed.
     more: usize,
-    /// Values of items and nodes, and memberships in groups.
+    /// The number of values of items and nodes and of memberships in groups so far.
     given: u64,
     /// Whether the file holds coordinates of 4 bytes each.
     pub(crate) single: bool,
@@ -221,10 +221,12 @@ pub(super) fn is_kept(components: u64) -> bool {
     (1..=3).contains(&components)
 }
 
-/// The map from the numbers of a file to indices in a list.
+/// Maps the numbers that a file gives its nodes to their indices.
 pub(super) struct Numbers(Vec<(u64, u32)>);
 
 impl Numbers {
+    /// Sorts the numbers of the nodes of a file.
+    ///
     /// # Errors
     /// `mesh.duplicate_node` for a number that occurs twice.
     pub(super) fn of(found: &Found, scanner: &Scanner<'_>) -> Result<Numbers, SceneError> {
@@ -238,7 +240,7 @@ impl Numbers {
         Ok(Numbers(pairs))
     }
 
-    /// Returns the node whose number an element (or a value) names at a byte of the file.
+    /// Returns the node with a number that an element or a value names; `offset` is the byte at which the number is, for the error.
     ///
     /// # Errors
     /// `mesh.index`.

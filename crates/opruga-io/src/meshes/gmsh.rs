@@ -182,8 +182,8 @@ fn skip(scanner: &mut Scanner<'_>, section: &str, from: usize, found: &mut Found
     Ok(())
 }
 
-/// Reads `$ElementData`, a number for all or some elements, or `$NodeData`, a number or a vector for nodes; for the latter, the numbers of the nodes
-/// are given.
+/// Reads `$ElementData`, which has a number for all or some elements, or `$NodeData`, which has a number or a vector for nodes. `nodes` gives the
+/// numbers of the nodes for `$NodeData`.
 fn data(scanner: &mut Scanner<'_>, context: &mut Context, nodes: Option<&Numbers>) -> Result<(), SceneError> {
     let found = &mut context.found;
     let (section, number_of, there) = match nodes {

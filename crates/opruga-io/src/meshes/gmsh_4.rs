@@ -45,8 +45,7 @@ fn dimension(scanner: &mut Scanner<'_>) -> Result<(usize, usize), SceneError> {
     }
 }
 
-/// Reads a count of things that each take at least `bytes` bytes in binary, or two in a text. The last argument names the count and the counted
-/// things.
+/// Reads a count of items that each take at least `bytes` bytes in binary, or two in a text. The last argument names the count and the counted items.
 fn count(scanner: &mut Scanner<'_>, bytes: u64, [number, what]: [Expected; 2]) -> Result<usize, SceneError> {
     let (count, from) = long(scanner, number)?;
     scanner.fits(SIZE, count, if scanner.binary { bytes } else { 2 }, what, from)

@@ -1,4 +1,4 @@
-//! Meshes of other programs: nodes, elements of all kinds, groups, values of cells and nodes, from files and to files.
+//! Reads and writes mesh files of other programs: nodes, elements of all kinds, groups, and values of cells and nodes.
 //!
 //! ```text
 //! .msh (Gmsh 2.2, 4.1) ─┐
@@ -81,7 +81,7 @@ pub struct MeshFile<'a> {
     beside: Option<Beside>,
 }
 
-/// The second file of TetGen, to which positions may refer.
+/// The second file of a TetGen mesh. Positions in messages may refer to it.
 #[derive(Debug)]
 struct Beside {
     name: String,

@@ -27,7 +27,7 @@ pub(super) struct Scanner<'a> {
 }
 
 impl<'a> Scanner<'a> {
-    /// Makes a scanner of a text file; `comment` begins comments.
+    /// Makes a scanner for a text file; `comment` is the mark that begins comments.
     pub(super) fn new(file: &'a str, bytes: &'a [u8], comment: Option<u8>) -> Scanner<'a> {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Scanner { file, bytes, at, binary: false, big_endian: false, comment }
@@ -186,7 +186,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// The error for a word that is not a number of a range.
+    /// The error for a word that is not a number in the allowed range.
     pub(super) fn no_number(
         &self,
         code: &'static str,
@@ -204,7 +204,7 @@ impl<'a> Scanner<'a> {
         if x.is_finite() { Ok(x) } else { Err(self.error(ScanError::NotFiniteNumber { what, number: x }, from)) }
     }
 
-    /// Reads a count and refuses it if the rest of the file cannot hold that many things of at least `least` bytes each.
+    /// Reads a count and refuses it if the rest of the file cannot hold that many items of at least `least` bytes each.
     pub(super) fn fits(
         &self,
         code: &'static str,

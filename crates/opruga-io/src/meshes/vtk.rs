@@ -14,7 +14,7 @@ use crate::problem::{SceneError, visible};
 const SYNTAX: &str = "vtk.syntax";
 const SIZE: &str = "vtk.size";
 
-/// The kind of element for a cell type of VTK, and the order of its nodes: those of pixels and voxels are listed row by row.
+/// The kind of element for a cell type of VTK, and the order of its nodes: VTK lists the nodes of pixels and voxels row by row.
 pub(super) fn kind(number: u64) -> Option<(Kind, &'static [usize])> {
     Some(match number {
         1 => (Kind::Point, &[0]),

@@ -59,7 +59,7 @@ fn split(bytes: &[u8]) -> (Vec<u8>, Option<(&[u8], bool)>) {
     let Some(tag) = find(start, b">") else { return (bytes.to_vec(), None) };
     let raw = find(start, b"\"raw\"").is_some_and(|k| k < tag) || find(start, b"'raw'").is_some_and(|k| k < tag);
     let Some(mark) = find(tag, b"_") else { return (bytes.to_vec(), None) };
-    // Raw bytes may hold anything, so the closing tag is searched from the end.
+    // Raw bytes may hold anything, so the closing tag is searched for from the end.
     let close = b"</AppendedData>";
     let end = bytes.windows(close.len()).rposition(|w| w == close).filter(|end| *end > mark);
     let Some(end) = end else { return (bytes.to_vec(), None) };

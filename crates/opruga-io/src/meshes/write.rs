@@ -130,7 +130,7 @@ fn listed(nodes: &[u32], shift: u32) -> String {
     nodes.iter().map(|node| (node + shift).to_string()).collect::<Vec<_>>().join(" ")
 }
 
-/// Files that hold values of cells but no groups.
+/// The result for a format that holds values of cells but no groups.
 fn named_values<const D: usize>(ending: &'static str, bytes: Vec<u8>, mesh: &Mesh<D>) -> Written {
     let mut left_out = Vec::new();
     if !mesh.groups.is_empty() || !mesh.cell_groups.is_empty() {
@@ -385,7 +385,7 @@ fn references<const D: usize>(mesh: &Mesh<D>, left_out: &mut Vec<LeftOut>) -> Ve
     out
 }
 
-/// The notice of formats that cannot represent values of nodes.
+/// The notice for formats that cannot represent values of nodes.
 fn of_nodes<const D: usize>(mesh: &Mesh<D>) -> Option<LeftOut> {
     let count = mesh.node_values.len();
     (count > 0).then_some(LeftOut::ValuesOfNodes { count })
@@ -437,7 +437,7 @@ fn mfem<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
         let attribute = if reference == 0 { mesh.cell_groups.len() + 1 } else { reference };
         let _ = writeln!(out, "{attribute} {geometry} {}", listed(nodes, 0));
     }
-    // The faces of hexahedra are quadrilaterals, which the facets do not give. MFEM finds the boundary if it is not given.
+    // The boundary is left empty, because the facets of a mesh do not contain the quadrilateral faces of hexahedra. MFEM then finds it by itself.
     let _ = writeln!(out, "\nboundary\n0\n\nvertices\n{}\n{D}", mesh.nodes());
     for x in &mesh.positions {
         let words: Vec<String> = x.iter().map(|x| format!("{x:e}")).collect();

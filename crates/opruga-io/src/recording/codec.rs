@@ -1,8 +1,8 @@
-//! Encodes states as differences from the previous state: every eight bytes are treated as a whole number, of which only the part that differs is
-//! kept.
+//! Encodes states as differences from the previous state. Every eight bytes are treated as a whole number, and the upper bytes of its difference are
+//! omitted if they are zero.
 //!
-//! Neighbouring frames differ little, so the upper bytes of a difference are mostly zero and are omitted. The lower bytes are practically random, so
-//! a general compressor would gain nothing and would take ten times as long.
+//! Neighbouring frames differ little, so the upper bytes of a difference are mostly zero. The lower bytes are practically random, so a general
+//! compressor would gain nothing and would take ten times as long.
 
 /// Appends the code of a state: for every word, the number of bytes of its difference (four bits each); those bytes; then the bytes after the last
 /// whole word. `before` has the same length or is empty; if it is empty, the words themselves are encoded.

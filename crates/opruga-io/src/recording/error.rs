@@ -40,7 +40,7 @@ opruga_math::messages! {
 }
 
 impl RecordingError {
-    /// A stable word for programs.
+    /// The code of the error: a stable word that programs can rely on.
     pub fn code(&self) -> &'static str {
         opruga_math::message::Message::code(self)
     }

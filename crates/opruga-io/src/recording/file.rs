@@ -72,7 +72,7 @@ impl RecordingFile {
             lock(&locked)?;
             let target: Box<dyn Target + Send> = Box::new(wrap(file));
             let writer = Writer::new(target, header)?;
-            // Only a file that replaces another one must be on the disk before it does.
+            // A file that replaces another one must be on the disk before the replacement; others need not be.
             if replaces {
                 writer.sync()?;
             }
@@ -183,14 +183,14 @@ impl Drop for RecordingFile {
     }
 }
 
-/// Syncs a file to the disk every five seconds, on its own thread, because disks may take long for it.
+/// Syncs a file to the disk every five seconds, on its own thread, because this may take long.
 struct Syncing {
     stop: Sender<()>,
     thread: JoinHandle<io::Result<()>>,
 }
 
 impl Syncing {
-    /// Keeps the file, with its lock, until the end.
+    /// Starts the thread, which keeps the file and its lock until the end.
     fn begin(file: File, folder: &Path) -> io::Result<Syncing> {
         let (stop, stopped) = channel::<()>();
         let mut folder = Some(folder.to_path_buf());

@@ -46,7 +46,7 @@ impl Order {
         self.span.is_none_or(|span| (frame - span.first).is_multiple_of(self.every))
     }
 
-    /// Whether this is the next frame. There is none after a state that was kept before it was due: such a state ends the recording.
+    /// Whether this is the next frame. No frame follows a state that was kept before it was due: such a state ends the recording.
     pub(super) fn follows(&self, frame: u64) -> bool {
         self.span.is_some_and(|span| frame == span.last + 1 && self.due(span.kept)) && frame < u64::MAX
     }

@@ -190,7 +190,7 @@ impl<R: Read + Seek> Recording<R> {
         }
     }
 
-    /// The head of the chunk of a frame or input at an offset, up to a given frame, and the offset after the chunk.
+    /// The head of the chunk of a frame or input at an offset, and the offset after the chunk. A frame after `until` counts as damage.
     fn frame_chunk(&mut self, offset: u64, until: u64) -> Result<(ChunkHead, u64), RecordingError> {
         let damaged = RecordingError::Damaged { from: offset, to: offset + CHUNK as u64 };
         let head = self.chunk_head(offset)?.ok_or_else(|| damaged.clone())?;

@@ -332,10 +332,10 @@ fn of_wanted_cells<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>
     }
 }
 
-/// The smallest scale; powers of lengths up to the fourth are then not zero.
+/// The smallest scale for which the fourth power of a length does not become zero.
 const SHORTEST: f64 = 1e-70;
 
-/// Whether a number of a value exceeds the largest length allowed.
+/// Whether any number in a value exceeds the largest length allowed.
 fn is_vast(node: &Node) -> bool {
     match &node.data {
         Data::Number(x, _) => x.abs() > LONGEST,
@@ -375,7 +375,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     }
     let mesh: Mesh<D> = shape::mesh(reader, shape, draft.loaded.as_ref(), &transform, &shape_location)?;
     if mesh.positions.iter().flatten().any(|x| x.abs() > LONGEST) {
-        // Its own lengths are allowed.
+        // The lengths of the shape itself are within the limit.
         let key = if draft.node.get("scale").is_some() { "scale" } else { "shape" };
         let node = draft.node.get(key).unwrap_or(draft.node);
         let error = SceneError::of(BodyError::MadeVast { field: key, value: node.shown() });
@@ -383,7 +383,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
         return None;
     }
     let mut mesh = of_wanted_cells(reader, draft, mesh)?;
-    // Only the start needs them, so the body does not keep them.
+    // Values of nodes are needed only at the start, so the body does not keep them.
     let values = std::mem::take(&mut mesh.node_values);
     let node_velocities = match draft.velocities.of_nodes(&values, shape.spec(), &draft.rotation) {
         Ok(velocities) => velocities,

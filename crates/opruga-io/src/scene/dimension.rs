@@ -13,8 +13,7 @@ use opruga_world::schema;
 enum Dimension {
     /// 2 or 3.
     Known(usize),
-    /// Neither of them: the key that was written instead, which is empty if there is none, and the value that was probably
-    /// meant.
+    /// Neither 2 nor 3. The fields are the key that was written instead, which is empty if there is none, and the value that was probably meant.
     Wrong(String, Option<usize>),
 }
 
@@ -86,8 +85,7 @@ fn as_if(root: &Node, key: &str, dimension: usize) -> Node {
     root
 }
 
-/// Reports the errors that a scene has both in the plane and in space, because an error in only one of them may not be an
-/// error.
+/// Reports the errors that a scene has both in the plane and in space. An error that occurs in only one dimension may not be an error of this scene.
 fn wrong_in_both(reader: &mut Reader<'_>, root: &Node, key: &str) {
     let [plane, space] = [2, 3].map(|dimension| {
         let mut trial = Reader::new(reader.source, reader.catalogue, reader.options, Vec::new());

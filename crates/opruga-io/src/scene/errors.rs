@@ -11,7 +11,7 @@ fn are(count: usize) -> &'static str {
     if count == 1 { "is" } else { "are" }
 }
 
-/// Names the line of something.
+/// Returns a phrase that names a line; empty if the line is unknown.
 fn in_line(line: &Option<usize>) -> String {
     line.map_or_else(String::new, |line| format!(" in line {line}"))
 }

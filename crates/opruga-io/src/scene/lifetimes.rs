@@ -22,7 +22,7 @@ enum Asks {
     NeedsOneOf(Vec<usize>),
 }
 
-/// Commands with what they need of bodies, in the order of the file.
+/// Commands and what they require of bodies, in the order of the file.
 #[derive(Default)]
 pub(super) struct Lifetimes<'n> {
     asked: Vec<Asked<'n>>,

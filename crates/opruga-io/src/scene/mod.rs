@@ -62,7 +62,7 @@ pub struct Options {
     pub strict: bool,
     /// Overrides of parameters, each a path and a value, as `--set PATH=VALUE` gives them.
     pub overrides: Vec<(String, String)>,
-    /// Where the files are that the scene names. The default is that there are none.
+    /// The source of the files that the scene names. By default there are no files.
     pub files: Files,
 }
 
@@ -74,7 +74,7 @@ pub struct Reading {
     pub blueprint: Option<AnyBlueprint>,
     /// All errors that can be found at once, in the order of their locations.
     pub errors: Vec<SceneError>,
-    /// Unusual things in the scene.
+    /// Notices about anything unusual in the scene.
     pub notices: Vec<Notice>,
     /// The files that the scene names, by name. They are needed to read the scene again.
     pub files: BTreeMap<String, Arc<[u8]>>,
@@ -231,7 +231,8 @@ fn scene<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Option<Bluepri
     let loads =
         whole.loads.into_iter().filter_map(|load| Some(LoadBlueprint { body: sound_indices[load.body]?, ..load }));
     founded.then(|| Blueprint {
-        // Their pins are kept, because in statics nothing would hold a body without them. A pin that selects nonexistent nodes holds nothing.
+        // Bodies keep all of their pins, because in statics nothing would hold a body without them. A pin that selects nonexistent nodes holds
+        // nothing.
         bodies: whole.bodies.into_iter().zip(&sound_indices).filter_map(|(body, index)| index.map(|_| body)).collect(),
         colliders: sound_colliders,
         loads: loads.collect(),

@@ -4,15 +4,15 @@ use crate::problem::{SceneError, visible};
 use opruga_world::validity::NameFault;
 use std::collections::BTreeMap;
 
-/// The things that have the names.
+/// What a name belongs to.
 #[derive(Clone, Copy)]
 pub(super) enum What {
     Bodies,
     Probes,
 }
 
-/// The names of one type of thing so far. `é` is one character (U+00E9) or two (U+0065 U+0301), which look the same in print. Two bodies whose names
-/// differ only in this could not be told apart, so both forms count as the same name.
+/// The names that bodies, or probes, have so far. `é` is one character (U+00E9) or two (U+0065 U+0301), which look the same in print. Two bodies
+/// whose names differ only in this could not be told apart, so both forms count as the same name.
 pub(super) struct Names<P> {
     what: What,
     /// The decomposed form (NFD) of a name → the first name with that form as it was written, and its location.
@@ -20,7 +20,7 @@ pub(super) struct Names<P> {
 }
 
 impl<P> Names<P> {
-    /// No names yet.
+    /// Makes an empty list of names.
     pub(super) fn of(what: What) -> Names<P> {
         Names { what, seen: BTreeMap::new() }
     }

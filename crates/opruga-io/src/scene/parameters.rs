@@ -12,7 +12,7 @@ use opruga_core::spec::{Allowed, Field, Spec, Value, Values, nearest};
 use opruga_world::blueprint::ColliderBlueprint;
 use opruga_world::schema;
 
-/// The things that paths may name.
+/// What the path of a parameter may name.
 pub(crate) struct Known<'a, const D: usize> {
     pub(crate) bodies: &'a Bodies<D>,
     /// Names of bodies that commands add.

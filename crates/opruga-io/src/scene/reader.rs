@@ -408,7 +408,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Joins words to a list in a sentence, each once.
+/// Joins words into a list for a sentence, each word once.
 pub(crate) fn listed<'w>(words: impl Iterator<Item = &'w str>) -> String {
     let mut seen = BTreeSet::new();
     words.filter(|word| seen.insert(*word)).collect::<Vec<_>>().join(", ")

@@ -92,7 +92,7 @@ impl Outline {
     }
 }
 
-/// Applies size, overlaps, holes and spacing as the scene asks for.
+/// Applies the size, spacing, and treatment of overlaps and holes that the scene asks for.
 pub(super) fn loaded(mut drawing: Drawing<'_>, shape: &Values) -> Result<Loaded, Problem> {
     let spacing = shape.number("spacing").unwrap_or(1.0);
     let size = shape.number("size").unwrap_or(1.0);

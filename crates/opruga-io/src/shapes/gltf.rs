@@ -62,7 +62,7 @@ struct Reader<'a, 's, 'o, 'f> {
     placed: Vec<bool>,
     /// Meshes that have been read.
     meshes: BTreeMap<usize, Rc<Parts<'a>>>,
-    /// Rows of accessors that have been drawn, and texts that have been parsed again.
+    /// The work so far: the number of rows of accessors that have been drawn, plus a share for texts that have been parsed again.
     drawn: u64,
     others: usize,
     /// Number of nodes whose vertices would follow bones.

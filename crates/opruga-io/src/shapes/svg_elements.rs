@@ -102,7 +102,7 @@ impl Reader<'_, '_> {
     pub(super) fn rectangle(&self, node: Node<'_, '_>, curves: &mut Curves) -> Result<(), SceneError> {
         let (x, y) = (self.number(node, "x", 0.0)?, self.number(node, "y", 0.0)?);
         let (w, h) = (self.size(node, "width")?, self.size(node, "height")?);
-        // One radius is used for both.
+        // If only one radius is given, it is used for both.
         let (rx, ry) = (self.size(node, "rx")?, self.size(node, "ry")?);
         let rx = if node.has_attribute("rx") { rx } else { ry };
         let ry = if node.has_attribute("ry") { ry } else { rx };

@@ -22,7 +22,7 @@ pub(super) struct Fill {
     fill_opacity: f64,
     /// The fill rule.
     rule: Rule,
-    /// Whether rules of style sheets may apply to it, or to an element around it, although this cannot be decided.
+    /// Whether a rule of a style sheet may apply to the element, or to an element around it, but the reader cannot decide if it does.
     styled: bool,
 }
 
@@ -45,7 +45,7 @@ pub(super) struct Fills<'a, 'd> {
     pub(super) painted: Vec<Option<[u8; 4]>>,
     /// The number of elements that are filled with a gradient.
     pub(super) gradients: usize,
-    /// The number of parts to which rules of style sheets may apply, although this cannot be decided.
+    /// The number of parts for which the reader cannot decide whether a rule of a style sheet applies.
     pub(super) styled: usize,
     /// The fill rule of every part of the drawing.
     pub(super) rules: Vec<Rule>,

@@ -196,7 +196,7 @@ impl Sheets {
         found
     }
 
-    /// Whether a rule may apply to an element although this cannot be decided.
+    /// Whether some rule may apply to an element, but the reader cannot decide if it does.
     ///
     /// # Errors
     /// `svg.style` for a rule that changes outlines.

@@ -156,7 +156,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Applies welding, checks, orientation, size and filling as the scene asks for.
+/// Applies the welding, checks, orientation, size and filling that the scene asks for.
 pub(super) fn loaded(
     mut found: Triangles,
     file: &str,

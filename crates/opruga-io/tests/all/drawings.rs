@@ -190,7 +190,7 @@ fn parts_that_overlap_are_joined_where_the_scene_says_so() {
         plane(&shape, "a.svg", text.as_bytes()).map(|(mesh, _)| area(&mesh))
     };
     assert!((of("overlap = \"union\"").expect("a union") - 7.0).abs() < 1e-6);
-    // The two remaining parts touch at two corners, and are apart there.
+    // The two remaining parts touch at two corners, where they are separated.
     assert!((of("overlap = \"even_odd\"").expect("two angles") - 6.0).abs() < 1e-6);
     let refused: SceneError = of("filling = \"triangles\"").expect_err("they cross")[0].clone();
     assert!(refused.hint.is_some_and(|hint| hint.contains("union")));
@@ -315,7 +315,7 @@ fn polygons_of_maps_are_found_by_name_with_holes_and_islands() {
     assert_eq!((error.code, error.hint.as_deref()), ("map.unknown_feature", None));
     let error = &map(&text, ", feature = \"Island\"").expect_err("misspelt")[0];
     assert_eq!((error.code, error.hint.as_deref()), ("map.unknown_feature", Some("did you mean `Islands`?")));
-    // The two overlap.
+    // The ring and the islands overlap.
     assert_eq!(map(&text, flat).expect_err("they touch")[0].code, "shape.crossing");
     let (area, _, notices) = map(&text, &format!("{flat}, overlap = \"union\"")).expect("a union");
     assert!((area - 12.0).abs() < 1e-6, "{area}");

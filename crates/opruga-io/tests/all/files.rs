@@ -40,7 +40,7 @@ fn a_failing_disk_leaves_the_old_file_whole() {
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
-/// A writer of something at the end of a run.
+/// Writes one of the outputs of a run.
 type Writer = Box<dyn Fn(&mut dyn Write) -> std::io::Result<()>>;
 
 /// All writers of outputs, with enough contents to be interrupted anywhere.
@@ -246,7 +246,7 @@ fn a_second_name_keeps_the_older_file() {
     std::fs::remove_dir_all(folder).expect("the folder is there");
 }
 
-/// Row 83: of files that belong together, either all change or none.
+/// Row 83: files that belong together change all at once or not at all.
 #[test]
 fn files_that_belong_together_change_together() {
     let folder = folder("together");

@@ -105,7 +105,7 @@ fn clip_paths_that_cut_nothing_off_are_taken() {
         assert!(error.code == "svg.unsupported" && error.message.contains(message), "{name}: {error}");
         assert!(error.value.is_some() && error.line == Some(2), "{name}: {error}");
     }
-    // By the non-zero rule, the default for clip paths, the same hole is none.
+    // By the non-zero rule, which is the default for clip paths, the same hole is filled.
     assert!(area_of(&format!("{}{clipped}", clip(&format!("{wound}/>")))).is_ok());
     let nobody = area_of(&clipped).expect_err("no such clip path");
     assert_eq!(nobody.code, "svg.unknown_id");
@@ -147,7 +147,7 @@ fn style_sheets_are_followed_where_their_selectors_fit() {
         // For rules with other selectors it is only known that they may apply to the square.
         ("<style>.b { display: none } rect:hover { fill: red }</style>", &["svg.hidden", "svg.style"]),
     ] {
-        // The element that the sheet hides exists in the cases in which the sheet names it.
+        // The drawing has the hidden element only if the sheet names it.
         let hidden = if inside.contains(".b") { format!("<g>{other}</g>") } else { String::new() };
         let (area, codes) = area_of(&format!("{inside}{hidden}{square}")).unwrap_or_else(|e| panic!("{inside}: {e}"));
         assert!((area - 4.0).abs() < 1e-9 && codes == told, "{inside}: {area}, {codes:?}");

@@ -146,7 +146,7 @@ fn files_that_contradict_themselves_are_refused_with_their_line_and_value() {
     }
 }
 
-/// Whichever of the TetGen files is named, an error points at the file in which it is.
+/// Whichever of the two TetGen files is named, an error points at the file that contains the fault.
 #[test]
 fn errors_of_tetgen_point_at_the_file_of_the_nodes_or_of_the_elements() {
     for (node, ele, code, file, line, value) in [

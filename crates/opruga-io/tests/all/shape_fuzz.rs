@@ -61,7 +61,7 @@ static SAMPLES: LazyLock<Vec<Sample>> = LazyLock::new(|| {
     corpus.chain(larger).collect()
 });
 
-/// The sample of a number, whatever the number is.
+/// The sample for a number; every number has one.
 fn sample(number: usize) -> &'static Sample {
     &SAMPLES[number % SAMPLES.len()]
 }

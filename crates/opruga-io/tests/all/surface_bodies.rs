@@ -71,7 +71,7 @@ fn what_is_mended_is_counted() {
     assert_eq!(notices, told("mesh.welded", "28"));
 }
 
-/// Rows 26 and 38: unusual things that may be intended are counted, with the worst of them and a guess at the unit.
+/// Rows 26 and 38: unusual features that may be intended are counted, with the worst of them and a guess at the unit.
 #[test]
 fn slivers_and_odd_scales_are_told() {
     let codes = |text: &str, more: &str| -> Vec<(&'static str, Option<String>)> {

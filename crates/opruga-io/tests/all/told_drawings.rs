@@ -75,7 +75,7 @@ fn elements_of_other_languages_are_no_part_of_a_drawing() {
     }
 }
 
-/// The fraction of its area that an outline loses because of its spacing, and of its points: corners and ends of curves count once each.
+/// The fractions of its area and of its points that an outline loses because of its spacing. Corners and ends of curves count as one point each.
 #[test]
 fn what_an_outline_loses_to_its_spacing_is_told_in_figures() {
     let of = |inside: &str, spacing: f64| {

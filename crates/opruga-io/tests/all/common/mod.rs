@@ -96,7 +96,7 @@ pub(crate) fn errors(text: &str) -> Vec<SceneError> {
 pub(crate) const HEAD: &str =
     "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\n[integrator]\nkind = \"symplectic_euler\"\n";
 
-/// A body to which other things can be added.
+/// A body to which other parts of a scene can be added.
 pub(crate) const BALL: &str = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 1.0, vertices = 8 }\nmass = 1.0\nmodels = [{ kind = \"mass_spring\", stiffness = 10 }]\n";
 
 /// A scene with all features.

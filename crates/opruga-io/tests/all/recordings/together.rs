@@ -74,7 +74,7 @@ fn hashes_come_back_in_any_order() {
     }
 }
 
-/// Row 82: the same for hashes.
+/// Row 82: a flipped bit in chunks of hashes is an error or is reported, and no hash or state is ever wrong.
 #[test]
 fn a_flipped_bit_among_hashes_is_found() {
     let good = in_memory(60..77);
