@@ -157,7 +157,7 @@ fn read(path: &Path, registries: &Registries) -> Result<(SavedRun, Source), Box<
 enum Older {
     /// It belongs to this run: it is kept as the previous one.
     Keep,
-    /// It belongs to this run, but the run was resumed from the previous one, which stays.
+    /// It belongs to this run, but the run was resumed from the previous checkpoint, which therefore stays.
     Leave,
     /// It belongs to another run: both it and the previous one are removed.
     Remove,

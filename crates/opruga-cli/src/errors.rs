@@ -138,7 +138,7 @@ opruga::math::messages! {
         "part.crossing" #[error("one of the bodies `{body}` and `{other}` lies inside the other")]
         Inside { body: String, other: String },
     }
-    /// The result of a check of a run.
+    /// Why a check of a run has failed.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CheckFault {
         "contact.crossed" #[error("at t = {} s {crossing}", number(*time))]

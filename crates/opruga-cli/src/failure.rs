@@ -22,13 +22,13 @@ pub(crate) enum Failure {
     Draw(DrawError),
     /// stdout cannot be written.
     Output(OutputError),
-    /// The call is invalid.
+    /// A check has failed.
     Check(CheckFault),
-    /// Ctrl-C or a termination signal; the files are closed.
+    /// The call is invalid.
     Call(AnyMessage),
-    /// The reader of the output has closed the pipe.
+    /// Ctrl-C or a termination signal; the files are closed.
     Interrupted,
-    /// An argument that is out of its range.
+    /// The reader of the output has closed the pipe.
     ClosedPipe,
 }
 
@@ -62,17 +62,18 @@ impl From<Vec<SceneError>> for Failure {
 }
 
 impl Failure {
-    /// An invalid call.
+    /// Makes the failure for an argument that is out of its range.
     pub(crate) fn range(option: &'static str, value: impl core::fmt::Display, allowed: CallRange) -> Failure {
         Failure::call(CallFault::OutOfRange { option, value: value.to_string(), allowed })
     }
 
-    /// A call that makes no sense.
+    /// Makes the failure for an invalid call.
     pub(crate) fn call(fault: impl Into<AnyMessage>) -> Failure {
         Failure::Call(fault.into())
     }
 
-    /// The codes are: 1 a check failed · 2 bad call or content · 3 diverged · 4 reading or writing failed · 130 interrupted.
+    /// Returns the exit code: 1 if a check failed, 2 for an invalid call or invalid contents, 3 if the run diverged, 4 if reading or writing failed,
+    /// 130 if the run was interrupted.
     pub(crate) fn exit_code(&self) -> u8 {
         match self {
             Failure::Scene(errors) => errors.first().map_or(2, |e| e.exit_code() as u8),

@@ -37,7 +37,7 @@ pub(crate) fn asked_to_stop() -> &'static AtomicBool {
     &STOP
 }
 
-/// Lets another program report the end, or no longer.
+/// Sets whether another program reports the end instead of this one.
 pub(crate) fn leave_the_word(to_another: bool) {
     SILENT.store(to_another, Ordering::SeqCst);
 }

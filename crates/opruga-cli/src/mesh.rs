@@ -217,7 +217,7 @@ fn finish<const D: usize>(
         left_out = mesh.left_out;
     }
     if call.strict {
-        // Things that the call asks for are reported, but are not errors.
+        // Notices about what the call itself asks for are reported, but are not errors.
         let odd = notices.iter().filter(|notice| !Notice::is_asked_for(notice.about.code));
         let of_format = left_out.iter().map(|what| {
             let error = SceneError::of(NotInFormat::LeftOutOfFormat { what: what.clone() });
@@ -231,7 +231,7 @@ fn finish<const D: usize>(
     if let Some(path) = picture_of(call, out.as_ref()) {
         written.push((path, drawn(&mesh, &call.input)?));
     }
-    // All of them or none.
+    // No file is written unless all of them can be written.
     written.iter().try_for_each(|(path, _)| try_write(path, call.force))?;
     let mut files = Vec::new();
     for (path, bytes) in &written {

@@ -99,8 +99,8 @@ impl Run<'_> {
         self.table.rows().map(|row| row[index]).fold(0.0, f64::max)
     }
 
-    /// The energies. An energy that hardly changes compared with its size is drawn relative to its initial value, because its zero has no meaning and
-    /// would flatten the other lines.
+    /// The energies. An energy that hardly changes compared with its size is drawn relative to its initial value, because its zero has no meaning,
+    /// and its size would flatten the other lines.
     fn energies(&self) -> Vec<Line> {
         let mut lines = self.named(&["kinetic", "elastic", "gas", "gravity"]);
         for line in &mut lines {

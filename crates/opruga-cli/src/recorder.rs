@@ -77,9 +77,9 @@ pub(crate) struct Recorder {
 struct Rows {
     /// The number of frames from one row to the next.
     apart: u64,
-    /// The size of a table with a row for every frame, if it exceeds the limit for tables that were not requested [bytes].
+    /// The size of a table with a row for every frame [bytes], if the call does not choose the rows and this size exceeds the limit.
     too_many: Option<u64>,
-    /// The last frame that has one.
+    /// The last frame that has a row.
     last: Option<u64>,
     left_out: u64,
 }

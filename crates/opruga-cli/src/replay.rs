@@ -160,7 +160,7 @@ impl Job<'_> {
         let same = verified["pass"] == true;
         match folder.filter(|_| same) {
             Some(folder) => {
-                // The recording is played from its first frame again, in a world that does not depend on the last one.
+                // The recording is played from its first frame again, in a new world that does not depend on the one used for the comparison.
                 let (again, _) = recordings::open(&self.call.file, &self.source.registries)?;
                 self.show(&mut *build(blueprint)?, &mut play(again)?, stop, Some((folder, verified)))
             }

@@ -105,7 +105,7 @@ fn folder_of(call: &Run, source: &Source) -> PathBuf {
     call.out.clone().unwrap_or_else(|| default_folder(&source.name))
 }
 
-/// Refuses a call whose output would replace an input, or one output another.
+/// Refuses a call if one of its outputs would replace an input or another output.
 fn outputs_apart(call: &Run, source: &Source, reading: &scene::Options, files: &[&String]) -> Result<(), Failure> {
     let folder = folder_of(call, source);
     let mut uses = uses::of_scene(source, &reading.files, files.iter().copied());
@@ -318,12 +318,12 @@ impl Progress {
     }
 }
 
-/// The recording cannot continue, so the run ends; its state is kept, so that it can be resumed elsewhere.
+/// The failure if the recording cannot continue: the run ends, and its state is kept so that it can be resumed elsewhere.
 fn unrecorded(error: WriteError) -> Failure {
     Failure::Write(error.advice(TapeHint::RunEnded))
 }
 
-/// Nothing remains to be computed: the checkpoint is at the end of the run or after it.
+/// The failure if nothing remains to be computed, because the checkpoint is at the end of the run or after it.
 fn at_the_end(saved: &SavedRun, seconds: f64) -> Failure {
     Failure::call(CallFault::NothingLeft { time: saved.time, end: seconds })
 }

@@ -105,7 +105,7 @@ fn write_report(folder: &OutputFolder, rows: &[Row]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// For people.
+/// The list of the cases by family, for people.
 fn list(cases: &[&Case]) -> String {
     let mut text = String::new();
     for family in Family::ALL {

@@ -71,7 +71,7 @@ fn again_and_again(
             let outcome = work();
             match &outcome {
                 Err(Failure::ClosedPipe) => interrupt::stop_work(),
-                // It was stopped by the change.
+                // The work was stopped by the change.
                 Err(Failure::Interrupted) => {}
                 Err(failure) => failure.print(json),
                 Ok(_) => {}

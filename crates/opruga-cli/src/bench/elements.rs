@@ -29,7 +29,7 @@ struct Row {
     forces: Vec<(&'static str, f64)>,
     hessian: f64,
     clamped_hessian: f64,
-    /// The ratio to the forces of the row with which this one is compared, with the best instructions.
+    /// The time of the forces divided by that of the row with which this one is compared, both with the best vector instructions.
     #[serde(skip_serializing_if = "Option::is_none")]
     ratio: Option<f64>,
 }
@@ -53,7 +53,7 @@ fn materials(spec: &Spec) -> &'static [&'static str] {
     }
 }
 
-/// Measures and prints.
+/// Measures all rows and prints them.
 pub(crate) fn bench(call: &BenchElements, registries: &Registries) -> Result<u8, Failure> {
     let model = registries.space.model("fem").ok_or_else(|| Failure::call(CallFault::NoModel { name: "fem" }))?;
     let names = materials(model.spec());
@@ -163,7 +163,7 @@ fn survey(registries: &Registries, boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: 
 }
 
 impl Row {
-    /// With the best vector instructions.
+    /// The time of the forces with the best vector instructions.
     fn best(&self) -> f64 {
         self.forces.iter().map(|(_, time)| *time).fold(f64::INFINITY, f64::min)
     }
@@ -205,7 +205,7 @@ fn times<const D: usize>(solid: &dyn Potential<D>, mesh: &Mesh<D>, elements: usi
     let nodes = mesh.positions.len();
     let column_length = Layout::Single.index_count(nodes);
     let v = Columns::<D>::zeros(column_length);
-    // Two alternating states, because a model may reuse its results for the last one.
+    // Two alternating states, because a model may reuse its results for the previous one.
     let mut states = [Columns::<D>::zeros(column_length), Columns::<D>::zeros(column_length)];
     for (k, p) in mesh.positions.iter().enumerate() {
         let across = p.get(2).copied().unwrap_or(0.0);

@@ -24,7 +24,7 @@ pub(crate) struct Spent {
 }
 
 impl Spent {
-    /// Both, in milliseconds.
+    /// The times of forces and of matrices [ms].
     pub(crate) fn milliseconds(&self) -> [f64; 2] {
         [&self.forces, &self.matrices].map(|time| time.load(Ordering::Relaxed) as f64 * 1e-6)
     }

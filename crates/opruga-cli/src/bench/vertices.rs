@@ -172,7 +172,7 @@ pub(crate) fn time(
     })
 }
 
-/// Time of a pack of square roots and divisions [ns].
+/// Time of eight square roots and divisions, which are computed together [ns].
 fn calibration(simd: Simd) -> f64 {
     let mut numbers = vec![1.5; 1024];
     let mut packs = 0;

@@ -156,7 +156,7 @@ fn a_damaged_checkpoint_offers_the_one_before_it() {
         assert!(!folder.join("x").exists());
     };
     for bytes in [flipped, good[..good.len() - 1].to_vec(), b"notes".to_vec()] {
-        // It is a separate file: for a moment the two names may mean the same file.
+        // The file is removed first: its name and that of the previous checkpoint may mean the same file for a moment.
         std::fs::remove_file(&path).expect("a file");
         std::fs::write(&path, &bytes).expect("a file");
         refused(true, 2);
@@ -207,7 +207,7 @@ fn a_checkpoint_that_cannot_be_written_does_not_end_the_run() {
     let child = endless(folder);
     let checkpoint = folder.join("o/checkpoint");
     until("no checkpoint is written", || checkpoint.is_file());
-    // A folder has its name until one checkpoint has failed.
+    // A folder has the name of the checkpoint until writing a checkpoint has failed.
     until("the place is never free", || {
         let _ = std::fs::remove_file(&checkpoint);
         std::fs::create_dir(&checkpoint).is_ok()
@@ -230,8 +230,8 @@ fn a_checkpoint_that_cannot_be_written_does_not_end_the_run() {
     assert!(warning["count"].as_u64().is_some_and(|n| n >= 1), "{warning}");
 }
 
-/// Row 88: a clock that jumps, here because the process is stopped as on a sleeping laptop, changes neither the simulated time nor any bits; nor does
-/// the interval of the checkpoints.
+/// Row 88: a clock that jumps, here because the process is stopped as on a sleeping laptop, changes neither the simulated time nor any bits. The
+/// interval of the checkpoints does not change them either.
 #[test]
 fn a_run_that_is_put_to_sleep_computes_the_same() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -155,7 +155,7 @@ fn bad_output_paths_are_found_before_the_run() {
     }
 }
 
-/// Row 85: existing files stay without --force, all of them, and the text says how to continue.
+/// Row 85: without --force, all existing files stay, and the message explains how to continue.
 #[test]
 fn old_output_is_not_replaced_unasked() {
     let folder = tempfile::tempdir().expect("a folder");

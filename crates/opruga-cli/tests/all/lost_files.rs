@@ -155,7 +155,7 @@ fn what_a_killed_process_leaves_goes_with_the_next_one() {
     until("a checkpoint", || out.join("checkpoint").is_file());
     child.kill().expect("it is killed");
     child.wait().expect("it ends");
-    // As a kill during a write leaves it.
+    // A file as left by a kill during a write.
     std::fs::write(out.join(".checkpoint.7.writing"), "half").expect("a file");
     assert!(out.join(".opruga-lock").exists());
     let living = std::fs::File::create(out.join(".other.msh.8.writing")).expect("a file");

@@ -50,7 +50,7 @@ fn bar(name: &str, more: &str) -> String {
 const LEFT: &str = "pin = [{ select = { side = \"left\" } }]";
 
 /// An error in a load, a pin, an obstacle or a probe does not cause the message that nothing holds a pinned body. If nothing holds a body, this is
-/// reported together with errors in things that could not hold it.
+/// reported together with errors in parts of the scene that could not hold it.
 #[test]
 fn a_held_body_is_not_called_loose_because_of_another_error() {
     let load = "[[load]]\nkind = \"traction\"\nbody = \"b\"\nvalue = [0.0, 1.0]\nselect = { node = 12 }\n";

@@ -2,14 +2,14 @@
 
 use super::*;
 
-/// For minutes nothing else is seen.
+/// The output of cargo is visible, because nothing else is seen for minutes.
 #[test]
 #[cfg(unix)]
 fn what_cargo_says_while_it_builds_the_window_is_seen() {
     use std::os::unix::fs::PermissionsExt as _;
     let folder = tempfile::tempdir().expect("a folder");
     let cargo = folder.path().join("cargo");
-    // It is replaced by a script that prints its arguments where cargo shows its progress.
+    // Cargo is replaced by a script that prints its arguments where cargo shows its progress.
     std::fs::write(&cargo, "#!/bin/sh\necho \"   Compiling $*\" >&2\n").expect("a file");
     std::fs::set_permissions(&cargo, std::fs::Permissions::from_mode(0o755)).expect("it is one's own");
     for call in [&[][..], &["studio", "heart"]] {
