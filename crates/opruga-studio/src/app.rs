@@ -64,7 +64,7 @@ pub struct Studio {
     presses: u64,
     /// The number of the message that was closed.
     closed: u64,
-    /// The last source of a message.
+    /// The messages of each source so far.
     heard: message::Heard,
     /// The last message, the time since which it is shown, and its position; it disappears by itself.
     last_message: (String, f64, message::Placement),
@@ -145,8 +145,8 @@ impl Studio {
         self.rescue = Some(rescue);
     }
 
-    /// Continues in another context, on another device; pictures that were uploaded to the last one are uploaded again. `drawn_by` names the renderer
-    /// and its device.
+    /// Continues in another context, on another device; pictures that were uploaded to the previous one are uploaded again. `drawn_by` names the
+    /// renderer and its device.
     #[cfg(target_arch = "wasm32")]
     pub fn move_to(&mut self, context: &egui::Context, drawn_by: [String; 2]) {
         self.drawn_by = Some(drawn_by);
@@ -201,7 +201,7 @@ impl Studio {
     pub fn show(&mut self, ui: &mut Ui) {
         let shown = self.link.shown();
         let seconds = f64::from(ui.input(|i| i.unstable_dt)).max(1e-4);
-        // If pictures are not consecutive, nothing was drawn between them, and the user was not waiting for it.
+        // If pictures are not consecutive, nothing was drawn between them, and the user was not waiting for a picture.
         let follows = seconds < IDLE || shown.playing && self.played;
         self.played = shown.playing;
         if follows {

@@ -10,7 +10,7 @@ use opruga::io::Files;
 use std::collections::{BTreeMap, BTreeSet};
 use toml_edit::Value as Toml;
 
-/// A difference of the right scene from the left one, from the start.
+/// A difference of the right scene from the left one, which applies from the start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Difference {
     /// A parameter by its path.

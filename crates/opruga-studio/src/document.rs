@@ -21,7 +21,7 @@ pub struct Document {
 }
 
 /// Reads the text of a document, which names models and integrators of these registries. Notices about it and its files are counted, except those
-/// about things that it asks for itself.
+/// about what the scene itself asks for.
 ///
 /// # Errors
 /// All errors in the text.

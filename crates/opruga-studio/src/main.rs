@@ -138,7 +138,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// One processor is left for the interface.
+/// The options of the world. One processor is left for the interface.
 fn options() -> Options {
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get().saturating_sub(1).clamp(1, 8));
     let most_bytes = Some(opruga::io::scene::Limits::default().memory_bytes);

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// The longest delay that is caught up, so that the simulation does not jump after a pause of ten minutes.
+/// The longest delay that the simulation makes up for [s], so that it does not jump after a pause of ten minutes.
 const LONGEST: f64 = 0.1;
 /// The weight of the last frame in the mean time of a frame.
 const FRESH: f64 = 0.1;
@@ -61,10 +61,10 @@ impl Pacing {
             self.owed -= length;
             done += 1;
         }
-        // Time that cannot be caught up is dropped, so simulated time slows down.
+        // Delay that cannot be made up for is dropped, so simulated time slows down.
         let lost = (self.owed - length).max(0.0);
         self.owed -= lost;
-        // Time that did not become due, because the last picture was long ago, is lost, too.
+        // If the last picture was long ago, the time beyond the longest delay did not become due. It is lost, too.
         let passed = elapsed.as_secs_f64();
         let asked = passed * speed;
         if asked > 0.0 {

@@ -56,7 +56,7 @@ impl Default for Samples {
 }
 
 impl Samples {
-    /// Whether a frame should be sampled, because it has not been yet.
+    /// Whether a frame should be sampled: its number fits the present interval, and it has no sample yet.
     pub fn wants(&self, frame: u64) -> bool {
         frame.is_multiple_of(self.every) && self.kept.binary_search_by_key(&frame, |sample| sample.frame).is_err()
     }

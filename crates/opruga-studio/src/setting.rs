@@ -12,7 +12,7 @@ pub struct Setting {
 }
 
 impl From<Options> for Setting {
-    /// With the models and integrators of this library.
+    /// Makes a setting with these options and with the models and integrators of this library.
     fn from(options: Options) -> Setting {
         Setting { options, ..Setting::default() }
     }

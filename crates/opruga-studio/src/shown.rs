@@ -110,7 +110,8 @@ pub struct Beside {
     pub distances: Option<[f64; 2]>,
     /// The distance between the centres of mass of both \[m\].
     pub center: Option<f64>,
-    /// The difference of the volumes (in the plane, areas) within its surfaces or outlines, minus those on the left \[m³, m² in the plane\].
+    /// The volume within its surfaces minus that of the left side \[m³\]; in the plane, the area within its outlines minus that of the left side
+    /// \[m²\].
     pub volume: Option<f64>,
     /// Its energy minus that of the left side [J].
     pub energy: Option<f64>,

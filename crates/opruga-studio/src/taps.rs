@@ -10,7 +10,7 @@ const TAP: f64 = 0.125;
 #[derive(Debug, Default)]
 pub(crate) struct Taps {
     later: Vec<Event>,
-    /// The time at which the press began whose release waits [s].
+    /// The time at which a press began if its release waits for the next picture [s].
     pressed: Option<f64>,
 }
 

@@ -149,7 +149,7 @@ fn code(code: Option<i32>) -> ExitCode {
     code.and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::from(LOST), ExitCode::from)
 }
 
-/// Runs a window until its end. The window ends with this program, whose end closes its input.
+/// Runs a window until its end. The window ends with this program, because the end of this program closes the input of the window.
 fn window(arguments: &[OsString], kept: Option<&Path>, saved: Option<&str>) -> std::io::Result<ExitStatus> {
     let mut command = Command::new(std::env::current_exe()?);
     command.args(arguments).stdin(Stdio::piped()).env(KEPT, kept.map_or(OsString::new(), |path| path.into()));

@@ -16,7 +16,7 @@ pub(super) enum Closing {
     /// It has not been requested.
     #[default]
     No,
-    /// The user is being asked; `fresh` means since the previous picture.
+    /// The user is being asked; `fresh` is set for the first picture of the question.
     Asking { fresh: bool },
     /// The scene is being saved; after that the window closes.
     Saving,
@@ -64,7 +64,7 @@ impl Studio {
             },
             Closing::Saving if !self.keeping.is_saving() => match self.keeping.saved() {
                 Some(files) => {
-                    // The window closes before anyone could read it in the window.
+                    // The window closes before anyone could read this report in it.
                     eprintln!("saved: {}", files.join(", "));
                     self.close_now(ui);
                 }

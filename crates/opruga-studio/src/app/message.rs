@@ -45,7 +45,7 @@ impl Default for Placement {
 }
 
 impl Placement {
-    /// At the border.
+    /// A placement at the border, anchored at `pivot`.
     fn at(pivot: Align2) -> Placement {
         Placement { pivot, down: if pivot.y() == Align::BOTTOM { 1.0 } else { 0.0 }, max_width: 620.0 }
     }

@@ -107,7 +107,7 @@ impl Canvas {
 
     /// The range of the colours follows the values: it grows at once and shrinks slowly.
     pub(super) fn fit_colours(&mut self, shown: &Shown) {
-        // A side that has stopped may be anywhere.
+        // The values of a side that has stopped may be anything, so they do not count.
         let beside = shown.beside.iter().filter(|beside| beside.stopped.is_none());
         let beside = beside.flat_map(|beside| &beside.right.extents);
         let colours = shown.extents.iter().chain(beside).map(|extent| extent.colours);

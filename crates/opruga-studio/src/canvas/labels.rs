@@ -41,8 +41,8 @@ pub(super) fn names(painter: &Painter, named: &[Named<'_>], paper: &Paper, taken
     }
 }
 
-/// The free position for a name of this size: below a body, also a little to the side, above it, beside it, or a little farther away; off the other
-/// bodies if possible.
+/// The free position for a name of this size: below a body, also a little to the side, above it, beside it, or a little farther away; away from the
+/// other bodies if possible.
 fn free(body: Rect, middle: f32, size: Vec2, taken: &[Rect], others: &[Rect]) -> Option<Rect> {
     let below = Align2::CENTER_TOP.anchor_size(Pos2::new(middle, body.bottom() + 6.0), size);
     let above = Align2::CENTER_BOTTOM.anchor_size(Pos2::new(middle, body.top() - 6.0), size);

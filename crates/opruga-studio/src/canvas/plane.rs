@@ -93,7 +93,7 @@ pub(crate) fn paint(
     let project = |p: [f64; 3]| flat.to_screen(rect, p, picture.y_down);
     grid(painter, flat, rect, paper, picture.y_down);
     picture.colliders.iter().for_each(|c| obstacle(painter, c, flat, rect, paper, &project));
-    // A single outline has no more points than the screen; a crowd or a lattice may.
+    // A single outline has no more visible points than the screen; a crowd or a lattice may have more.
     let alone = matches!(&picture.bodies[..], [body] if body.segments.len() <= body.positions.len());
     let edges = |body: &BodyPicture| match &body.facets {
         Facets::Edges(edges) => edges.len(),
@@ -182,14 +182,14 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     let of = |node: &u32| (at[*node as usize], inks[*node as usize].line);
     let edged = !(outline.closed.is_empty() && outline.open.is_empty());
     if outline.springs {
-        // Over filled areas, they have another colour so that they are visible.
+        // Over filled areas, springs have another colour so that they are visible.
         let (width, share) = if edged { (1.2, if paper.dark { 0.4 } else { 0.15 }) } else { (1.8, 0.0) };
         for [a, b] in &body.segments {
             let (a, b) = (of(a), of(b));
             brush.line([a.0, b.0], width, [a.1, b.1].map(|colour| colour.lerp_to_gamma(paper.ink, share)));
         }
     }
-    // Springs along an outline make it thick; a body without springs has the same outline without them.
+    // Springs along an outline make it look thicker, so it is drawn thinner if the springs of a body are hidden. Other outlines stay the same.
     let sprung = |body: &crate::shown::BodyShown| body.models.iter().any(|model| model.spec().has_role(Role::Edges));
     let thin = !show.springs && shown.bodies.get(index).is_some_and(sprung);
     let width = if wide { 3.2 } else { 2.2 } - if thin { 1.2 } else { 0.0 };
@@ -384,7 +384,7 @@ fn beside(at: Pos2, size: Vec2, bounds: Rect, taken: &[Rect]) -> Rect {
     ];
     let candidates = candidates.map(|(align, offset)| align.anchor_size(at + offset, size));
     let free = |rect: &Rect| taken.iter().all(|other| !other.intersects(rect.expand(3.0)));
-    // If the point itself is within other things, the position is next to these.
+    // If the point itself is within taken areas, the position is next to these.
     let around = taken.iter().filter(|other| other.contains(at)).flat_map(|other| {
         let level = candidates[0].min;
         let [left, right] = [other.left() - size.x - 6.0, other.right() + 6.0].map(|x| Pos2::new(x, level.y));

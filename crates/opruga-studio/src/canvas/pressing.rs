@@ -46,8 +46,8 @@ pub(super) fn pressed_at(ui: &Ui) -> Option<Pos2> {
     ui.input(|i| i.events.iter().rev().find_map(press))
 }
 
-/// The path of the pointer since the last picture: from the press, if it `began` in it, up to the release. On a slow screen many positions come with
-/// one picture.
+/// The path of the pointer since the last picture. If the press `began` since then, the path begins with the press; it ends with the release. On a
+/// slow screen many positions come with one picture.
 fn path(events: &[egui::Event], began: bool) -> Vec<Pos2> {
     use egui::Event::{PointerButton as Button, PointerMoved};
     let (mut path, mut down) = (Vec::new(), !began);

@@ -209,7 +209,7 @@ fn end_of_recording(ui: &Ui, shown: &Shown, words: Language, until: u64, slider:
     response.on_hover_text(format!("{end}\n{}", words.recording_hint()));
 }
 
-/// The menu for the colours and the other things that are drawn.
+/// The menu for the colours and for the other parts of the picture.
 pub fn view_menu(ui: &mut Ui, shown: &Shown, words: Language, now: Show, asks: &mut Vec<Request>) {
     let mut show = now;
     let drawn = shown.has_drawings && now.own_colours;

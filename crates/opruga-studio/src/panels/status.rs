@@ -27,7 +27,7 @@ struct Number {
     about: String,
 }
 
-/// Shows the status line: the numbers, and the renderer. It includes the rate of pictures, if they are consecutive, the computing time of the present
+/// Shows the status line: the numbers, and the renderer. It includes the rate of pictures if they are consecutive, the computing time of the present
 /// frame so far, and the progress of its preparation. Its height depends only on the width of the window.
 pub fn status(
     ui: &mut Ui,

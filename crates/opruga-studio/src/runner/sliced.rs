@@ -34,14 +34,14 @@ impl Link {
     /// Takes over a session; `wake` is called whenever a new picture of the window is needed.
     ///
     /// # Errors
-    /// There are none; on systems with threads, the system may refuse to start one.
+    /// There are none. On systems with threads, the system may refuse to start a thread.
     pub fn start(mut session: Session, wake: impl Fn() + 'static) -> std::io::Result<Link> {
         let last = Arc::new(session.shown());
         let inner = Inner { course: Course::new(session), asks: Vec::new(), last };
         Ok(Link { inner: RefCell::new(inner), wake: Box::new(wake) })
     }
 
-    /// Replaces the function that is called.
+    /// Replaces the function that is called whenever a new picture of the window is needed.
     pub fn wake_by(&mut self, wake: impl Fn() + 'static) {
         self.wake = Box::new(wake);
     }

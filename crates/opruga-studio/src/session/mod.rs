@@ -128,7 +128,7 @@ impl Request {
     pub(crate) fn breaks_off(&self) -> bool {
         use Request::{Accept, Draw, Open, Play, Replay, Reset, Seek};
         let now = matches!(self, Open { .. } | Play(false) | Replay | Reset | Seek(_) | Accept(_));
-        // Values that are being dragged come with every picture, so that no frame would ever be completed.
+        // Values that are being dragged come with every picture. If they interrupted frames, no frame would ever be completed.
         now || self.is_edit() && !matches!(self, Draw(..))
     }
 
@@ -154,8 +154,8 @@ pub struct Session {
     newest: Option<(u64, String)>,
     /// The number of commands that the scene had when it was opened; later ones were recorded.
     own_commands: usize,
-    /// The scene at its start, without anything that was recorded, which a reset restores. When the user grabs a body that the scene itself drags,
-    /// the commands of the scene change.
+    /// The scene at its start, without anything that was recorded. A reset restores it. When the user grabs a body that the scene itself drags, the
+    /// commands of the scene change.
     start: Document,
     keyframes: Keyframes,
     /// The samples of the curves; the interface reads them.

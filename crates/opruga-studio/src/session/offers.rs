@@ -20,7 +20,7 @@ const LONG: f64 = 1.0;
 const TOO_LONG: f64 = 4.0;
 /// The time of a node in a substep if nothing has been measured yet, and its lower limit [s].
 const NODE: [f64; 2] = [2e-8, 1e-8];
-/// The largest time of a substep however few nodes there are [s].
+/// The time of a substep that does not depend on the number of nodes is assumed to be at most this [s].
 const OVERHEAD: f64 = 5e-6;
 
 impl Session {
@@ -207,7 +207,7 @@ impl Session {
         if *now < 1 || ratio <= 0.0 {
             return None;
         }
-        // Both are assumed to be powers of the value, which are determined by these two points.
+        // The numbers of substeps and of nodes are assumed to be powers of the value. The present and the refused value determine the exponents.
         let of_steps = (f64::from(substeps) / needed).ln() / ratio;
         let of_nodes = (nodes as f64 / self.nodes_now().max(1) as f64).ln() / ratio;
         let takes = |value: i64| {

@@ -186,7 +186,7 @@ impl Session {
         Ok(())
     }
 
-    /// The pins of a future that is dropped: points that are pinned now stay pinned.
+    /// Drops the pins of a future that is dropped; points that are pinned now stay pinned.
     pub(super) fn cut_pins(&mut self) {
         let now = self.engine.frames();
         self.pins.retain(|pin| pin.at < now);

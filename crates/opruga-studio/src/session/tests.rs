@@ -83,7 +83,7 @@ fn what_is_undone_while_the_hand_holds_a_node_leaves_nothing_that_nobody_holds()
         assert_eq!(open_ends(&session.text()), 2);
         assert_replays(&session);
     }
-    // So does the scene after an undo, whatever was done in between.
+    // The scene after an undo contains the release as well, whatever was done in between.
     let gravity = Value::Numbers(vec![0.0, -3.0]);
     ask(&mut session, Request::Set("world.gravity".into(), gravity));
     pass(&mut session, 3);

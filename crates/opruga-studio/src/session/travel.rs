@@ -44,7 +44,7 @@ impl Session {
         self.head_for(frame);
     }
 
-    /// Makes a frame the goal of the next ticks, or stays there.
+    /// Makes a frame the goal of the next ticks. If it has been reached already, arrives at once.
     fn head_for(&mut self, frame: u64) {
         self.replaced += 1;
         self.goal = (frame > self.engine.frames()).then_some(frame);
@@ -144,7 +144,7 @@ impl Session {
         }
         let newest = differences.as_ref().and_then(|list| list.last()).map(Difference::about);
         let past = self.past(newest.map_or(Step::Compare, Step::Differ));
-        // If both are still on the way to a moment, this is that moment.
+        // If both sides are still on the way to a moment, that moment remains the goal.
         let (latest, goal) = (self.latest, self.goal.unwrap_or(self.engine.frames()));
         self.with_differences(differences, |session| {
             session.take(session.document.clone(), session.own_commands, [latest; 2])?;
@@ -252,7 +252,7 @@ impl Session {
             self.seek(0);
             return Ok(());
         }
-        // Actions after it start a new run.
+        // Actions after the reset start a new run.
         let past = Past { common: 0, ..self.past(Step::Reset) };
         let start = self.start.clone();
         let own_commands = start.commands();

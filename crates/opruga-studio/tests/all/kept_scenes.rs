@@ -132,7 +132,7 @@ fn row_93_what_is_done_is_kept_while_it_is_done() {
     let mut again = rescue::resume(&rescue::read(&path).expect("it is read"), Options::default()).expect("opens");
     to_the_end(&mut again);
     assert_eq!((again.frames(), again.hash()), (frames, hash));
-    // A second file says that it is not saved yet, until it is.
+    // A second file exists as long as the user has not saved the work.
     let until = |rescue: &mut Rescue, edited: bool| {
         while rescue::mark_of(&path).exists() != edited {
             assert!(begin.elapsed() < Duration::from_secs(120), "edited: {edited}");

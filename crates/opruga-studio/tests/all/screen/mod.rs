@@ -125,7 +125,7 @@ impl Screen {
     }
 
     /// Compares with the picture of this name in `tests/pictures`; `OPRUGA_UPDATE_PICTURES=1` writes it again. Up to one pixel in a hundred may
-    /// differ visibly, because the present processor draws the fonts.
+    /// differ visibly, because the fonts are drawn by the processor of the present machine.
     pub(crate) fn assert_like(&self, name: &str) {
         let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/pictures");
         let path = folder.join(format!("{name}.png"));
