@@ -8,7 +8,7 @@ use crate::{FRAME, Settings, mujoco};
 
 const SCENE: &str = "cantilever-beam";
 
-/// The number of frames after which a body that does not come to rest is given up.
+/// The number of frames after which a run ends even if the body has not come to rest.
 const REST_FRAMES: usize = 3000;
 
 /// The damping of runs that must come to rest [s]: with ten times as much, steps of the real-time setting keep vibrating by 2e-4 of the displacement.

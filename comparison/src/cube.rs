@@ -10,7 +10,7 @@ use rapier3d::prelude::SoftBodySolver;
 
 const SCENE: &str = "cantilever-cube";
 
-/// The number of frames after which a body that does not come to rest is given up.
+/// The number of frames after which a run ends even if the body has not come to rest.
 const REST_FRAMES: usize = 600;
 
 /// The number of timed frames of exact steps, which take long and whose motion is that of the reference.

@@ -118,7 +118,7 @@ impl Row {
 }
 
 impl Table {
-    /// Markdown.
+    /// The table in Markdown.
     pub fn markdown(&self) -> String {
         let further: String = self.more.iter().map(|name| format!(" {name} |")).collect();
         let mut out = format!(

@@ -18,7 +18,7 @@ mod table;
 use clap::Parser;
 use serde_json::Value;
 
-/// Length of a frame, the same for all [s].
+/// Length of a frame, which is the same for all programs [s].
 pub const FRAME: f64 = 1.0 / 60.0;
 
 /// Processor time of this thread [s].
@@ -45,13 +45,13 @@ pub struct Settings {
     /// Frames that are timed
     #[arg(long, default_value_t = 120)]
     frames: usize,
-    /// How often they are timed, all programs by turns
+    /// How often they are timed; the programs take turns
     #[arg(long, default_value_t = 3)]
     repeats: usize,
-    /// A Python with the package `mujoco`; MuJoCo is left out without
+    /// A Python with the package `mujoco`; without it, MuJoCo is left out
     #[arg(long, value_name = "PYTHON")]
     mujoco: Option<String>,
-    /// Leave out what takes long: of the cubes exact steps and rests, of the solids finer steps
+    /// Leave out what takes long: the exact steps and states of rest of the cubes, the finer steps of the solids
     #[arg(long)]
     times_only: bool,
     /// An object for programs

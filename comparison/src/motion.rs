@@ -21,11 +21,11 @@ pub struct Run {
 /// The free end counts as at rest if it moves by less than this fraction of its sag.
 const STILL: f64 = 1e-4;
 
-/// The number of frames for which this must hold.
+/// The number of frames at the end of a run for which this must hold.
 const STILL_FRAMES: usize = 60;
 
 impl Run {
-    /// How far the free end is below its initial position at the end [m].
+    /// How far the free end is below its initial position after the last frame [m].
     pub fn sag(&self) -> f64 {
         self.heights[0] - self.heights[self.heights.len() - 1]
     }

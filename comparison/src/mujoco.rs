@@ -14,7 +14,7 @@ pub enum Body<'a> {
     Quadratic { size: [f64; 3], cells: [u32; 3], density: f64 },
 }
 
-/// Its answer.
+/// The answer of MuJoCo.
 pub struct Answer {
     pub version: String,
     pub nodes: usize,
@@ -46,7 +46,7 @@ pub fn run(
     let failed = |e: &dyn std::fmt::Display| format!("{python} {script}: {e}");
     let mut child = Command::new(python)
         .arg(script)
-        // It writes its warnings to a file in its working directory.
+        // MuJoCo writes its warnings to a file in its working directory.
         .current_dir(std::env::temp_dir())
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

@@ -36,7 +36,7 @@ pub struct Table {
 }
 
 impl Row {
-    /// Compares an oscillating run, and the sag of a run that came to rest (none: it did not), with their references.
+    /// Compares an oscillating run with its reference, and likewise the sag of a run that came to rest; none if it did not.
     pub fn new(name: &str, nodes: usize, swinging: &Run, resting: Option<f64>, reference: &Reference) -> Row {
         let swings = swinging.swing(reference.frame).zip(reference.swing);
         let relative = |value: f64, expected: f64| value / expected - 1.0;
@@ -58,7 +58,7 @@ fn percent(error: Option<f64>) -> String {
 }
 
 impl Table {
-    /// Markdown.
+    /// The table in Markdown.
     pub fn markdown(&self) -> String {
         let mut out = format!(
             "\n{}\n\n| | nodes | ms per frame | ratio | at rest | first swing | its time |\n|---|---|---|---|---|---|---|\n",
@@ -96,7 +96,7 @@ impl Table {
     }
 }
 
-/// Three digits.
+/// A value with three digits.
 fn rounded(value: f64) -> String {
     match value {
         v if v >= 100.0 => format!("{v:.0}"),

@@ -2,8 +2,8 @@
 //! its explicit integrators, with their targets.
 //!
 //! The two programs run alternately, some tenths of a second each; all rows are run once, and then all rows again. The result is the median of the
-//! ratios of consecutive runs, so that other load of the machine affects both programs, and load that lasts a minute does not affect a single row
-//! only.
+//! ratios of consecutive runs, so that other load of the machine affects both programs. Load that lasts a minute affects all rows, and not just one
+//! of them.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

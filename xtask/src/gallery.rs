@@ -42,7 +42,7 @@ const OTHERS: [Made; 5] = [
         ],
         from: "plots.svg",
     },
-    // From the sweep in the first lines of its scene, the results for the vertices; the speeds of machines are in tables.
+    // The sweep in the first lines of its scene, but only over the number of vertices and without speeds, which depend on the machine.
     Made {
         file: "sweep-vertices.svg",
         call: &[

@@ -51,7 +51,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "let keep = S::select(pace.less_or_equal(most), S::one(), S::one() - most / pace);",
         tests: &["--package", "opruga-collide", "--test", "all", "friction::"],
     },
-    // The iteration along a curve of equilibria uses the load of the last point for the next one.
+    // The iteration along a curve of equilibria uses the load of the previous point for the next one.
     Mutant {
         name: "statics",
         file: "crates/opruga-integrators/src/equilibrium/arc.rs",

@@ -1,5 +1,5 @@
-//! Unpacks the program of the studio's web page. Browsers unpack gzip by themselves, but LZMA is three tenths smaller to transfer. This is a separate
-//! module because it must run before the studio has been loaded.
+//! Unpacks the program of the studio's web page. Browsers unpack gzip by themselves, but files packed by LZMA are three tenths smaller. This is a
+//! separate module because it must run before the studio has been loaded.
 
 use lzma_rust2::LzmaReader;
 use std::io::Read;

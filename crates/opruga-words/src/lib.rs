@@ -2,11 +2,11 @@
 //! the path of a name.
 //!
 //! An entry is named after the code and the variant, with `-` instead of the point: `msh-version-Unknown`. Its attributes `.allowed` and `.hint` are
-//! the texts of the same name. A field is a variable; if it is a message itself, its own entry is used. A selector compares a count with numbers and
-//! with plural categories of the language, a text with itself, a message with its variant, and `none` with a missing field. `NUMBER` supports
-//! `maximumSignificantDigits`, which is 6 by default. `ALLOWED` gives what a field that is a message says is allowed, and `HINT` what it says would
-//! help; if it says nothing, the text of the next field is used. `ABOUT` is the line about the parameter whose path is in a field. An entry that
-//! becomes empty is not a translation, and English is used instead.
+//! the texts of the same name. A field is a variable; if it is a message itself, its own entry is used. A selector matches a count by numbers and by
+//! plural categories of the language, a text by the text itself, a message by its variant, and a missing field by `none`. `NUMBER` supports
+//! `maximumSignificantDigits`, which is 6 by default. The first argument of `ALLOWED` and `HINT` is a field that is a message: `ALLOWED` gives what
+//! is allowed according to this message, and `HINT` what would help. If the message gives nothing, the text of the next argument is used. `ABOUT` is
+//! the line about the parameter whose path is in a field. An entry that becomes empty is not a translation, and English is used instead.
 //!
 //! # Source
 //! Project Fluent, "Fluent Syntax Guide", <https://projectfluent.org/fluent/guide/>; Unicode CLDR, "Language Plural Rules".
@@ -114,7 +114,8 @@ impl Translation {
         Some(self.resolved(&pattern.value, &message.fields())).filter(|text| !text.is_empty())
     }
 
-    /// The secondary text of the first field, or the text of the first of the others that exists.
+    /// What is allowed (`ALLOWED`) or would help (`HINT`) according to the first argument, or the text of the first of the other arguments that has
+    /// one.
     fn beside_of(
         &self,
         name: &str,

@@ -24,9 +24,9 @@ pub(super) struct Side {
 }
 
 impl Side {
-    /// A commit. Its sources are in a separate work tree, which is shared by all commits, so that only the differences from the last commit are
-    /// compiled. Cargo's build folder for it is separate from that of the present tree: cargo considers a crate built if the same path in another
-    /// work tree was built after the file was changed, whatever the file contains.
+    /// A commit. Its sources are in a separate work tree, which is shared by all commits, so that only what differs from the previously compiled
+    /// commit is compiled. Cargo's build folder for it is separate from that of the present tree: cargo considers a crate built if the same path in
+    /// another work tree was built after the file was changed, whatever the file contains.
     pub(super) fn of_commit(folder: &Path, commit: &str) -> Result<Side, String> {
         let root = folder.join("base");
         workspace::check_out(&root, commit)?;

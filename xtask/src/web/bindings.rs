@@ -9,7 +9,7 @@ pub(super) struct Made {
     pub(super) script: Vec<u8>,
 }
 
-/// Makes them from a compiled program.
+/// Makes the program of the page and its JavaScript from a compiled program.
 ///
 /// # Errors
 /// What cannot be read or translated.

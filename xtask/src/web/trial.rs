@@ -29,7 +29,7 @@ const LARGE: [&str; 3] = ["million-vertices", "thousand-balls", "giant-ring"];
 /// Tests the page; pictures of it are saved in the folder that `PICTURES` names.
 ///
 /// # Errors
-/// What does not hold.
+/// The first expectation that the page does not meet, or a missing browser.
 pub(super) fn run(page: &Path, native: PathBuf) -> Result<(), String> {
     if !browser::is_there() {
         return Err("there is no Chromium: on Debian `apt-get install chromium` gives one".into());

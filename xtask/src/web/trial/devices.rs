@@ -208,7 +208,7 @@ impl Trial {
         Ok(())
     }
 
-    /// Opens the page again, without the stored data of the last one.
+    /// Opens the page again, without the data that it has stored before.
     fn fresh(&mut self, query: &str) -> Outcome {
         let address = format!("{}{query}", self.address);
         self.browser.open("about:blank")?;
