@@ -15,7 +15,7 @@ pub(crate) fn in_space<S: Lane, const D: usize>(a: &[S; D]) -> [S; 3] {
     [a[0], a[1], if D == 3 { a[D - 1] } else { S::zero() }]
 }
 
-/// The components of the vector within the dimension.
+/// The first D components of a vector in space.
 #[inline(always)]
 pub(crate) fn in_dimension<S: Lane, const D: usize>(a: &[S; 3]) -> [S; D] {
     opruga_math::lanes!(S, d => a[d])

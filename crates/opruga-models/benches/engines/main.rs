@@ -4,10 +4,10 @@
 //!
 //! * by the models as they are: runs and lists of partners (`mass_spring`), sections of elements (`fem`),
 //! * by `Stencils`, tile by tile, with slots that are summed at the nodes,
-//! * by `Scattered`, each once, as in sections, but with any kernel.
+//! * by `Scattered`, which evaluates each of them once, as sections do, but with any kernel.
 //!
-//! Each row shows the shortest time of all intervals of a millisecond in all turns [ns per spring or tetrahedron of a body], and
-//! its ratio to the time of the model. `cargo bench … -- TEXT` measures the bodies whose titles contain the text.
+//! Each row shows the shortest time over all turns and all intervals of a millisecond [ns per spring or tetrahedron of a body],
+//! and its ratio to the time of the model. `cargo bench … -- TEXT` measures the bodies whose titles contain the text.
 #![allow(missing_docs)]
 
 mod kernels;
@@ -62,7 +62,8 @@ fn main() {
     tetrahedra("eight bodies of 4 x 4 x 4 cubes", &small, Layout::Batch);
 }
 
-/// Permutes the nodes of a mesh of tetrahedra within every 64, so that neighbours are consecutive only by chance.
+/// Shuffles the numbers of the nodes of a mesh within every 64 consecutive ones, so that neighbours are consecutive only by
+/// chance.
 fn shuffled(mesh: &Mesh<3>) -> Mesh<3> {
     let mut new: Vec<u32> = (0..mesh.positions.len() as u32).collect();
     let mut state = 1u64;
@@ -252,7 +253,7 @@ fn compare<const D: usize>(title: &str, mesh: &Mesh<D>, layout: Layout, elements
     println!("  {colours} colours of nodes from the description, {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
 }
 
-/// Checks that all give the same forces and energies up to rounding, and visit the same stencils.
+/// Checks that all implementations give the same forces and energies up to rounding, and visit the same stencils.
 fn check_same<const D: usize>(runs: &mut [Run<D>]) {
     let mut first: Option<(Vec<f64>, f64, Vec<Vec<u32>>)> = None;
     for run in runs {
@@ -320,7 +321,7 @@ fn print_row<const D: usize>(what: &str, rivals: &Rivals<D>, times: &[Vec<f64>])
     println!("{text}");
 }
 
-/// The diagonal blocks of nodes, from what a model delivers for a whole matrix.
+/// The diagonal blocks of the nodes, summed from the blocks that a model delivers for a whole matrix.
 struct NodeBlocks<const D: usize>(Vec<[[f64; D]; D]>);
 impl<const D: usize> NodeBlocks<D> {
     fn add(&mut self, node: usize, value: &[[f64; D]; D]) {
@@ -347,7 +348,8 @@ impl<const D: usize> Sink<D> for NodeBlocks<D> {
     }
 }
 
-/// The number of colours of nodes, such that no stencil has a colour twice: each node takes the first free colour.
+/// The number of colours that the nodes need so that no two nodes of a stencil have the same colour. Each node takes the first
+/// free colour.
 fn colours<const D: usize>(potential: &dyn Potential<D>, nodes: usize) -> usize {
     let mut stencils = Vec::new();
     potential.stencils(&mut |of| stencils.push(of.to_vec()));

@@ -1,4 +1,4 @@
-//! Any stencil, evaluated once, as in sections of finite elements: positions are copied to rows, forces are added to rows of
+//! Evaluates every stencil once, as sections of finite elements do: positions are copied to rows, and forces are added to rows of
 //! nodes.
 
 use opruga_core::error::StepError;
@@ -12,7 +12,7 @@ use std::marker::PhantomData;
 /// The length of the partial sums of the energies of eight bodies.
 const ENERGY: usize = WIDTH * WIDTH;
 
-/// The distance, in packs, of the pack whose data are prefetched.
+/// Data are prefetched this number of packs ahead.
 const AHEAD: usize = 4;
 
 /// All stencils of one kind. The first `FIXED` parameters belong to the rest shape, which eight bodies share.
@@ -24,7 +24,7 @@ pub(crate) struct Scattered<L, const N: usize, const K: usize, const FIXED: usiz
     elements: Vec<[u32; N]>,
     /// The nodes of every pack: `[node][lane]` for one body, `[node]` for eight.
     list: Vec<u32>,
-    /// The first parameters of every pack: `[parameter][lane]` for one body, `[parameter]` for eight.
+    /// The first `FIXED` parameters of every pack: `[parameter][lane]` for one body, `[parameter]` for eight.
     fixed: Column,
     others: Vec<Parameter>,
 }

@@ -13,8 +13,9 @@
 //!
 //! It is an ordinary model. `prepare` computes the forces. The memory of the model is the state of the ramp and the vertex that
 //! the mouse holds. F_y is multiplied by the mass of its node, so that the integrator's division gives the published v_y (E9).
-//! The published floor (y = 500, v_y = −½ v_y on crossing) is the engine's collider with restitution ½ and no friction. Edges
-//! run with the interior to their left (with y downwards, this is the direction of the thesis); i is their second node.
+//! The published floor (y = 500, v_y = −½ v_y on crossing) is the engine's collider with restitution ½ and no friction. Edges run
+//! with the interior to their left; with y downwards, this is the direction of the thesis. Node i of a spring is the second node
+//! of its edge.
 //!
 //! ## Where it is not the physics
 //!
@@ -160,7 +161,7 @@ impl AsPublished {
             fy[p] = if pressure >= c.final_pressure { self.mass.at(p) * c.gy } else { 0.0 };
         }
 
-        // 3. Springs, and 4. the "volume" from their normals.
+        // 3. The springs, and 4. the "volume" from the normals of the springs.
         let mut volume = 0.0;
         for (&[i, j], &l) in self.springs.iter().zip(&self.rest_length) {
             let (i, j) = (at(i), at(j));
@@ -177,7 +178,7 @@ impl AsPublished {
             volume += 0.5 * dx.abs() * (dy / r).abs() * r;
         }
 
-        // 5. Pressure: its whole force on both ends.
+        // 5. Pressure: each end of an edge gets the whole force on the edge.
         for &[i, j] in &self.springs {
             let (i, j) = (at(i), at(j));
             let (dx, dy, r) = difference(view, i, j);

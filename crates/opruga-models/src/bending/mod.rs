@@ -15,8 +15,8 @@
 //! the angles across edges, so a shell that may warp deflects more than a plate: by an eighth on the regular lattice and by a
 //! quarter on grids of right triangles.
 //!
-//! Limits: chains in space resist bending but no twist, and their damping does not act on a change of the plane in
-//! which they bend; a chain in space with a rest angle has no force where it is exactly straight.
+//! Limits: chains in space resist bending but not twist, and their damping does not act on a change of the plane in which they
+//! bend. A hinge of such a chain that is bent at rest exerts no force when it is exactly straight.
 
 mod angle;
 pub(crate) mod hinge;

@@ -18,7 +18,7 @@ use opruga_core::dense::Dense;
 use opruga_solve::dense_system::{DenseCholesky, DenseFactors, clamp};
 use std::sync::Arc;
 
-/// The number of columns that are solved together. A request to stop is noticed between such groups.
+/// The number of columns that are solved together. A request to stop is noticed between two groups.
 const SIDES: usize = 256;
 
 /// The relative changes that were made to a matrix to obtain the stiffness of a body.
@@ -294,15 +294,15 @@ fn free_and_symmetrise(size: usize, motions: &[Vec<f64>], k: &mut [f64], changes
     changes.asymmetry = (skew / even).sqrt();
 }
 
-/// The largest number of vertices for which negative eigenvalues are removed individually. Finding all eigenvectors takes as
-/// long as everything else.
+/// The largest number of vertices for which negative eigenvalues are removed; larger boundaries that have some are refused.
+/// Finding all eigenvectors takes as long as everything else.
 const MOST_CLAMPED: usize = 1000;
 
-/// The largest part of a stiffness that may be removed with its negative eigenvalues.
+/// The largest fraction of a stiffness that may be removed with its negative eigenvalues.
 const MOST_NEGATIVE: f64 = 0.05;
 
-/// Removes negative eigenvalues, with which some motion would create energy. Collocation may have them if sides are of unequal
-/// size.
+/// Removes negative eigenvalues, because some motions would then create energy. Collocation can produce such eigenvalues if the
+/// sides have unequal sizes.
 fn make_positive(
     size: usize,
     vertices: usize,

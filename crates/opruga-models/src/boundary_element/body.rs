@@ -50,8 +50,8 @@ const NUMBERS: usize = 32;
 const ASKED: usize = NUMBERS - 1;
 
 /// The number of states that are kept. A step alternates between its initial state, its present state, and the state in which the
-/// rigid motion is balanced, and a product with K takes most of the time. Keeping only one state gives the same results, but a
-/// free body takes up to a fifth longer.
+/// rigid motion is balanced, and a product with K takes most of the time. Keeping only one state gives the same results, but the
+/// steps of a free body then take up to a fifth longer.
 const STATES: usize = 3;
 
 impl<const D: usize> BoundaryElement<D> {

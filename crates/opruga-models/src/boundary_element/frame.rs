@@ -24,7 +24,8 @@ use opruga_math::rotation::nearest_rotation;
 use opruga_math::{matrix, symmetric};
 use std::sync::Arc;
 
-/// Below this fraction of its value at rest, the rotation of the body is undetermined, and the frame does not follow it.
+/// If G about an axis is below this fraction of Σ w |X|², the rotation about this axis is undetermined, and the frame does not
+/// follow it.
 const UNDETERMINED: f64 = 1e-12;
 
 type Vector = [f64; 3];
@@ -143,7 +144,8 @@ impl<const D: usize> Rest<D> {
         core::array::from_fn(|i| -(0..D).map(|j| frame.rotation[i][j] * pulled[j]).sum::<f64>())
     }
 
-    /// J without the inverse of G: w e × X for each axis, as vectors of `length` numbers, one after the other.
+    /// The matrix J of [`Following`] without the factor G⁻¹: w e × X for each axis e, as vectors of `length` numbers, one after
+    /// the other.
     pub(super) fn follows(&self, length: usize) -> Vec<f64> {
         let mut out = vec![0.0; axes::<D>().len() * length];
         for (k, out) in axes::<D>().zip(out.chunks_exact_mut(length)) {
@@ -155,8 +157,8 @@ impl<const D: usize> Rest<D> {
         out
     }
 
-    /// How the frame follows displacements, for the second derivatives. K is multiplied by `factor`; the terms of forces are
-    /// included only with `Exact`.
+    /// How the frame follows displacements, for the second derivatives. K is multiplied by `factor`; the terms that depend on
+    /// forces are included only with `Exact`.
     pub(super) fn following(
         &self,
         frame: &Frame<D>,

@@ -2,8 +2,8 @@
 //!
 //! If the source lies on the side, the side is divided into parts with their apex at the source, r = s ρ(t). Then neither U dS
 //! nor T (u(y) − u(ξ)) dS depends on s, and the integral over s is computed analytically. The remaining integrand is smooth in
-//! the variable τ with dt/ρ = dτ/ℓ; each piece of length 1 takes 12 points. Otherwise Gauss's rules take as many points as the
-//! distance requires, and sides that are nearer than 1.6 times their size (in the plane, than their length) are halved in each
+//! the variable τ with dt/ρ = dτ/ℓ; each piece of length 1 gets 12 points. Otherwise Gauss's rules have as many points as the
+//! distance requires, and sides that are nearer than 1.6 times their size (in the plane, their length) are halved in each
 //! direction. The total error is below 1e-9 of the integrals; the tractions of a rotation, which should be zero, measure it
 //! (docs/boundary-elements.md).
 
@@ -43,7 +43,8 @@ struct Piece<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Integrator<const D: usize> {
     pub(super) kelvin: Kelvin,
-    /// The distance, relative to the size of the piece, from which a rule is accurate enough; descending.
+    /// The rules, each with the smallest distance at which it is accurate enough, relative to the size of a piece; distances
+    /// descend.
     rules: Vec<(f64, SimplexRule<D>)>,
     along: Rule,
 }
@@ -89,8 +90,8 @@ impl<const D: usize> Integrator<D> {
         sums
     }
 
-    /// Calls `visit` with r = y − ξ, shape functions and weight at points y that suffice for kernels that are large near the
-    /// source.
+    /// Calls `visit` with r = y − ξ, the shape functions and the weight at points y. The points are dense enough for kernels that
+    /// are large near the source.
     #[inline(always)]
     pub(super) fn visit(&self, source: &[f64; D], side: &Side<D>, visit: &mut impl FnMut(&[f64; D], &[f64; D], f64)) {
         let mut shape = [[0.0; D]; D];
@@ -121,8 +122,8 @@ impl<const D: usize> Integrator<D> {
         }
     }
 
-    /// Computes the integrals over the side that contains the source, where its shape functions are `shape`. Those of T are of
-    /// N_k(y) − N_k(ξ).
+    /// Computes the integrals over the side that contains the source; `shape` contains the shape functions of the side at the
+    /// source. The integrals of T contain N_k(y) − N_k(ξ) instead of N_k(y).
     pub(super) fn singular(&self, source: &[f64; D], shape: &[f64; D], side: &Side<D>) -> Sums<D> {
         let mut sums = Sums::NONE;
         for k in 0..D {
@@ -204,7 +205,7 @@ impl<const D: usize> Integrator<D> {
     }
 }
 
-/// A lower bound of the distance of a source from a piece, relative to the size of the piece.
+/// A lower bound on the distance of a source from a piece, relative to the size of the piece.
 fn distance<const D: usize>(source: &[f64; D], piece: &Piece<D>) -> f64 {
     let center: [f64; D] =
         core::array::from_fn(|d| piece.corners.iter().map(|corner| corner[d]).sum::<f64>() / D as f64);
@@ -219,7 +220,7 @@ fn distance<const D: usize>(source: &[f64; D], piece: &Piece<D>) -> f64 {
 }
 
 impl<const D: usize> Piece<D> {
-    /// Two halves of an edge; four quarters of a triangle.
+    /// Divides an edge into two halves, or a triangle into four quarters.
     fn halve(&self, depth: u32, out: &mut Vec<(Piece<D>, u32)>) {
         let (x, n) = (&self.corners, &self.shape);
         let middle = |a: usize, b: usize| (mean(&x[a], &x[b]), mean(&n[a], &n[b]));

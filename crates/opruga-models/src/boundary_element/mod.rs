@@ -6,11 +6,11 @@
 //! symmetric part of Mᵀ G⁻¹ H without rigid motion (file `assembly`). A moving body has U = ½ uᵀ K u with u = Rᵀ(x − x̄) − X in
 //! the nearest frame R (file `frame`). The infinite medium around a boundary (`exterior`) does not rotate: u = x − X.
 //!
-//! Collocation is used instead of Galerkin's method, because it needs one integral instead of two. It is slightly unsymmetric
-//! (the readings report how much).
+//! Collocation is used instead of Galerkin's method, because it needs one integral instead of two. Its matrix is slightly
+//! unsymmetric (the readings report how much).
 //!
-//! Limits: strain is small in the frame R, and there is only one frame, so a slender body that bends by large angles is too stiff
-//! and grows. The mass is on the boundary. There are at most 2000 vertices, since all matrices are dense.
+//! Limits: strain must be small in the frame R. There is only one frame, so a slender body that bends by large angles is too
+//! stiff and grows. The mass is on the boundary. There are at most 2000 vertices, since all matrices are dense.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod assembly;
@@ -73,7 +73,7 @@ impl<const D: usize> Model<D> for BoundaryElementModel {
         if nodes > MOST_VERTICES {
             return Err(Refusal::TooMany { nodes, bytes: bytes(D, nodes as f64), most: MOST_VERTICES }.into());
         }
-        // Dense systems would increase the size of the page by a twentieth and slow down the other models.
+        // Dense systems would make the web page larger by a twentieth and slow down the other models.
         #[cfg(target_arch = "wasm32")]
         return Err(Refusal::Page {}.into());
         #[cfg(not(target_arch = "wasm32"))]

@@ -48,8 +48,8 @@ pub(super) struct SimplexRule<const D: usize> {
 }
 
 impl<const D: usize> SimplexRule<D> {
-    /// The rule with n points along each direction: of an interval in the plane; in space, of a square whose one side is
-    /// collapsed to a corner of the triangle.
+    /// The rule with n points along each direction. In the plane it is that of an interval. In space it is that of a square with
+    /// one side collapsed to a corner of the triangle.
     pub(super) fn of(n: usize) -> SimplexRule<D> {
         let rule = Rule::of(n);
         let mut points = Vec::new();

@@ -74,7 +74,7 @@ messages! {
         #[allowed("at most {most} vertices")]
         #[hint("use a coarser surface (`spacing`), or fill it and use `fem`")]
         TooMany { nodes: usize, bytes: f64, most: usize },
-        /// The page has no dense systems.
+        /// The web page cannot solve dense systems.
         "model.not_on_the_page"
         #[error("the web page does not compute boundary elements")]
         #[hint("the studio and the command line do")]

@@ -5,15 +5,15 @@
 //! σ_nn = t·n,  σ_an = t·a,  σ_aa = 2μ/(1 − ν) (ε_aa + ν ε_bb) + ν/(1 − ν) σ_nn,  σ_ab = 2μ ε_ab,
 //!
 //! with ε_bb = 0 in the plane. A traction is the force on a vertex over its share of the boundary. At an edge or a corner the
-//! force belongs to several smooth parts, and the traction of a single part cannot be determined; a facet takes the tractions of
-//! its other vertices, if it has any.
+//! force belongs to several smooth parts, and the traction of a single part cannot be determined. A facet uses the tractions of
+//! its vertices that belong to only one smooth part, if it has any.
 //!
 //! Source: Brebbia, Telles, Wrobel 1984, section 5.11 (stresses on the boundary).
 
 use super::surface::Surface;
 use opruga_core::potential::CellState;
 
-/// The data from which the stress of a facet follows from the displacements and forces of its vertices.
+/// The data for computing the stress of each facet from the displacements and forces of its vertices.
 #[derive(Debug)]
 pub(super) struct Skin<const D: usize> {
     facets: Vec<Facet<D>>,
@@ -26,7 +26,7 @@ struct Facet<const D: usize> {
     axes: [[f64; D]; D],
     /// The gradient of each shape function along each tangent [1/m].
     slopes: [[f64; D]; D],
-    /// The factor of the force on each vertex in the mean traction [1/m²].
+    /// The factor with which the force on each vertex enters the mean traction [1/m²].
     pulls: [f64; D],
     /// Length times thickness, or area [m²].
     measure: f64,
@@ -64,7 +64,7 @@ fn axes<const D: usize>(corners: &[[f64; D]; D], normal: &[f64; D]) -> [[f64; D]
 }
 
 impl<const D: usize> Skin<D> {
-    /// Made from vertices at rest [m] and, in the plane, the thickness [m].
+    /// Makes the data from the vertices at rest [m] and, in the plane, the thickness [m].
     pub(super) fn new(surface: &Surface<D>, thickness: f64) -> Skin<D> {
         let scale = if D == 2 { surface.size * thickness } else { surface.size * surface.size };
         let mut shares = vec![0.0; surface.nodes];

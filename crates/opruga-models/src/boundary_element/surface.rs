@@ -8,8 +8,8 @@ use opruga_mesh::{Mesh, MeshError, THIN_ELEMENT, crossing_edges, winding_number}
 const COSINE_OF_SMOOTH: f64 = 0.766_044_443_118_978;
 
 /// If a vertex has several normals, its collocation points lie inside the sides. This is their distance from the vertex, as a
-/// fraction of the way to each other corner. A quarter of an edge is close to the best point for linear elements with a jump at
-/// their ends, (1 − 1/√3)/2.
+/// fraction of the distance to each of the other corners. A quarter of an edge is close to (1 − 1/√3)/2, the best point for
+/// linear elements with a jump at their ends.
 const INSET: [f64; 2] = [0.25, 1.0 / 6.0];
 
 /// A collocation point.
@@ -18,7 +18,7 @@ pub(super) struct Source<const D: usize> {
     pub(super) at: [f64; D],
     /// The vertex at this point; none if the point lies inside a side.
     pub(super) vertex: Option<u32>,
-    /// A side that contains it, and the shape functions of that side there.
+    /// A side that contains this point, and the shape functions of the side at the point.
     pub(super) side: u32,
     pub(super) shape: [f64; D],
 }
@@ -44,7 +44,7 @@ pub(super) struct Surface<const D: usize> {
 }
 
 impl<const D: usize> Surface<D> {
-    /// Takes the boundary of a mesh; the solid is inside, or with `exterior` all around.
+    /// Takes the boundary of a mesh; the solid is inside it or, with `exterior`, all around it.
     pub(super) fn of(mesh: &Mesh<D>, exterior: bool) -> Result<Surface<D>, Refusal> {
         let nodes = mesh.nodes();
         if mesh.facets.is_empty() {
@@ -105,7 +105,7 @@ impl<const D: usize> Surface<D> {
                 for (facet, corner) in part {
                     self.corners[*facet as usize][*corner] = number;
                 }
-                // The side with the widest angle, which has the most room.
+                // The side with the widest angle, which has the most space for the point.
                 let mut widest = part[0];
                 let mut least = 2.0;
                 for own in part {
@@ -135,7 +135,7 @@ impl<const D: usize> Surface<D> {
         for a in 0..around.len() {
             for b in a + 1..around.len() {
                 let (own, other) = (around[a].0 as usize, around[b].0 as usize);
-                // In the plane they share only the vertex; in space, an edge from the vertex.
+                // Neighbouring sides share only the vertex in the plane, and an edge from the vertex in space.
                 let shared = self.facets[own].iter().filter(|node| self.facets[other].contains(node)).count();
                 let cosine: f64 = (0..D).map(|d| self.sides[own].normal[d] * self.sides[other].normal[d]).sum();
                 if shared >= D - 1 && cosine >= COSINE_OF_SMOOTH {
@@ -155,7 +155,7 @@ impl<const D: usize> Surface<D> {
         parts
     }
 
-    /// The cosine of the angle of a side at a corner; in the plane the same for all edges.
+    /// The cosine of the angle of a side at a corner; zero in the plane, so that all edges count alike.
     fn cosine_at(&self, (facet, corner): (u32, usize)) -> f64 {
         if D == 2 {
             return 0.0;

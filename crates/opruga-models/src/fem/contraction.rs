@@ -111,7 +111,7 @@ fn complete<R: Register, const D: usize, const N: usize>(blocks: &mut [[Matrix<R
 /// Computes the blocks of simplices from tangents that are given in the frame of the singular vectors, F = U diag(σ) Vᵀ.
 ///
 /// With ĝ = Vᵀ ∂N/∂X the block K_ab is U K̂ Uᵀ, where K̂ᵢₖ = Hᵢₖ ĝᵃᵢ ĝᵇₖ + Tᵢₖ ĝᵃₖ ĝᵇᵢ off the diagonal and K̂ᵢᵢ = Hᵢᵢ ĝᵃᵢ ĝᵇᵢ +
-/// Σⱼ Sᵢⱼ ĝᵃⱼ ĝᵇⱼ on it, so the D⁴ numbers are never written out.
+/// Σⱼ Sᵢⱼ ĝᵃⱼ ĝᵇⱼ on it, so the D⁴ numbers of the tangent are never written out.
 pub(super) struct ContractPrincipal<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
     pub(super) group: Group<'a>,

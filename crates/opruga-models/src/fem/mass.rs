@@ -91,7 +91,8 @@ mod tests {
         })
     }
 
-    /// Row sums are ∫ Nₐ. A linear field has the exact ∫ x² of a cell, which lumped masses of linear cells overestimate.
+    /// Row sums are ∫ Nₐ. For a linear field, the matrix gives the exact ∫ x² of a cell, which the lumped masses of linear cells
+    /// overestimate.
     fn check<E: Shape<D, N>, const D: usize, const N: usize>(nodes: [[f64; D]; N], square: f64) {
         let matrix = of_cell::<E, D, N>(&nodes);
         let mut found = 0.0;

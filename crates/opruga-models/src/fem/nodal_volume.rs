@@ -1,8 +1,8 @@
 //! Volumes of nodes, for linear triangles and tetrahedra near incompressibility.
 //!
 //! Cells with one integration point cannot both bend and keep their volume, because there are more cells than degrees of freedom.
-//! So the volumetric stiffness beyond λ′ = min(λ, 2μ) acts on the volumes of nodes instead, of which there are fewer (Bonet and
-//! Burton 1998). A node has an equal share V/(D + 1) of every cell around it, and
+//! The volumetric stiffness beyond λ′ = min(λ, 2μ) therefore acts on the volumes of the nodes instead, because there are fewer
+//! nodes than cells (Bonet and Burton 1998). A node has an equal share V/(D + 1) of every cell around it, and
 //!
 //! U = Σₐ ½ κₐ Vₐ (Jₐ − 1)²,  Jₐ = Σ share · det F / Vₐ,  Vₐ = Σ share,  κₐ = Σ share · (λ − λ′) / Vₐ.
 //!
@@ -81,7 +81,7 @@ struct Simplex {
 }
 
 impl<const D: usize> NodalVolumes<D> {
-    /// From the cells of a mesh, with μ and λ of each cell of each body.
+    /// Makes the volumes of the nodes from the cells of a mesh, with μ and λ of each cell of each body.
     pub(super) fn new<const N: usize>(
         layout: Layout,
         turns: bool,
@@ -283,7 +283,7 @@ impl<const D: usize> NodalVolumes<D> {
                         (0..D).for_each(|d| sum[d] += own.share * slope[d]);
                     }
                 }
-                // ∂J/∂x is the sum over V.
+                // ∂J/∂x of the node is the sum divided by V.
                 let factor = self.moduli[node * bodies + body] / self.volumes[node];
                 for (a, u) in &around {
                     for (b, v) in &around {

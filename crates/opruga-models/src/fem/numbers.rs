@@ -10,8 +10,7 @@ use opruga_core::spec::{Field, Values};
 /// The parameters of an element: μ, λ, the material's own, thermal growth, retardation time.
 pub(super) const NUMBERS: usize = 5;
 
-/// λ − λ′ with λ′ = min(λ, 2μ): the part of the volumetric stiffness with which most cells could not bend if it acted at every
-/// point.
+/// λ − λ′ with λ′ = min(λ, 2μ). If this part of the volumetric stiffness acted at every point, most cells could not bend.
 pub(super) fn beyond(mu: f64, lambda: f64) -> f64 {
     if lambda > 2.0 * mu { lambda - 2.0 * mu } else { 0.0 }
 }

@@ -57,7 +57,7 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     /// Whether the parameters of the first pack apply to all packs.
     pub(super) uniform: bool,
     pub(super) damped: bool,
-    /// Whether the nodes resist changes of volume beyond λ′.
+    /// Whether the nodes carry the volumetric stiffness beyond λ′ (see [`super::nodal_volume`]).
     pub(super) nodal: bool,
     /// Depth out of the plane [m]; 1 in space.
     pub(super) thickness: f64,
@@ -85,12 +85,12 @@ pub(super) struct Plan<'a, const D: usize> {
     pub(super) thickness: f64,
     /// Whether the out-of-plane stress is zero.
     pub(super) plane_stress: bool,
-    /// Whether the nodes resist changes of volume beyond λ′.
+    /// Whether the nodes carry the volumetric stiffness beyond λ′ (see [`super::nodal_volume`]).
     pub(super) nodal: bool,
     pub(super) damped: bool,
 }
 
-/// The number of geometric data of the points of an element other than a box.
+/// How many numbers describe the geometry of the points of an element, unless it is a box.
 const fn stored<E: Shape<D, N>, const D: usize, const N: usize>() -> usize {
     if E::BOX { 0 } else { E::POINTS * (D * D + 1) }
 }
@@ -227,7 +227,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
     }
 
-    /// All packs of a share, in groups of at most `points` packs of points, or one by one.
+    /// All packs of a share, in groups of at most `points` packs of points, but of at least one pack of elements.
     pub(super) fn groups(&self, share: &Share, points: usize) -> impl Iterator<Item = Group<'_>> {
         let together = (points / self.points).max(1);
         let end = share.first + share.packs;
@@ -247,7 +247,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         out
     }
 
-    /// The length of the copy of a vector of every node of a share.
+    /// The length of a copy of one vector per node of a share.
     pub(super) fn copy(&self, share: &Share) -> usize {
         if self.layout == Layout::Single { share.nodes.len() * ROW } else { 0 }
     }
@@ -291,8 +291,8 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
     }
 
-    /// Whether the law may have no energy. Laws in space and in plane strain have one everywhere; if it overflows, the motion has
-    /// diverged, which is detected elsewhere.
+    /// Whether the energy of the law may be undefined. Laws in space and in plane strain have an energy everywhere; if it
+    /// overflows, the motion has diverged, which is detected elsewhere.
     pub(super) fn may_refuse(&self) -> bool {
         self.law_in_space.is_none() && D < 3
     }

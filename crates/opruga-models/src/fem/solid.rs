@@ -250,7 +250,7 @@ impl<const D: usize> Observe<D> for Solid<D> {
 }
 
 impl<const D: usize> Solid<D> {
-    /// From some kinds of cells.
+    /// Makes a solid from its parts, one for each kind of cells.
     pub(super) fn new(layout: Layout, nodes: usize, built: Built<D>, damped: bool) -> Self {
         let Built { parts, inertia, mut volumes, energy_parts } = built;
         let (mut shares, mut starts) = (Vec::<Task>::new(), Vec::new());
@@ -275,7 +275,8 @@ impl<const D: usize> Solid<D> {
         Solid { layout, nodes, parts, shares, starts, sums, inertia, volumes, damped, energy_parts }
     }
 
-    /// Computes the pressures of the nodes that resist volume, in their scratch; returns their energies [J].
+    /// Computes the pressures of the nodes that resist changes of volume, in the scratch of these nodes; returns the energies of
+    /// the bodies [J].
     fn press(&self, simd: Simd, view: &View<D>, cells: &mut [f64], of_volumes: &mut [f64]) -> [f64; WIDTH] {
         let Some(volumes) = &self.volumes else { return [0.0; WIDTH] };
         each_part(view.threads, cells, &self.starts, |number, scratch| {

@@ -7,8 +7,8 @@
 //!   ── i−1 ──Nᵢ₋₁── i ──Nᵢ── i+1 ──        Fᵢ = Nᵢ − Nᵢ₋₁,  Nᵢ = EA ε g + (∂U/∂b of the bend at i + ∂U/∂a of that at i + 1)/L
 //! ```
 //!
-//! Eight nodes at a time are computed once, from their neighbours in the registers and without any index. The edge that closes a
-//! ring is computed separately. The forces equal those of the stencils in [`super::curve`] up to rounding; energy and Hessian
+//! Every node is computed once, eight at a time, from its neighbours in the registers and without any index. The edge that closes
+//! a ring is computed separately. The forces equal those of the stencils in [`super::curve`] up to rounding; energy and Hessian
 //! come from the stencils.
 
 use crate::vectors::{cross, dot, in_space, inverse};
@@ -32,7 +32,7 @@ const MEAN: usize = 5;
 pub(super) struct Along {
     layout: Layout,
     nodes: usize,
-    /// By index of the node.
+    /// The data of every node, by its index.
     numbers: [Parameter; NUMBERS],
     /// EA [N], EI [N·m²] and the retardation time τ [s] of each body.
     section: [Parameter; 3],
@@ -238,8 +238,8 @@ impl<const D: usize, const BATCH: bool, const DAMPED: bool> Work for Force<'_, '
 /// The results of the previous nodes that the next ones need: g of their edges, its rate, 1/L, the known part of N, and N of
 /// the edges before them.
 ///
-/// For bodies side by side this is a pack, the previous node of each. For one body it is the previous register, in the first part
-/// of each pack.
+/// For bodies side by side, each result is a pack with the numbers of the previous node of each body. For one body, it is the
+/// previous register, stored in the first part of each pack.
 struct Walker<'a, P, const D: usize> {
     x: Strip<'a, D>,
     v: Strip<'a, D>,
@@ -261,7 +261,7 @@ fn back<R: Register, const BATCH: bool>(now: R, previous: R) -> R {
 }
 
 impl<P: Pack, const D: usize> Walker<'_, P, D> {
-    /// Processes one part of eight nodes from index `k` of the strips on: returns the forces on the previous nodes, shifted by
+    /// Processes one part of eight nodes from index `k` of the strips on. Returns the forces on the previous nodes, shifted by
     /// one, and the power that damping dissipates. It proceeds register by register, because the data of a bend fit into the
     /// registers of any processor.
     #[inline(always)]
@@ -403,7 +403,7 @@ fn walk<P: Pack, const D: usize, const BATCH: bool, const DAMPED: bool>(
     }
 }
 
-/// The edge that closes a ring, and the bends at its two ends.
+/// Adds the forces of the edge that closes a ring and of the bends at its two ends, and the power that their damping dissipates.
 #[inline(always)]
 fn close<P: Pack, const D: usize, const BATCH: bool, const DAMPED: bool>(
     along: &Along,

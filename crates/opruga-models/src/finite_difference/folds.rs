@@ -7,8 +7,8 @@ use opruga_core::state::View;
 /// Below this squared stretch, the force of an edge decreases, because the St. Venant–Kirchhoff law softens.
 const TURNING_POINT: f64 = 1.0 / 3.0;
 
-/// The cosine of 60°. Two edges whose angle at rest is smaller count as one line; they are folded back if their angle later
-/// exceeds 120°. The angles of a smooth closed curve with more than six edges are smaller.
+/// The cosine of 60°. Two edges whose directions differ by less at rest count as one line; they are folded back if their
+/// directions later differ by more than 120°. The angles of a smooth closed curve with more than six edges are smaller.
 const IN_LINE: f64 = 0.5;
 
 /// The edges of a curve or a surface, and the nodes between two edges of one line.

@@ -10,7 +10,7 @@
 //!
 //! Differences are staggered: strains along an axis are defined on edges, shear strains at the centres of cells (of faces in
 //! space), curvatures at nodes and twists at the centres of cells. So the error falls with the square of the spacing, and no
-//! checkerboard mode has zero energy. The paper puts all differences at nodes, which leaves such a mode.
+//! checkerboard mode has zero energy. The paper puts all differences at nodes, which leaves a checkerboard mode without energy.
 //!
 //! Forces are the exact gradient of the discrete energy. The paper's force (its equation 9) neglects that the normal n in B =
 //! n·x″ rotates with the surface; docs/finite-differences.md reports measurements of the consequences.
@@ -330,7 +330,7 @@ impl<const D: usize> Plan<'_, D> {
         for &[before, at, after] in nodes {
             let (a, b) = (minus(&self.at(at), &self.at(before)), minus(&self.at(after), &self.at(at)));
             let normal = cross(&a, &b);
-            // The plane of three nodes has a direction unless rounding determines it.
+            // If three nodes are collinear up to rounding, their plane is undetermined.
             if dot(&normal, &normal) <= 1e-18 * dot(&a, &a) * dot(&b, &b) {
                 return Err(Refusal::NoFrame { node: at });
             }

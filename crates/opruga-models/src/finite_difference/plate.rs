@@ -221,7 +221,7 @@ impl<const D: usize> Kernel<D, 4, 5> for Edge {
     }
 }
 
-/// The twist of a cell: corners as of [`super::solid::Quadrilateral`]; parameters 2 (1 − ν) D A [N·m³], 1/h₁, 1/h₂ [1/m], the
+/// The twist of a cell: corners as in [`super::solid::Quadrilateral`]; parameters 2 (1 − ν) D A [N·m³], 1/h₁, 1/h₂ [1/m], the
 /// twist at rest [1/m] and τ [s]. U = ½ 2 (1 − ν) D A (B₁₂ − B₀)².
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Twist;

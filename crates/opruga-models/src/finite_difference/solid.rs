@@ -175,10 +175,10 @@ pub(super) struct Hexahedron;
 const EDGES: [[[usize; 2]; 4]; 3] =
     [[[0, 1], [3, 2], [4, 5], [7, 6]], [[0, 3], [1, 2], [4, 7], [5, 6]], [[0, 4], [1, 5], [3, 7], [2, 6]]];
 
-/// The two edges of each of two axes on a face, by their index in [`EDGES`].
+/// The two edges of a face along each of its two axes, by their index in [`EDGES`].
 type Face = [[usize; 2]; 2];
 
-/// Both opposite faces for each of the axes (0, 1), (0, 2), (1, 2).
+/// Both opposite faces for each pair of axes (0, 1), (0, 2), (1, 2).
 const FACES: [([usize; 2], [Face; 2]); 3] = [
     ([0, 1], [[[0, 1], [0, 1]], [[2, 3], [2, 3]]]),
     ([0, 2], [[[0, 2], [0, 1]], [[1, 3], [2, 3]]]),

@@ -112,8 +112,8 @@ impl HeatedSlice {
         out
     }
 
-    /// Replaces the results of the law in space by those of the law in the plane for points that have not expanded. So the
-    /// result of a body does not depend on the bodies next to it.
+    /// Replaces the results of the law in space by those of the law in the plane for points that have not expanded. The result of
+    /// a body therefore does not depend on the bodies in the other lanes.
     fn keep_what_is_cold(points: &Points<'_>, packs: usize, cold: &[f64], numbers: &mut [f64]) {
         for point in 0..points.count {
             let growths = growths(points, point);

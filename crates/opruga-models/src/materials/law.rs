@@ -1,5 +1,5 @@
-//! The interface between elements and materials: one call for several points, so that they are compiled separately and not in
-//! pairs.
+//! The interface between elements and materials: one call for several points, so that elements and materials are compiled
+//! separately and not in pairs.
 //!
 //! Elements write deformation gradients of some packs of points to a buffer in the first-level cache, a law computes stresses
 //! from them, and elements compute forces from these. Two calls for 64 points cost less than a nanosecond per point.

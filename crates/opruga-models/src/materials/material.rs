@@ -26,7 +26,7 @@ pub type Tangent<S, const D: usize> = [[[[S; D]; D]; D]; D];
 pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     /// The name of the material in scenes.
     const NAME: &'static str;
-    /// Whether a rotated body has no energy. This is true for all laws except that for small rotations.
+    /// Whether rotating a body takes no energy. This is true for all laws except the law for small rotations.
     const TURNS: bool = true;
     /// Whether ψ at rest is a difference of terms as large as the moduli instead of a sum of squares. Rounding then leaves a
     /// remainder of these terms.
@@ -254,7 +254,7 @@ pub(crate) fn no_tangent<S: Lane, const D: usize>() -> Tangent<S, D> {
     [[[[S::zero(); D]; D]; D]; D]
 }
 
-/// Adds s on ∂Fᵢⱼ/∂Fᵢⱼ: the tangent of s/2 tr FᵀF.
+/// Adds s to ∂Pᵢⱼ/∂Fᵢⱼ for all i and j: the tangent of s/2 tr FᵀF.
 #[inline(always)]
 pub(crate) fn add_identity<S: Lane, const D: usize>(to: &mut Tangent<S, D>, s: S) {
     for i in 0..D {

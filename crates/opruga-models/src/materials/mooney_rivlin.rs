@@ -10,8 +10,8 @@ use opruga_math::matrix::{self, Matrix};
 /// ψ = C₁ (I₁ − 3) + C₂ (I₂ − 3) + a (J² − 1) − b ln J with C₁ + C₂ = μ/2, a = λ/4 − C₂, b = 2(C₁ + C₂) + λ/2; I₁ = tr C,
 /// I₂ = ½(I₁² − tr C²), C = FᵀF (in plane strain with the stretch 1 along z), J = det F.
 ///
-/// The law is meant for rubber at larger stretch. `own` is the share C₂/(C₁ + C₂). It is polyconvex for a ≥ 0, that is, for a
-/// share up to ν/(1 − 2ν). Below J = 0.01 the logarithm is continued as a parabola.
+/// The law is meant for rubber at larger stretch. `own` is the share C₂/(C₁ + C₂). The law is polyconvex for a ≥ 0, that is, for
+/// a share up to ν/(1 − 2ν). Below J = 0.01 the logarithm is continued as a parabola.
 ///
 /// # Source
 /// Ciarlet, Geymonat, "Sur les lois de comportement en élasticité non linéaire compressible" (1982); Ciarlet, *Mathematical

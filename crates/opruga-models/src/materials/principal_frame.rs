@@ -1,12 +1,13 @@
-//! Tangents in the frame of the singular vectors, in passes of which only one depends on the material.
+//! Tangents in the frame of the singular vectors, computed in several passes. Only one of them depends on the material.
 //!
 //! ```text
 //! F ──▶ U, V, σ ──▶ ψᵢⱼ, differences, sums ──▶ without negative eigenvalues ──▶ the whole tangent, where one asks for it
 //!      whatever the material  the material      whatever the material
 //! ```
-//! So singular vectors and eigenvalues are compiled once and not with every material. The passes exchange [`PRINCIPAL`] matrices
-//! for every pack of points: U, V, ψᵢⱼ (before: σ in its first row), and for pairs of axes a < b the components of
-//! [`Principal::pair`] at [a][b] and [b][a] (before: the difference and the sum).
+//! The code for singular vectors and eigenvalues is therefore compiled once, and not with every material. The passes exchange
+//! [`PRINCIPAL`] matrices for every pack of points: U, V, ψᵢⱼ, and for pairs of axes a < b the components of [`Principal::pair`]
+//! at [a][b] and [b][a]. Before the pass of the material, the third matrix contains σ in its first row. Before the pass that
+//! removes negative eigenvalues, the fourth contains the difference at [a][b] and the sum at [b][a].
 
 use super::material::{Material, Parameters, Principal, out_of_frame};
 use super::points::{PRINCIPAL, Points, read, read_matrix, write_matrix, write_tangent};
@@ -14,8 +15,8 @@ use opruga_math::matrix::{self, Matrix};
 use opruga_math::singular::singular;
 use opruga_math::{Lane, Pack, Register, Twin, WIDTH, Work};
 
-/// The packs and parts of two registers. Two are processed at a time, because singular vectors and eigenvalues wait for square
-/// roots and divisions.
+/// The packs and parts of two registers. Two are processed at a time, because the computation of singular vectors and eigenvalues
+/// waits for square roots and divisions.
 type Two = [(usize, usize); 2];
 
 /// Two registers of `parts` from `first` on; if their number is odd, the last one is repeated.
@@ -63,7 +64,8 @@ fn twin<R: Lane, const D: usize>(one: &Matrix<R, D>, other: &Matrix<R, D>) -> Ma
 /// Computes singular vectors and values of F.
 pub(crate) struct Frames<'a, const D: usize> {
     pub(crate) points: Points<'a>,
-    /// Whether the law accounts for rotations. If it does not, it is the same in every frame, and uses the unit vectors.
+    /// Whether the law accounts for rotations. If it does not, its tangent is the same in every frame, and the axes are the unit
+    /// vectors.
     pub(crate) turns: bool,
     pub(crate) out: &'a mut [f64],
 }

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// The volume as a sum over groups of nodes: ½ Σ w xₐ × x_b in the plane, ⅙ Σ w xₐ·(x_b × x_c) in space.
 #[derive(Debug)]
 pub(super) struct CurvedSides {
-    /// The nodes of a group (of two nodes, the last one twice), and w.
+    /// The nodes of each group and its weight w; a group of two nodes contains the last one twice.
     pub(super) terms: Vec<([u32; 3], f64)>,
     /// The nodes of the boundary, ascending.
     pub(super) nodes: Vec<u32>,
@@ -55,7 +55,8 @@ type Term = ([usize; 3], f64);
 /// Facets by the indices of their nodes in a side.
 type Facets = [[usize; 3]];
 
-/// The possible divisions of a side of a cell into facets, and the terms that it adds to the volume; none for a straight side.
+/// The possible divisions of a side of a cell into facets, and the terms that the side adds to the volume; none for a straight
+/// side.
 fn kind<const D: usize>(nodes: usize) -> Option<(&'static [&'static Facets], &'static [Term])> {
     match (D, nodes) {
         (2, 3) => Some((&[&[[0, 2, 2], [2, 1, 1]]], &PARABOLA)),

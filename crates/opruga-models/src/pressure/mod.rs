@@ -56,7 +56,7 @@ struct Chamber {
     boundary: Boundary,
     /// One gas per body.
     gases: Vec<Gas>,
-    /// The offset of its data in the scratch: volume, force per ∂V/∂x and nRT of each body, then the area vectors.
+    /// The offset of the data of the chamber in the scratch: volume, force per ∂V/∂x and nRT of each body, then the area vectors.
     scratch: usize,
     area_len: usize,
 }
@@ -305,7 +305,7 @@ impl<const D: usize> Observe<D> for Pressure {
             let (v, p, nrt) = self.chamber_state(chamber, scratch, body);
             volume += v;
             amount += nrt;
-            // Chambers are weighted by their size; the smallest number gives empty chambers equal weights.
+            // Chambers are weighted by their size. The smallest positive number gives empty chambers equal weights.
             let size = v.abs().larger(f64::MIN_POSITIVE);
             (pressure, weight) = (pressure + p * size, weight + size);
             let name = |what: &str| format!("chamber{}.{what}", number + 1).into();

@@ -8,7 +8,8 @@ use super::shape::{inertia, turned_trace};
 use opruga_core::potential::{Definiteness, Sink};
 use opruga_math::{matrix, symmetric};
 
-/// Below this fraction of its value at rest, the rotation of a cluster is undetermined and has no stiffness.
+/// If G about an axis is below this fraction of its value at rest, the rotation of the cluster about this axis is undetermined
+/// and has no stiffness.
 const UNDETERMINED: f64 = 1e-12;
 
 impl<const D: usize> Matching<D> {

@@ -65,7 +65,7 @@ pub struct ShapeMatchingModel;
 #[derive(Debug)]
 pub struct Matching<const D: usize> {
     clusters: Clusters<D>,
-    /// The pieces that they share, if that saves work.
+    /// The pieces that the clusters share, if using them saves work.
     pieces: Option<Pieces<D>>,
     law: Law,
     stored: Stored,

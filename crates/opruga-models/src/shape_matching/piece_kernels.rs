@@ -146,7 +146,7 @@ fn of_pieces<P: Pack, const D: usize>(pieces: &Pieces<D>, view: &View<D>, rows: 
             for r in 0..registers::<P, D>() {
                 let first = r * P::Part::NUMBERS;
                 let weight = P::Part::load(&weights[first % WIDTH..]);
-                // A wide register holds the maps of two coordinates; in space the second one holds only one.
+                // A wide register holds the maps of two coordinates; in space the second register holds only one.
                 let one = P::Part::splat(u[first / MAP]);
                 let value = if P::Part::NUMBERS > MAP {
                     P::Part::select(low, one, P::Part::splat(u[first / MAP + 1]))

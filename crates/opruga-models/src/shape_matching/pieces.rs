@@ -1,6 +1,6 @@
 //! Overlapping clusters, evaluated node by node instead of slot by slot.
 //!
-//! Nodes that are in the same clusters form a *piece* (Rivers, James 2007, sum over regions in the same way). A cluster needs
+//! Nodes that are in the same clusters form a *piece* (Rivers and James 2007 sum over regions in the same way). A cluster needs
 //! only the moments Σ m u and Σ m u ⊗ Q of a piece, and a node needs only the sum of the affine maps of its clusters:
 //!
 //! ```text

@@ -7,7 +7,7 @@ use opruga_mesh::Mesh;
 /// The largest number of boxes per node.
 const MOST_BOXES_PER_NODE: usize = 8;
 
-/// A node lies on the face of a box if it is closer to it than this, as a fraction of half a box.
+/// A node counts as lying on the face of a box if their distance is below this fraction of half the size of the box.
 const FACE: f64 = 1e-9;
 
 /// The nodes of every cluster, ascending.

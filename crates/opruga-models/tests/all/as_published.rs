@@ -166,7 +166,7 @@ fn step(system: &mut System<2>, mass: f64, floor: f64) {
     system.finish_step(DT);
 }
 
-/// The ring of the engine has the opposite direction: returns its node for a vertex of the program.
+/// Returns the node of the engine's ring for a vertex of the program. The engine's ring runs in the opposite direction.
 fn node(vertex: usize) -> usize {
     (N - vertex) % N
 }
@@ -233,7 +233,7 @@ fn two_thousand_steps() {
     assert!(error < 1e-9, "{error:e}");
 }
 
-/// With another mass the axes differ (E9); other constants change everything.
+/// With a mass other than 1, the axes differ in inertia (E9). The other constants are changed too.
 #[test]
 fn other_constants() {
     let program = Program { mass: 2.5, gy: 35.0, ks: 1200.0, kd: 25.0, final_pressure: 60.0 };

@@ -153,9 +153,10 @@ fn clamped_sheet_in_space() {
     assert!((1.15..1.26).contains(&few) && (1.15..1.26).contains(&many));
 }
 
-/// A tube of regular triangles, `n` around and `rows` along, with edges of one direction either around it or along it.
+/// A tube of regular triangles, `n` around and `rows` along it. The edges of one direction run either around the tube or along
+/// it.
 fn tube(n: u32, rows: u32, around: bool) -> (Mesh<3>, f64) {
-    // A lattice with rows at the distance √3/2, rolled up across its rows or along them.
+    // A lattice with rows √3/2 apart, rolled up along its rows or across them.
     let h = 0.75f64.sqrt();
     let (count, turn) = if around { ([n, rows], f64::from(n)) } else { ([rows, n], f64::from(n) * h) };
     let radius = turn / (2.0 * PI);

@@ -61,7 +61,7 @@ fn bodies_without_a_surface_are_refused() {
     starts(space(&two), "model.several_solids");
     let large = space(&Mesh::icosphere(1.0, 4).unwrap());
     assert!(large.starts_with("limit.memory") && large.contains("bytes"), "{large}");
-    // Inverted: reversed. Nested: a cavity, whatever its orientation.
+    // An inverted boundary is reversed. A boundary inside another one is a cavity, whatever its orientation.
     let mut inside_out = block();
     inside_out.facets.iter_mut().for_each(|facet| facet.swap(0, 1));
     assert_eq!(space(&inside_out), "built");
@@ -71,7 +71,7 @@ fn bodies_without_a_surface_are_refused() {
     assert_eq!(space(&nested), "built");
 }
 
-/// U of a uniform strain is V σ:ε/2. Expansion is resisted, which it would not be in the frame of least energy.
+/// U of a uniform strain is V σ:ε/2. The body resists expansion; in the frame of least energy it would not.
 #[test]
 fn uniform_strains_have_their_energy() {
     let nu = 0.3;
@@ -136,8 +136,8 @@ fn stresses<const D: usize>(
     all.into_iter().filter(|(name, _)| name.starts_with("stress")).map(|(name, x)| (name.into_owned(), x)).collect()
 }
 
-/// Under a uniform small strain the stress is λ tr ε 1 + 2μ ε at every point, in the middle and close to a side; in a rotated
-/// body, this holds in its frame; in plane stress, with 2λμ/(λ + 2μ) for λ.
+/// Under a uniform small strain the stress is λ tr ε 1 + 2μ ε at every point, in the middle and close to a side. In a rotated
+/// body, this holds in the frame of the body. In plane stress, 2λμ/(λ + 2μ) replaces λ.
 #[test]
 fn stresses_of_uniform_strains_are_those_of_hooke() {
     let (young, nu) = (7e4, 0.28);
@@ -226,8 +226,8 @@ fn off_on_the_boundary<const D: usize>(
     (worst, compared)
 }
 
-/// Within a twentieth: K is the symmetric part of the collocation matrix, which on such meshes deviates from the whole matrix by
-/// that much.
+/// Stresses agree within a twentieth: K is the symmetric part of the collocation matrix, and on these meshes it deviates from the
+/// whole matrix by that much.
 #[test]
 fn stresses_on_the_boundary_are_those_of_hooke() {
     let (young, nu) = (2e5, 0.3);

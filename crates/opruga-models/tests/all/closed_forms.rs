@@ -125,7 +125,7 @@ fn breathing_of_gas_alone() {
     assert!((square / (12.0 * PI * 1.4 * 300.0 * 0.5 / mass) - 1.0).abs() < 0.02, "{square}");
 }
 
-/// A rhombus-free patch of the regular triangular lattice.
+/// A patch of the regular triangular lattice. Every second row is shifted by half an edge, so the patch is nearly a rectangle.
 fn lattice(n: u32) -> Mesh<2> {
     let h = 0.75f64.sqrt();
     let mut positions = Vec::new();
@@ -147,7 +147,7 @@ fn lattice(n: u32) -> Mesh<2> {
     mesh
 }
 
-/// The lattice of springs k is a sheet with E₂D = 2k/√3, ν = 1/3 and boundary springs k/2.
+/// The lattice of springs k behaves like a sheet with E₂D = 2k/√3 and ν = 1/3, if the springs on the boundary have k/2.
 #[test]
 fn lattice_modulus() {
     let mesh = lattice(9);

@@ -47,7 +47,7 @@ fn hollow() -> Mesh<3> {
     mesh.facets = mesh.facets_from_cells().unwrap();
     mesh
 }
-/// One state of a mesh that needs several tiles. It is small, since there are as many differences as coordinates.
+/// Options with a single random state, for larger meshes: a state takes as many finite differences as there are coordinates.
 fn once() -> Options {
     Options { states: 1, ..Options::default() }
 }
@@ -177,7 +177,7 @@ fn shape_matching_in_space() {
     conformance("regions", &ShapeMatching, &regions, &block(), &Options::default()).assert();
 }
 
-/// Collapsed bodies have no frame that follows them, so the row for coincident nodes is not claimed.
+/// No frame follows a collapsed body, so the model does not claim a finite force for coincident nodes.
 #[test]
 fn boundary_element_in_the_plane() {
     let options = Options { coincident: false, ..once() };
@@ -253,7 +253,7 @@ fn finite_volume_in_space() {
     }
 }
 
-/// Drag brakes rigid motion by design, so it does not claim that row.
+/// Drag brakes rigid motion by design, so it does not claim the properties of rigid motion.
 #[test]
 fn drag() {
     let options = Options { rigid: false, ..Options::default() };

@@ -1,5 +1,5 @@
 //! Curves whose edges follow the numbers of their nodes are evaluated in one walk; others are evaluated stencil by stencil. Both
-//! have the same forces.
+//! evaluations give the same forces.
 
 use crate::support::models::FiniteDifference;
 use crate::support::{Part, system};

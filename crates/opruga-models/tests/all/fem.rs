@@ -83,7 +83,7 @@ fn every_material_on_every_element_in_space() {
     }
 }
 
-/// Linear simplices whose nodes resist volume, which couples more nodes than those of a cell.
+/// Linear simplices whose nodes resist changes of volume. This couples more nodes than those of one cell.
 #[test]
 fn every_material_with_volumes_of_nodes() {
     for material in NAMES {

@@ -159,7 +159,7 @@ where
     }
 }
 
-/// If nodes resist volume, uniform motion stays uniform, with the stress of Hooke's law at small strain.
+/// If nodes resist changes of volume, uniform motion stays uniform, with the stress of Hooke's law at small strain.
 #[test]
 fn volumes_of_nodes_leave_even_motion_even() {
     let mesh = irregular([3, 3, 3]).into_simplices().unwrap();
@@ -172,7 +172,7 @@ fn volumes_of_nodes_leave_even_motion_even() {
         move_all(&mut system, |x| [x[0] + 2e-6 * x[0] + 1e-6 * x[1], x[1] - 1e-6 * x[1], x[2]]);
         let all = forces(&mut system);
         let between = (0..all.len()).filter(|k| inner(k / 3)).map(|k| all[k]);
-        // Positions have ten digits for such a strain.
+        // Positions keep ten digits of the displacements under a strain of 1e-6.
         assert!(largest(between) < 1e-8 * largest(all.iter().copied()), "{material}");
         let view = system.view(Stage::Current, 0.0);
         let potential: &dyn Potential<3> = &*system.members[0].potential;
@@ -333,7 +333,7 @@ fn plane_strain_has_a_stress_across_the_plane() {
     }
 }
 
-/// The law in the plane is that in space with the stretch 1 along z: the force of a slice is proportional to its depth.
+/// The law in the plane is the law in space with the stretch 1 along z: the force of a slice is proportional to its depth.
 #[test]
 fn a_slice_of_a_long_body_is_the_body() {
     let plane = Mesh::<2>::grid([0.0; 2], [1.0, 0.6], [3, 2]).unwrap();
@@ -407,7 +407,7 @@ fn materials_differ_from_cell_to_cell() {
     }
 }
 
-/// Two adjacent cells whose parameters the mesh gives have the same forces as the two cells by themselves, in motion too.
+/// Two adjacent cells with parameters from the mesh have the same forces as the two cells by themselves, in motion too.
 #[test]
 fn every_number_of_the_material_may_differ_from_cell_to_cell() {
     let mut both = Mesh::<2>::grid([0.0; 2], [2.0, 1.0], [2, 1]).unwrap();

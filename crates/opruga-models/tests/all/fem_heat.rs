@@ -25,8 +25,8 @@ fn meshes<const D: usize>(cells: [u32; D]) -> [(&'static str, Mesh<D>); 3] {
     [("boxes", boxes), ("simplices", simplices), ("quadratic", quadratic)]
 }
 
-/// Warm, cold and at the reference temperature: bodies side by side differ only in parameters, and each is the same as alone, to
-/// the bit.
+/// Warm, cold and at the reference temperature: bodies side by side differ only in parameters, and each has the same bits as
+/// alone.
 fn parameters(material: &str, plane: &str) -> [Values; 3] {
     let of = |temperature: f64, damping: f64| {
         values!(fem, material: material, youngs_modulus: 900.0, poissons_ratio: 0.4, damping: damping, plane: plane,

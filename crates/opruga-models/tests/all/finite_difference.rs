@@ -177,7 +177,7 @@ fn solids_under_affine_motion_have_the_energy_of_st_venant_and_kirchhoff() {
     assert!((found / st_venant_kirchhoff(f, [lambda, mu]) - 1.0).abs() < 1e-13);
 }
 
-/// The order of convergence: the power of the spacing with which an error falls from one mesh to one twice as fine.
+/// The order of convergence: the power of the spacing with which an error falls from one mesh to another that is twice as fine.
 fn order(errors: [f64; 2]) -> f64 {
     Lane::ln((errors[0] / errors[1]).abs()) / Lane::ln(2.0_f64)
 }
@@ -329,8 +329,8 @@ fn cells_under_affine_motion_have_the_stress_of_finite_elements() {
     compare(&block, f, None, &crate::support::models::Fem);
 }
 
-/// The energy of a body whose neighbouring nodes alternate along an axis, by 1e-3 of a cell, and of one deformed by a wave as
-/// long as the body.
+/// The energies of a body in two states, displaced along an axis by up to 1e-3 of a cell: first with neighbouring nodes in
+/// opposite directions, then in a wave as long as the body.
 #[allow(clippy::disallowed_methods, reason = "the start of a test")]
 fn energies<const D: usize>(mesh: &Mesh<D>, thin: bool, axis: usize) -> [f64; 2] {
     const CELL: f64 = 0.2;

@@ -207,8 +207,8 @@ fn grouped<const D: usize>(mut mesh: Mesh<D>, groups: u32) -> Mesh<D> {
 }
 
 /// Nodes with the same clusters are summed together, unless the body is so much larger than its clusters that digits would be
-/// lost; then every cluster is evaluated by itself. A distant part of the same body selects between the two, and changes no
-/// force.
+/// lost; then every cluster is evaluated by itself. A distant part of the body decides which of the two happens, and it changes
+/// no force.
 #[test]
 fn a_far_part_changes_no_force_of_overlapping_clusters() {
     fn compare<const D: usize>(mesh: &Mesh<D>, groups: u32, fit_share: f64, size_of: Option<f64>) -> bool {
@@ -248,8 +248,8 @@ fn a_far_part_changes_no_force_of_overlapping_clusters() {
             two_ways += u32::from(compare(&grouped(sheet.clone(), groups), groups, fit_share, None));
         }
     }
-    // A chain almost so long that digits would be lost: twelve digits relative to κ m r, the force of a cluster that is displaced
-    // by its radius.
+    // A chain that is almost long enough for digits to be lost. Forces keep twelve digits relative to κ m r, the force of a
+    // cluster that is displaced by its radius.
     let chain = Mesh::<2>::line([0.0; 2], [100.0, 0.0], 100).unwrap();
     compare(&grouped(chain, 49), 49, 0.5, Some(300.0 * 2.0 * 1.3));
     assert!(two_ways > 8, "{two_ways} of 12: what is summed up in one way compares nothing");

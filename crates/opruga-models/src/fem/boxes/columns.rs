@@ -18,7 +18,7 @@ const AMPLITUDES: usize = MOST_MODES * 3;
 pub(super) struct ByColumns<R, const D: usize, const N: usize>(pub(super) [[[[R; N]; N]; D]; D]);
 
 impl<R: Lane, const D: usize, const N: usize> ByColumns<R, D, N> {
-    /// By two different columns.
+    /// Adds a derivative by two different columns.
     #[inline(always)]
     fn add(&mut self, [i, c]: [usize; 2], [m, d]: [usize; 2], value: R) {
         if i <= m {
@@ -237,8 +237,8 @@ fn change_of_amplitudes<R: Lane, const D: usize, const N: usize>(
     change
 }
 
-/// Adds the second derivatives of q under the forces u on it: those of φ(J) N : cof F with N = Σ gₐ ⊗ uₐ. Also adds those of
-/// the guard energy ½ (1 − s) Σ kₐ gₐ·gₐ, which replaces the law in a degenerate cell, except those by g alone.
+/// Adds the second derivatives of q under the forces u on q: those of φ(J) N : cof F with N = Σ gₐ ⊗ uₐ. Also adds those of the
+/// guard energy ½ (1 − s) Σ kₐ gₐ·gₐ, which replaces the law in a degenerate cell, except those by g alone.
 #[inline(always)]
 fn add_bent_frame<R: Lane, const D: usize, const N: usize>(
     kept: &Kept<R, D>,

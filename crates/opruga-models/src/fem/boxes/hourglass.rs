@@ -64,8 +64,8 @@ pub(super) const fn pairs<const D: usize>() -> usize {
     if D == 2 { 2 } else { PAIRS }
 }
 
-/// The number of geometric data of a cell: the shares of the functions (row by row), the measures of its points, the means of
-/// the functions of the stresses, and its axes.
+/// How many numbers describe the geometry of a cell: the shares of the functions (row by row), the measures of its points, the
+/// means of the functions of the stresses, and its axes.
 pub(super) const fn stored<const D: usize, const N: usize>() -> usize {
     measures_at::<N>() + N + fields::<D>() + D * D
 }
@@ -79,7 +79,7 @@ pub(super) const fn measures_at<const N: usize>() -> usize {
 /// grid.
 pub(super) const ROUNDING: f64 = 1.0 / (1u64 << 42) as f64;
 
-/// The number of material data of a cell: X row by row, c, λ − λ′, and kₐ.
+/// How many numbers describe the material of a cell: X = H⁻¹ L row by row, c, λ − λ′, and kₐ.
 pub(super) const fn stiffness_numbers<const D: usize, const N: usize>() -> usize {
     let size = modes::<D, N>() * D;
     size * size + 2 + modes::<D, N>()
@@ -124,7 +124,7 @@ fn product(corner: usize, axes: &[usize]) -> f64 {
 /// A cell at rest.
 #[derive(Debug)]
 pub(super) struct Rest<const D: usize, const N: usize> {
-    /// The share of every function but 1 (whose sum over the corners is Σ ±x) in the mean of ∂x/∂X (D columns [1/m]) and in the
+    /// For every function except 1, the share of its sum Σ ±x over the corners in the mean of ∂x/∂X (D columns [1/m]) and in the
     /// hourglass amplitudes.
     pub(super) shares: [[f64; N]; N],
     /// The measures of the Gauss points [m³].
@@ -368,8 +368,8 @@ mod tests {
         assert!((beam / (young * inertia) - 1.0).abs() < 1e-10, "{beam}");
     }
 
-    /// Hourglass vectors vanish on affine fields, they have the amplitudes of the hourglass functions, and every mode has
-    /// stiffness, also in skewed and tapered cells.
+    /// Hourglass vectors vanish on affine fields and give the amplitudes of the hourglass functions. Every mode has stiffness,
+    /// even in skewed and tapered cells.
     #[test]
     fn no_cell_is_without_stiffness() {
         let mut random = 5u64;
@@ -393,7 +393,7 @@ mod tests {
                     assert!((own - f64::from(u8::from(d == mode))).abs() < 1e-13);
                 }
             }
-            // The sum of the inverses of the eigenvalues, which bounds each of them.
+            // The sum of the inverses of the eigenvalues, which bounds each inverse.
             let mut rows = stiffness(&rest, 1.0, 0.4999 / 1.4999);
             for (r, row) in rows.iter_mut().enumerate() {
                 row.extend((0..12).map(|k| f64::from(u8::from(k == r))));

@@ -22,7 +22,7 @@ pub(in super::super) struct Boxes {
     pub(super) one_stiffness: bool,
     /// The pattern of the nonzero shares of the functions in F and g; rows are functions.
     pub(super) shares: Pattern,
-    /// Which entries of X are not zero.
+    /// Which entries of the matrix X = H⁻¹ L (see [`super::hourglass`]) are not zero.
     pub(super) response: Pattern,
     /// Whether any function of the stresses has a nonzero mean.
     pub(super) uneven: bool,

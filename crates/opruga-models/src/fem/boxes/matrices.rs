@@ -75,7 +75,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
         let one = matrix::identity::<R, D>();
         let strained = rest.strained(&if turns { kept.f } else { one });
         let plain = rest.strained(&one);
-        // ∂F_q/∂β without the functions.
+        // ∂F_q/∂β without the factors f_s(q).
         let (along, traces) = strained.pairs();
         // ∂F_q/∂F: · (1 + ε_q).
         let mut grown = [one; N];

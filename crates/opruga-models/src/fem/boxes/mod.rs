@@ -101,7 +101,7 @@ impl<R: Lane, const D: usize> Frame<R, D> {
         }
         Frame { cofactors, phi: [phi, first, second], lost }
     }
-    /// Cᵀ times the amplitudes.
+    /// The transposed cofactors times the amplitudes.
     #[inline(always)]
     fn pulled(cofactors: &Matrix<R, D>, modes: usize, g: &Modes<R, D>) -> Modes<R, D> {
         let mut out = [[R::zero(); D]; MOST_MODES];

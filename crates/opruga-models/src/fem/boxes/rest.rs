@@ -17,7 +17,7 @@ pub(super) struct Rest<'a, R, const D: usize, const N: usize> {
     /// The shares of the functions: of eight cells side by side, or of one cell for eight bodies.
     shares: &'a [f64],
     batch: bool,
-    /// X, and the offset of the part.
+    /// The matrix X = H⁻¹ L (see [`super::hourglass`]), and the offset of the part.
     response: &'a [f64],
     offset: usize,
     /// The measures of the points.
@@ -26,7 +26,7 @@ pub(super) struct Rest<'a, R, const D: usize, const N: usize> {
     means: [R; FIELDS],
     /// The axes of the cell, in columns.
     axes: Matrix<R, D>,
-    /// Their products, in the order of [`PAIR`].
+    /// The symmetric products of the axes, in the order of [`PAIR`].
     products: [R; PAIRS],
     /// The factor of the trace in the strain of a stress.
     c: R,
@@ -151,7 +151,7 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         out
     }
 
-    /// An entry of X.
+    /// An entry of the matrix X.
     #[inline(always)]
     pub(super) fn response(&self, stress: usize, amplitude: usize) -> R {
         R::load(&self.response[(stress * modes::<D, N>() * D + amplitude) * WIDTH + self.offset..])
@@ -197,7 +197,7 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         out
     }
 
-    /// Values at the points of sums over the functions of the stresses, plus a value of the whole cell.
+    /// The values at all points of a sum over the functions of the stresses, plus a value for the whole cell.
     #[inline(always)]
     pub(super) fn at_points(&self, whole: R, of_fields: &[R; FIELDS]) -> [R; N] {
         let mut c = [R::zero(); N];
@@ -211,7 +211,7 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         corners::values(&c)
     }
 
-    /// Does the same for matrices, and writes them entry by entry.
+    /// Does the same as [`Rest::at_points`] for matrices, and writes them entry by entry.
     #[inline(always)]
     pub(super) fn matrices_at_points(
         &self,

@@ -61,7 +61,7 @@ pub(crate) fn system<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>]) -> Syste
     system_with_mass(mesh, parts, 1.0)
 }
 
-/// The same with another mass of every node [kg].
+/// The same system with a given mass of every node [kg].
 pub(crate) fn system_with_mass<const D: usize>(mesh: &Mesh<D>, parts: &[Part<D>], mass: f64) -> System<D> {
     let nodes = mesh.positions.len();
     let places = Layout::Single.index_count(nodes);
@@ -111,7 +111,7 @@ pub(crate) fn refusal<const D: usize>(mesh: &Mesh<D>, model: &dyn Model<D>, valu
 
 /// The energy of all models [J].
 pub(crate) fn energy<const D: usize>(system: &mut System<D>) -> f64 {
-    // Forces prepare all models.
+    // Computing the forces prepares all models.
     system.forces(true).unwrap();
     let view = system.view(Stage::Current, system.time);
     system.members.iter().map(|m| sum_in_fixed_order(&m.potential.energy(system.simd, &view, &m.scratch))).sum()
