@@ -1,4 +1,4 @@
-//! The places where a body bends: hinges of surfaces, triples of chains.
+//! The hinges of surfaces and the triples of chains at which a body bends.
 
 use crate::geometry::ascending;
 use crate::{Mesh, MeshError};

@@ -135,7 +135,7 @@ impl<const D: usize> Mesh<D> {
         }
         origins.extend((first..self.cells.len()).map(|cell| cell as u32));
         for [a, b, c, d] in std::mem::take(&mut self.cells.quadrilaterals) {
-            // On a grid with rows of n nodes the lower left node is i + n·j; the row length is the step up.
+            // On a grid with rows of n nodes the lower left node is i + n·j, so n is the step to the node above.
             let row = d.abs_diff(a).max(1);
             if (a % row + a / row).is_multiple_of(2) {
                 self.cells.triangles.extend([[a, b, c], [a, c, d]]);

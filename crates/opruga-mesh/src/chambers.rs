@@ -14,8 +14,7 @@ pub struct Component {
     pub signed_volume: f64,
 }
 
-/// The use of a ridge, at which facets meet, by one facet. A ridge is a node in the plane and an edge in space. `forward`
-/// distinguishes the two directions.
+/// One facet's use of a ridge. Facets meet at ridges, which are nodes in the plane and edges in space. `forward` distinguishes the two directions.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Use {
     ridge: [u32; 2],

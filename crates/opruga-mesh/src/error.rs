@@ -4,7 +4,7 @@ use opruga_math::words::{counted, number};
 use opruga_math::{messages, terms};
 
 terms! {
-    /// The kinds of elements of a mesh; used to name the place of an error.
+    /// The kinds of elements of a mesh, as messages name them.
     pub enum Element = "part.mesh_element" {
         Facet = "facet",
         Wire = "wire",
@@ -176,7 +176,7 @@ messages! {
     }
 }
 
-/// A spacing that would keep the volume.
+/// The end of a message: a spacing that would keep the volume, if there is one.
 fn keeps(finer: Option<f64>) -> String {
     finer.map_or(String::new(), |spacing| format!("; {} m would keep it", number(spacing)))
 }

@@ -35,9 +35,9 @@ pub struct CutFace {
 
 /// Cuts a face with at least three corners along diagonals inside it.
 ///
-/// Its plane is normal to the area vector ½Σ xᵢ×xⱼ and passes through the mean of the corners; it determines what is inside. A face of four corners
-/// is cut along the diagonal that is inside it, or along the shorter one if both are inside. Larger faces get the constrained Delaunay triangulation
-/// of their corners, which maximises the smallest angle.
+/// The plane of the face is normal to the area vector ½Σ xᵢ×xⱼ and passes through the mean of the corners. The inside of the face is determined in
+/// this plane. A face of four corners is cut along the diagonal that is inside it, or along the shorter one if both are inside. Larger faces get the
+/// constrained Delaunay triangulation of their corners, which maximises the smallest angle.
 ///
 /// # Errors
 /// [`FaceError::Crossing`], [`FaceError::Folded`].
@@ -114,7 +114,7 @@ fn range(points: &[[f64; 3]], axis: usize) -> f64 {
     high - low
 }
 
-/// Two directions in the plane with a normal, counter-clockwise as seen against it; exact if the normal is an axis.
+/// Two directions in the plane with a given normal, counter-clockwise as seen against the normal; exact if the normal is an axis.
 fn plane(normal: Point) -> [Point; 2] {
     let least = (1..3).fold(0, |best, axis| if normal[axis].abs() < normal[best].abs() { axis } else { best });
     let mut axis = [0.0; 3];

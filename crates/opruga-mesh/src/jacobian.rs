@@ -21,8 +21,8 @@
 use crate::quadratic::{TETRAHEDRON_EDGES, TRIANGLE_SIDES};
 use std::collections::VecDeque;
 
-/// The maximum number of pieces of a cell that are examined. A quadratic cell that is nearly degenerate in a tenth of its size at one corner takes
-/// about ten. If a cell takes more than this, its minimum of J is within about a thousandth of zero, relative to its maximum.
+/// The maximum number of pieces of a cell that are examined. A quadratic cell that is nearly degenerate in a tenth of its size at one corner needs
+/// about ten. If a cell needs more than the maximum, its minimum of J is within about a thousandth of zero, relative to its maximum of J.
 const MOST_PIECES: usize = 512;
 
 /// The error of a coefficient, in units of the rounding error of a position times the derivative by that position: it is a sum of about ten products.
@@ -155,7 +155,7 @@ fn indices(corners: usize, degree: usize) -> Vec<[usize; 4]> {
     out
 }
 
-/// The position of a coefficient of a simplex in that order, by the indices of the corners after the first.
+/// The position of a coefficient of a simplex in the order of [`indices`], by the indices of the corners after the first.
 #[derive(Clone, Copy, Debug)]
 struct Order([u8; 64]);
 
@@ -262,7 +262,7 @@ impl Net {
         Net { basis: Basis::Box { axes, degree }, coefficients, corners: vec![[0.0; 4], [1.0; 4]] }
     }
 
-    /// det ∂x/∂ξ is bilinear: the determinants at the corners.
+    /// The coefficients are the determinants at the corners, because det ∂x/∂ξ is bilinear.
     fn quadrilateral<const D: usize>(nodes: &[[f64; D]]) -> Net {
         // The first axis runs from corner 0 to 1 below and 3 to 2 above, the second from 0 to 3 and 1 to 2.
         let first = [less(&nodes[1], &nodes[0]), less(&nodes[2], &nodes[3])];
@@ -271,7 +271,7 @@ impl Net {
         Net::boxed(2, 1, vec![at(0, 0), at(1, 0), at(0, 1), at(1, 1)])
     }
 
-    /// ∂x/∂ξ is bilinear in the other two axes: bᵢ = Σ det / Π (2 over i) over the ways to distribute an index over the two factors.
+    /// Along each axis, ∂x/∂ξ is bilinear in the other two. So bᵢ = Σ det / Π (2 over i) over the ways to distribute an index over the two factors.
     fn hexahedron<const D: usize>(nodes: &[[f64; D]]) -> Net {
         let corner = |x: usize, y: usize, z: usize| &nodes[[0, 1, 3, 2][x + 2 * y] + 4 * z];
         let mut coefficients = vec![0.0; 27];

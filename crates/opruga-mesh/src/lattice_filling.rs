@@ -58,7 +58,7 @@ impl Mesh<3> {
         }
         let (keys, mut mesh) = loop {
             let (keys, mesh) = body(&kept, &lattice)?;
-            // If steps of the lattice touch only along an edge, the tetrahedra around that edge close the gap.
+            // If parts of the body touch only along an edge, the tetrahedra around that edge are added.
             let crowded = crowded_edges(&mesh.facets);
             if crowded.is_empty() {
                 break (keys, mesh);
@@ -143,8 +143,7 @@ fn around_edge(edge: [Key; 2], lattice: &Lattice) -> Vec<[Key; 4]> {
     found
 }
 
-/// The tetrahedron of the body that contains a point; if there is none, the nearby tetrahedron that the point is least outside
-/// of.
+/// The tetrahedron of the body that contains a point; if there is none, the nearby tetrahedron in which the smallest weight of the point is largest.
 fn kept_holder(point: [f64; 3], kept: &BTreeMap<[Key; 4], ()>, lattice: &Lattice) -> [Key; 4] {
     let ideal = holder(point, lattice);
     if kept.contains_key(&ideal) {

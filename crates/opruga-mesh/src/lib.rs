@@ -9,9 +9,9 @@
 //! | which edges have springs, in the order of memory access | [`Mesh::edges`], [`edge_runs`], [`Mesh::edge_areas`] |
 //! | which nodes are neighbours of a node | [`node_neighbours`], [`Mesh::node_rings`] |
 //! | which closed chambers hold gas | [`Mesh::chambers`], [`Mesh::components`], [`signed_volume`], [`Mesh::orient_outward`] |
-//! | where it bends | [`Mesh::hinges`], [`Mesh::bends`] |
+//! | where a body bends | [`Mesh::hinges`], [`Mesh::bends`] |
 //! | which length, area or volume belongs to each node | [`Mesh::lumped_measures`], [`Mesh::measure`] |
-//! | whether it is sound | [`Mesh::check`], [`Mesh::validate`], [`Mesh::cell_quality`], [`Mesh::cell_measures`] |
+//! | whether a mesh is sound | [`Mesh::check`], [`Mesh::validate`], [`Mesh::cell_quality`], [`Mesh::cell_measures`] |
 //! | what bounds the cells | [`Mesh::facets_from_cells`], [`Mesh::into_simplices`] |
 //! | what fills a closed surface | [`Mesh::tetrahedra_filling`], [`Mesh::lattice_filling`] |
 //! | cells of second order | [`Mesh::into_quadratic`] |

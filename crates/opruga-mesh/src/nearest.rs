@@ -26,7 +26,7 @@ impl Nearest {
                 continue;
             }
             if node < self.tree.leaves {
-                // The nearer one is examined first.
+                // The nearer of the two nodes is examined first.
                 let far = |node: usize| distance_to(&self.tree.boxes[node], &from);
                 let (p, q) = (2 * node, 2 * node + 1);
                 waiting.extend(if far(p) < far(q) { [q, p] } else { [p, q] });

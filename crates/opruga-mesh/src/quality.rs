@@ -11,7 +11,7 @@ pub struct CellMeasure {
     /// The smallest det ∂x/∂ξ at its nodes, as the area or volume that a cell with this value everywhere would have. If the determinant is positive
     /// at the nodes but negative between them, the smallest value there: see [`crate::least_jacobian`].
     pub least: f64,
-    /// The largest such value at its nodes.
+    /// The largest of these values at its nodes.
     pub greatest: f64,
     /// The longest distance between two of its nodes [m].
     pub longest: f64,

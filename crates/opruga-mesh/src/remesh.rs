@@ -308,8 +308,7 @@ impl Work {
         if around.iter().chain(&other).filter(|node| **node != kept && **node != gone).any(far) {
             return false;
         }
-        // A crease must not change its shape: a node of it may be removed only if the neighbours on the crease are on one line
-        // with it.
+        // A crease must hardly change its shape: one of its nodes may be removed only if it is nearly on a line with its neighbours on the crease.
         if self.sharpness(gone) == 2 {
             let along: Vec<u32> =
                 other.iter().copied().filter(|node| self.sharp.contains_key(&edge(gone, *node))).collect();

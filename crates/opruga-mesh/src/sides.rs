@@ -136,8 +136,8 @@ impl<const D: usize> Mesh<D> {
     /// The sides of cells that are on the boundary and whose nodes are all selected, each with its nodes as seen from outside.
     ///
     /// In the plane these are two ends, and the node between them if the cell is quadratic. In space they are the three corners of a triangle, the
-    /// four of a quadrilateral, or three corners and the nodes between corners 0–1, 1–2, 2–0. Facets without cells are sides themselves. Nodes beyond
-    /// the mesh select nothing.
+    /// four of a quadrilateral, or three corners and the nodes between corners 0–1, 1–2, 2–0. Facets without cells are sides themselves. Numbers
+    /// beyond the last node are ignored.
     pub fn boundary_sides(&self, selected: &[u32]) -> Vec<Vec<u32>> {
         let chosen: BTreeSet<u32> = selected.iter().copied().collect();
         // The facets of which a side consists: a map from ascending nodes to numbers.
@@ -187,7 +187,7 @@ impl<const D: usize> Mesh<D> {
     /// shape functions of the cells.
     ///
     /// A uniform traction multiplied by the shares does the same work as the traction on the sides, for every displacement of the cells, if sides are
-    /// flat. Nodes without a share are omitted. Nodes beyond the mesh select nothing.
+    /// flat. Nodes without a share are omitted. Numbers beyond the last node are ignored.
     pub fn boundary_shares(&self, selected: &[u32]) -> BTreeMap<u32, f64> {
         let mut shares = BTreeMap::new();
         for side in self.boundary_sides(selected) {

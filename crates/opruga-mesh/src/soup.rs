@@ -7,8 +7,8 @@ use crate::geometry::{lift, norm, subtract, triangle_area};
 use crate::{Mesh, MeshError, Must, Quantity, signed_volume};
 use std::collections::BTreeMap;
 
-/// Joins points that are at most `distance` [m] apart (0: at the same position) and lets triangles refer to the first of each cluster; returns the
-/// number of points that were joined to another. The remaining points keep their order.
+/// Joins points that are at most `distance` [m] apart (0: at the same position) and lets triangles refer to the first point of each cluster; returns
+/// the number of points that were joined to another. The remaining points keep their order.
 ///
 /// A point joins the first earlier one that is near enough, so clusters do not grow along chains.
 ///
@@ -48,8 +48,8 @@ pub fn weld(positions: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]], distance:
 fn first_coincident(positions: &[[f64; 3]]) -> Vec<u32> {
     const FREE: u32 = u32::MAX;
     let key = |node: u32| positions[node as usize].map(|x| (x + 0.0).to_bits());
-    // The first point at each position, in a hash slot given by its coordinates or in the next free one. Most points of a soup occur several times,
-    // and soon after one another.
+    // The first point at each position, in a hash slot given by its coordinates or in the next free one. Most positions of a soup occur several
+    // times, and close together in the list.
     let slots = (2 * positions.len()).next_power_of_two();
     let mut firsts = vec![FREE; slots];
     let slot_of = |[x, y, z]: [u64; 3]| {
@@ -106,7 +106,7 @@ fn first_within(positions: &[[f64; 3]], distance: f64) -> Vec<u32> {
     target
 }
 
-/// The changes made by an orientation.
+/// The changes that were made to orient the triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Turned {
     /// Triangles with the opposite orientation to their neighbours.

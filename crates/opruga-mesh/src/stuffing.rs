@@ -15,8 +15,8 @@ pub const LARGEST_DIHEDRAL_ANGLE: f64 = 164.8;
 /// A lattice point moves to the point at which the surface cuts one of its edges, if that point is closer than this fraction of a long edge, or of a
 /// short edge.
 ///
-/// Of the pairs on a grid of 0.003 and 0.005, this one gives the largest minimum angle, 10.76°, with a maximum angle of 164.38°. The test below
-/// measures both over all stencils, with cuts at and around these limits.
+/// Of the pairs on a grid with steps of 0.003 and 0.005, this one gives the largest minimum angle, 10.76°, with a maximum angle of 164.38°. The test
+/// below measures both over all stencils, with cuts at and around these limits.
 const WARP_LIMITS: [f64; 2] = [0.284, 0.400];
 
 /// The number of halvings that locate the intersection of an edge and the surface, to 10⁻¹² of the edge.
@@ -362,7 +362,7 @@ impl<'a> Stuffing<'a> {
     }
 
     /// Whether the quadrilateral p, q, cut of qm, cut of pm on a face of the lattice is cut from p; otherwise it is cut from q. Both tetrahedra at
-    /// the face agree.
+    /// the face make the same choice.
     ///
     /// It is cut from the far end of a cut on a long edge. If both cut edges are short, it is cut from the end with an even number of coordinates
     /// greater than those of m: the two faces at p and q of a tetrahedron are then cut from different ends (the parity rule of Labelle and Shewchuk).

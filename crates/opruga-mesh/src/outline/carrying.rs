@@ -77,7 +77,7 @@ pub fn carry(mesh: &mut Mesh<2>, rings: &[Ring], painted: &[Painted]) -> Result<
 /// ones would show details that no cell has.
 const EDGE: f64 = 0.5;
 
-/// Rings with edges of about this length [m]. If such edges would cross, the rings of the drawing with long edges divided.
+/// Rings with edges of about this length [m]. If edges of this length would cross, the rings of the drawing are returned, with long edges divided.
 fn followed(rings: &[Ring], length: f64) -> Vec<Ring> {
     super::resampled(rings, length).unwrap_or_else(|_| {
         let cut = |ring: &Ring| {
@@ -197,8 +197,7 @@ impl<'m> Grid<'m> {
                     best = weighed;
                 }
             }
-            // A cell that contains the point ends the search. If a nearby cell has been found, the search goes on by one more
-            // bin.
+            // A cell that contains the point ends the search. If a nearby cell has been found, the search continues for one more bin.
             if best.0 >= 0.0 || best.0 > f64::NEG_INFINITY && reach > 0 {
                 break;
             }

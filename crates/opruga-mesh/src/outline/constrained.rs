@@ -78,8 +78,8 @@ fn has_long_side(ring: &Ring) -> bool {
     false
 }
 
-/// Inserts vertices without edges. Returns them with the number of the point of each, or the number of a point that coincides
-/// with another.
+/// Inserts vertices without edges. Returns the triangulation and, for each vertex, the number of its point. The error is the number of a point that
+/// coincides with another.
 ///
 /// From the list of all points, some distant ones are inserted first, then those halfway between, and so on. The search for each starts at the
 /// previous point of the list, which is near. The outer corners are inserted before all others, because points on one straight line form no
@@ -164,8 +164,8 @@ mod tests {
         }
     }
 
-    /// Before a corner has been inserted, points of a straight side are in no triangle. For one side of a strip, both sides of one, and the sides of
-    /// a rotated square, each point is accessed a few hundred times, however many points there are.
+    /// Before a corner has been inserted, points of a straight side are in no triangle. For one side of a strip, both sides of a strip, and the sides
+    /// of a rotated square, each point is accessed a few hundred times, however many points there are.
     #[test]
     fn points_of_long_straight_sides_are_looked_at_equally_often_however_many_there_are() {
         let looks = |points: Vec<[f64; 2]>| {

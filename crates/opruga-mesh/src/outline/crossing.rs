@@ -48,7 +48,7 @@ pub(crate) fn first_meeting(rings: &[&[[f64; 2]]]) -> Result<Option<[EdgeOfRing;
     search(rings, most, &mut compared).map_err(|()| MeshError::NotCompared { edges, most })
 }
 
-/// Does the same, counts the comparisons of boxes, and gives up if there are too many.
+/// Does the same as [`first_meeting`], counts the comparisons of boxes, and gives up if there are too many.
 fn search(rings: &[&[[f64; 2]]], most: u64, compared: &mut u64) -> Result<Option<[EdgeOfRing; 2]>, ()> {
     let edges: Vec<EdgeOfRing> =
         rings.iter().enumerate().flat_map(|(ring, points)| (0..points.len()).map(move |edge| (ring, edge))).collect();
@@ -64,8 +64,8 @@ fn search(rings: &[&[[f64; 2]]], most: u64, compared: &mut u64) -> Result<Option
     let (width, height) = (extent(0), extent(1));
     let size = if width > height { width } else { height };
 
-    // The mean direction of the edges and their perpendiculars, weighted by length. It uses four times the angle, which is the
-    // same for an edge and its perpendicular.
+    // The mean direction of the edges and their perpendiculars, weighted by length. Angles are multiplied by four, because four times the angle is
+    // the same direction for an edge and its perpendicular.
     let (mut along, mut across) = (0.0, 0.0);
     for edge in &edges {
         let (a, b) = ends(*edge);

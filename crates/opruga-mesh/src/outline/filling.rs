@@ -16,7 +16,7 @@ const HEIGHT: f64 = 0.866_025_403_784_438_6;
 /// The smallest distance of inner nodes from the outline, relative to the spacing.
 const CLEARANCE: f64 = 0.6;
 
-/// Triangles with less than this times the squared spacing are not divided further; an equilateral triangle has 0.43.
+/// Triangles whose area is below this fraction of the squared spacing are not divided further. The fraction of an equilateral triangle is 0.43.
 const SMALLEST_AREA: f64 = 0.1;
 
 /// The approximate number of nodes of a filling: those of the rings, and one for every two triangles inside.

@@ -15,12 +15,12 @@ struct Rising {
 }
 
 impl Rising {
-    /// Whether it crosses a level. The lower end counts and the upper one does not, so rings that only touch the level cross it twice or never.
+    /// Whether the edge crosses a level. The lower end counts and the upper one does not, so rings that only touch the level cross it twice or never.
     fn crosses(&self, level: f64) -> bool {
         self.low[1] <= level && level < self.high[1]
     }
 
-    /// Whether a point is strictly to its left; exact.
+    /// Whether a point is strictly to the left of the edge; exact.
     fn is_right_of(&self, point: [f64; 2]) -> bool {
         self.side(point) > 0.0
     }
@@ -30,14 +30,14 @@ impl Rising {
         orient2d(exact(self.low), exact(self.high), exact(point))
     }
 
-    /// Whether it is to the left of another edge that crosses the same level, if the two meet at most at an end.
+    /// Whether the edge is to the left of another edge that crosses the same level, if the two meet at most at an end.
     fn is_left_of(&self, other: &Rising) -> bool {
         let by_low = if self.low[1] >= other.low[1] { other.side(self.low) } else { -self.side(other.low) };
         let by_high = || if self.high[1] <= other.high[1] { other.side(self.high) } else { -self.side(other.high) };
         if by_low == 0.0 { by_high() > 0.0 } else { by_low > 0.0 }
     }
 
-    /// The approximate position at which it crosses a level.
+    /// The approximate position at which the edge crosses a level.
     fn at(&self, level: f64) -> f64 {
         self.low[0] + (level - self.low[1]) / (self.high[1] - self.low[1]) * (self.high[0] - self.low[0])
     }

@@ -26,7 +26,7 @@ fn outlines() -> Vec<(&'static str, Vec<[f64; 2]>, f64, bool)> {
         .collect();
     // Ten triangles, each from the centre to a tip and a notch.
     let of_star = 10.0 * 0.5 * 0.4 * (std::f64::consts::PI / 5.0).sin();
-    // A comb: all of it is not visible from any corner.
+    // A comb: no corner sees all of it.
     let mut comb = vec![[0.0, 0.0], [9.0, 0.0]];
     (0..5).rev().for_each(|k| {
         let x = 2.0 * f64::from(k);

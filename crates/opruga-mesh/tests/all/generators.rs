@@ -186,7 +186,7 @@ fn five_tetrahedra_a_box_alternate_and_fill_the_same_body() {
     assert_eq!(cut.cells.tetrahedra.len(), 5 * 12);
     assert_eq!(cut.facets.len(), solid.facets.len());
     close(volume(&cut), 1.0);
-    // One in five is inscribed, with a third of the volume of its box.
+    // One tetrahedron in five is inscribed, with a third of the volume of its box.
     let size = |cell: &[u32; 4]| {
         let [a, b, c, d] = cell.map(|node| cut.positions[node as usize]);
         let [u, v, w] = [b, c, d].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
@@ -204,7 +204,7 @@ fn five_tetrahedra_a_box_alternate_and_fill_the_same_body() {
         ring.cells.hexahedra.push([0, near, far, next, 7, 7 + near, 7 + far, 7 + next]);
     }
     assert!(ring.clone().into_simplices_by(Cut::Five).is_ok(), "around an axis with spokes every loop is even");
-    // A closure with a wedge: an edge that leads back to a node of the same parity.
+    // A wedge that closes the ring has an edge that leads back to a node of the same parity.
     ring.cells.hexahedra.push([0, 2, 1, 4, 7, 9, 8, 11]);
     let refused = ring.into_simplices_by(Cut::Five).unwrap_err();
     assert!(matches!(refused, MeshError::OddLoop { .. }), "{refused}");

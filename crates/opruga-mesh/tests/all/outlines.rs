@@ -192,7 +192,7 @@ fn ring(points: &[[f64; 2]]) -> Ring {
     Ring { points: points.to_vec(), part: 0 }
 }
 
-/// The rings as they bound a body, whose area must have the expected value, also if triangles fill it.
+/// The rings that bound a body. Its area must have the expected value, also if triangles fill it.
 fn body_of(rings: &[Ring], how: Overlap, wanted: f64, pieces: usize) -> Vec<Ring> {
     let mut made = outline::joined(rings, how);
     outline::nest(&mut made).expect("rings that meet nowhere");

@@ -145,7 +145,7 @@ fn a_lattice_fills_its_surface_and_carries_it() {
                     + u[2] * (v[0] * w[1] - v[1] * w[0]);
                 assert!((det / 6.0 / (spacing * spacing * spacing / 12.0) - 1.0).abs() < 1e-9);
             }
-            // The skin is on the surface, by weights between 0 and 1 at the points of the file.
+            // The points of the skin are on the surface. Points from the file have weights between 0 and 1.
             let skin = body.skin.as_ref().expect("a skin");
             for (p, q) in skin.positions(&body.positions).iter().zip(&surface.positions) {
                 assert!((0..3).all(|d| (p[d] - q[d]).abs() < 1e-12));

@@ -25,7 +25,8 @@ fn faces_of_hexahedra_are_four_triangles() {
     let surface = mesh.touching_surface(true);
     assert_eq!((surface.nodes.len(), surface.carried.len(), surface.facets.len()), (26, 24, 96));
     assert!((volume(&surface, &mesh.positions) - 1.0).abs() < 1e-15);
-    // The same volume as that of the hexahedra, however these are bent; two triangles per face would have another volume.
+    // The surface encloses the volume of the hexahedra, however they are bent; two triangles per face would enclose another
+    // volume.
     let bent: Vec<[f64; 3]> =
         mesh.positions.iter().map(|[x, y, z]| [x + 0.1 * y * z, y + 0.2 * x * z, z - 0.1 * x * y]).collect();
     let twisted = Mesh { positions: bent, ..mesh.clone() };
