@@ -69,7 +69,7 @@ impl<W: Write> GifWriter<W> {
         let palette = Palette::of(samples);
         let mut encoder = gif::Encoder::new(out, width, height, palette.colours()).map_err(DrawError::from)?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(DrawError::from)?;
-        // Viewers play frames shorter than two hundredths slowly.
+        // Viewers slow down frames that are shorter than two hundredths of a second.
         let delay = (100.0 / frames_per_second).clamp(2.0, 6000.0);
         Ok(GifWriter { encoder, size, palette, last: None, delay, frames: 0 })
     }

@@ -10,7 +10,8 @@ pub enum ColourMap {
     Cividis,
     /// From dark to light grey, for people who see no colours, and for print.
     Grey,
-    /// From a pale grey over yellow and red to dark violet: for quantities that are mostly small, such as stress, on lit bodies.
+    /// From a pale grey through yellow and red to dark violet: for quantities that are mostly small, such as stress, on lit
+    /// bodies.
     Embers,
     /// From blue through a light grey to red: for quantities around a middle value.
     Diverging,
@@ -139,7 +140,7 @@ impl ColourMap {
     }
 }
 
-/// A mixture of two colours: `share` 0 is the first, 1 the second.
+/// A mixture of two colours: `share` 0 gives the first, 1 the second.
 pub(crate) fn mix(first: [u8; 3], second: [u8; 3], share: f64) -> [u8; 3] {
     std::array::from_fn(|channel| {
         let (a, b) = (f64::from(first[channel]), f64::from(second[channel]));

@@ -4,7 +4,7 @@ use opruga_math::message::Variant;
 use opruga_video::VideoError;
 
 opruga_math::terms! {
-    /// The thing that a picture or a plot lacks.
+    /// The content that a picture or a plot lacks.
     pub enum Nothing = "part.nothing_to_draw" {
         Picture = "a film strip needs a picture",
         FinitePlace = "no body has a node at a finite position",

@@ -274,7 +274,7 @@ fn quantile(values: &mut [f64], share: f64) -> f64 {
 
 /// The colour range of scalars, and whether some are outside it at the low and the high end.
 ///
-/// At each end three per cent may be outside, if this reduces the range by a sixth.
+/// At each end three per cent of the scalars may be outside, if this reduces the range by more than a sixth.
 fn range_of(scalars: &mut [f64], ends: [f64; 2]) -> (Option<[f64; 2]>, [bool; 2]) {
     let width = ends[1] - ends[0];
     if width.is_nan() || width < 0.0 || scalars.is_empty() {

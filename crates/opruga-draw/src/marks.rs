@@ -8,7 +8,7 @@ use tiny_skia::PathBuilder;
 
 /// If a body has no more pins than this, each may be drawn as a support.
 const SUPPORTS: usize = 40;
-/// The minimum distance between neighbouring supports, in units of lines.
+/// The minimum distance between neighbouring supports, in units of the size of lines.
 const SUPPORT_SPACING: f32 = 17.0;
 
 /// The number of arrows above which they are drawn thinner.

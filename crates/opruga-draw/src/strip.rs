@@ -66,11 +66,11 @@ impl Grid {
     fn new(count: usize, columns: usize, aspect: f32, available_width: f32, unit: f32) -> Grid {
         let columns = columns.clamp(1, count.max(1));
         let rows = count.div_ceil(columns);
-        // No row is shorter than necessary.
+        // As few columns as this number of rows permits.
         let columns = count.div_ceil(rows.max(1)).max(1);
         let gap = (10.0 * unit).round();
         let wide = ((available_width - gap * (columns as f32 - 1.0)) / columns as f32).floor();
-        // If there are few panels, they are small enough to be seen at once.
+        // A few panels are kept small enough to be seen at once.
         let wide = wide.min((TALLEST * unit / aspect).floor());
         Grid { columns, rows, panel: [wide, (wide * aspect).round()], gap, line: (26.0 * unit).round() }
     }
@@ -82,8 +82,8 @@ impl Grid {
         [wide, rows * (self.panel[1] + self.line) + (rows - 1.0) * 0.4 * self.gap]
     }
 
-    /// The penalty of the grid: a good strip has a suitable shape, no empty places, and bodies that are large enough. `body` is the fraction of the
-    /// width of a panel that a body takes.
+    /// The penalty of the grid: a good strip has a suitable shape, no missing panels in the last row, and bodies that are large enough. `body` is the
+    /// fraction of the width of a panel that a body takes.
     fn fault(&self, count: usize, available_width: f32, body: f32) -> f32 {
         let [wide, tall] = self.size();
         let empty = (self.columns * self.rows - count) as f32;

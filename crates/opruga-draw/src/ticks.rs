@@ -1,6 +1,6 @@
 //! Round numbers for axes, legends and scale bars.
 
-/// Values between two limits at a round distance, about `count` of them.
+/// About `count` values between two limits, a round number apart.
 pub fn nice_ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
     if !(low.is_finite() && high.is_finite()) || high <= low {
         return vec![low];

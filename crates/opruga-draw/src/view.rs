@@ -19,13 +19,13 @@ pub struct View {
     pub points: Vec<[f64; 3]>,
     /// The scalars at the ends of the colours, if there are any: the smallest and the largest, except a few outliers.
     pub scalars: Option<[f64; 2]>,
-    /// Whether there are outliers below and above these.
+    /// Whether there are outliers below and above the range of `scalars`.
     pub strays: [bool; 2],
     /// Whether y points downwards, as on a screen; only in two dimensions.
     pub y_down: bool,
-    /// The length of vector of each kind of arrow that 95 per cent do not exceed.
+    /// For each kind of arrow, the length that 95 per cent of its vectors do not exceed.
     pub longest: BTreeMap<ArrowKind, f64>,
-    /// The length at which such a vector is drawn [m].
+    /// The length at which a vector of that length is drawn [m].
     pub arrow: f64,
     /// The larger side of most bodies at the start [m]; 0 without bodies.
     pub body: f64,

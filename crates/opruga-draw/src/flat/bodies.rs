@@ -11,7 +11,7 @@ use tiny_skia::{FilterQuality, Paint, Path, PathBuilder, Pattern, Pixmap, Spread
 
 /// The length in pixels below which an edge of a coloured outline is joined to the next one.
 const SHORT: f32 = 1.2;
-/// The smallest spacing of nodes at which they are drawn as dots, in units of lines.
+/// The smallest spacing of nodes at which they are drawn as dots, in units of the size of lines.
 const DOT_SPACING: f32 = 15.0;
 
 /// The mapping of the scalars of a picture to colours.
@@ -62,7 +62,7 @@ pub(crate) fn draw(canvas: &mut Canvas, picture: &Picture, view: &View, projecti
         }
         let base = body.colour.unwrap_or(body_colour(index, picture.bodies.len()));
         let seen = (high[0] - low[0]).max(high[1] - low[1]);
-        // A body that is squeezed or stretched is drawn as before.
+        // The size at the start is used, so that a body is drawn in the same way while it is squeezed or stretched.
         let size = body.extent.map_or(seen, |extent| (extent * projection.scale) as f32);
         Drawing { body, pixels: &pixels, low, high, size, unit, base, scalars: &scalars, projection }.draw(canvas);
     }
@@ -269,7 +269,7 @@ impl Drawing<'_> {
             let colour = if filled && self.is_light() { INK } else { darker(self.base) };
             let opacity = match filled {
                 false => 1.0,
-                // These lines coincide with those of the cells.
+                // These lines coincide with the edges of the cells.
                 true if self.is_light() => 0.2,
                 true => 0.45,
             };

@@ -38,7 +38,7 @@ pub(super) fn write(map: &HeatMap) -> String {
         }
     }
     svg.text(&map.x_label, [0.5 * (left + right), y + 42.0], SIZE, "middle", INK, "");
-    // All maps have the same rows, so there is one title for all, no longer than their total height.
+    // All panels have the same rows, so they share one title, which is no longer than their total height.
     let middle = 0.5 * (first + y);
     let turn = format!(r#" transform="rotate(-90 16 {middle:.1})""#);
     let size = SIZE * ((y - first) / width_of(&map.y_label, SIZE).max(1.0)).min(1.0);

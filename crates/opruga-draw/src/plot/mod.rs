@@ -1,4 +1,4 @@
-//! Plots of lines over a common axis, and maps over two, as SVG text.
+//! Plots of lines over a common axis, and maps over two axes, as SVG text.
 
 mod heat;
 mod scale;
@@ -6,7 +6,7 @@ mod svg;
 
 use crate::error::{DrawError, Nothing};
 
-/// A plot: panels above each other, over a common axis.
+/// A plot: panels one above another, over a common axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     /// The title, which may be empty.
@@ -110,7 +110,7 @@ pub struct Level {
     pub label: String,
 }
 
-/// A map of quantities over two others: coloured cells, with panels above each other.
+/// A map of quantities over two others: coloured cells, in one panel for each quantity, one above another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeatMap {
     /// The title, which may be empty.
@@ -153,7 +153,7 @@ pub struct HeatPanel {
     pub scale: Axis,
     /// The values, row by row; values that are not finite have no colour.
     pub values: Vec<Vec<f64>>,
-    /// Cells, each a column and a row, without a value because of an error.
+    /// The cells, each as column and row, that have no value because of an error.
     pub failed: Vec<[usize; 2]>,
 }
 

@@ -24,7 +24,7 @@ use shapes::{FACES, corner, shape};
 /// The colour of an obstacle in full light.
 const SOLID: [u8; 3] = [188, 193, 202];
 
-/// The width of the line around a body, in units of lines.
+/// The width of the line around a body, in units of the size of lines.
 const OUTLINE: f32 = 2.0;
 
 /// Draws the scene of a picture in three dimensions.

@@ -135,7 +135,7 @@ struct Around {
 }
 
 impl Around {
-    /// Finds them.
+    /// Finds the triangles at every node.
     fn new(nodes: usize, triangles: &[[u32; 3]]) -> Around {
         let mut starts = vec![0_u32; nodes + 1];
         triangles.iter().flatten().for_each(|node| starts[*node as usize + 1] += 1);

@@ -4,8 +4,8 @@ use super::camera::{along, cross, unit};
 use crate::picture::ColliderPicture;
 use std::f64::consts::{PI, TAU};
 
-/// The scale at which round obstacles are drawn. They are slightly reduced, because cloth touches them with its nodes and is
-/// deeper between the nodes.
+/// The scale at which round obstacles are drawn. They are slightly reduced, because only the nodes of a cloth touch them, and the
+/// cloth lies deeper between its nodes.
 const ROUND: f64 = 0.985;
 
 /// A surface of triangles.
