@@ -7,7 +7,7 @@
 //!
 //! | cell | points | locks |
 //! |---|---|---|
-//! | triangle, tetrahedron | 1 | in bending; near incompressibility (refused above ν = 0.45), unless the nodes resist changes of volume (file `nodal_volume`) |
+//! | triangle, tetrahedron | 1 | in bending; near incompressibility (refused above ν = 0.45) unless nodes resist changes of volume (`nodal_volume`) |
 //! | quadrilateral, hexahedron | 4, 8, and the mean above ν = 1/3 | no |
 //! | quadratic triangle, tetrahedron | 3, 4 | no |
 //!
