@@ -17,7 +17,7 @@ pub(crate) enum Cells {
 }
 
 impl Cells {
-    /// The fields of a body whose shape consists of boxes.
+    /// The fields that give a body these cells if its shape consists of boxes.
     pub(crate) fn fields(self) -> &'static str {
         match self {
             Cells::Boxes => "",
@@ -26,7 +26,7 @@ impl Cells {
         }
     }
 
-    /// Cuts boxes.
+    /// Cuts boxes into cells of this kind.
     pub(crate) fn cut<const D: usize>(self, boxes: Mesh<D>) -> Result<Mesh<D>, Trouble> {
         Ok(match self {
             Cells::Boxes => boxes,
@@ -163,7 +163,7 @@ pub(crate) fn boundary<const D: usize>(mesh: &Mesh<D>) -> Vec<u32> {
     out
 }
 
-/// Planes of symmetry through the origin, perpendicular to every axis: rows for `pin = [ … ]`.
+/// Planes of symmetry through the origin, one perpendicular to each axis: rows for `pin = [ … ]`.
 pub(crate) fn symmetric<const D: usize>(mesh: &Mesh<D>) -> String {
     let rows: Vec<String> = (0..D)
         .map(|d| {

@@ -4,7 +4,7 @@
 //! its readings. It does not access the internals of the engine.
 //!
 //! A [`Case`] defines, before it is run, the measured quantity, the expected value (a literal with its source, never a number of this engine), the
-//! meshes or steps, the largest error on the finest one, and the order at which the error must fall. [`Case::run`] makes a [`Row`] of it, and
+//! meshes or steps, the largest error on the finest one, and the order at which the error must fall. [`Case::run`] runs it and returns a [`Row`], and
 //! [`run_all`] runs many cases at once. [`table`], [`to_json`], [`markdown`] and [`html`] show the rows, and [`plot`] draws one.
 //!
 //! ```

@@ -117,7 +117,7 @@ fn over_parameter(row: &Row) -> Result<String, DrawError> {
         lines: vec![Line { points: of(|p| p.error.max(NOTHING)), marker: Some(Marker::Circle), ..Line::default() }],
         levels: vec![Level { value: case.tolerance, label: format!("limit {}", case.limit()) }],
     };
-    // If all expected values are zero, the value is the error.
+    // If all expected values are zero, the values are the errors, so one panel is enough.
     let panels = if case.expected.iter().all(|x| *x == 0.0) { vec![errors] } else { vec![values, errors] };
     Chart { width: 640.0, x: Axis::linear(what, ""), panels, ..Chart::default() }.to_svg()
 }

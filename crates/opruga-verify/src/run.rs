@@ -14,8 +14,9 @@ const LOOK: Duration = Duration::from_millis(20);
 
 /// Runs cases on several threads, each case on one thread, and returns their rows in the order of the cases.
 ///
-/// `done` is called for every row as it arrives. If `stop` is set, unfinished cases are omitted: no further case begins, and running ones are not
-/// waited for. Their results are discarded, and they end with the program at the latest; a case may take minutes, but none writes anything.
+/// `done` is called for every row as it arrives. If `stop` is set, unfinished cases are omitted: no further case begins, and the function does not
+/// wait for running ones, because a case may take minutes. Their results are discarded. They end with the program at the latest, and they write
+/// nothing.
 pub fn run_all(cases: &[&'static Case], lab: &Lab, threads: usize, stop: &AtomicBool, done: &dyn Fn(&Row)) -> Vec<Row> {
     // Long cases begin first.
     let mut order: Vec<(usize, &'static Case)> = cases.iter().copied().enumerate().collect();

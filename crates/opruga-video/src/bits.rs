@@ -7,7 +7,7 @@ pub(crate) struct Bits {
     bytes: Vec<u8>,
     /// The bits that do not fill a byte yet, with the latest one lowest.
     rest: u64,
-    /// Their number, below 8 between two calls.
+    /// The number of these bits, below 8 between two calls.
     count: u32,
 }
 

@@ -81,7 +81,7 @@ impl Parameters {
         let fits = |most: u64| size <= most && blocks.iter().all(|side| side * side <= 8 * most);
         let speed = (size as f64 * rate.frames_per_second()).ceil() as u64;
         let level = LEVELS.iter().find(|level| fits(level.2) && speed <= level.1);
-        // A film with too many frames per second is played more slowly, but a film with too large frames is not played at all.
+        // A film with too many frames per second is played more slowly, but a film whose frames are too large is not played at all.
         let level = level.or(LEVELS.last().filter(|level| fits(level.2)));
         let level = level.ok_or(VideoError::Size { width, height })?.0;
         Ok(Parameters {

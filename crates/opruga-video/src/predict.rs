@@ -134,7 +134,7 @@ pub(crate) fn from_before(before: &Frame, plane: usize, [x, y]: [usize; 2], moti
     out
 }
 
-/// The sum of the absolute differences between a macroblock of a frame and its prediction; it stops above a limit.
+/// The sum of the absolute differences between a macroblock of a frame and its prediction. The summation stops as soon as it exceeds a limit.
 pub(crate) fn difference(frame: &Frame, plane: usize, macroblock: [usize; 2], expected: &Pixels, limit: u32) -> u32 {
     let (side, stride, start) = (Frame::side(plane), frame.stride(plane), frame.start(plane, macroblock));
     let mut sum = 0;

@@ -1,5 +1,4 @@
-//! Commands without a dimension in their type. They have the form of commands in space; a world in the plane ignores the third
-//! numbers.
+//! Commands without a dimension in their type. They have the form of commands in space. A world in the plane ignores their z components.
 
 use crate::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use crate::bytes::{Reader, Writer};
@@ -34,7 +33,8 @@ impl CommandBlueprint<3> {
     /// The same command in `D` dimensions.
     ///
     /// # Errors
-    /// [`WorldError::Path`] if the command adds a body: a body has the dimension of its scene. [`crate::AnyWorld::act_of`] takes such a command.
+    /// [`WorldError::Path`] if the command adds a body, because a body has the dimension of its scene. Use [`crate::AnyWorld::act_of`] for such a
+    /// command.
     pub(crate) fn cut<const D: usize>(&self) -> Result<CommandBlueprint<D>, WorldError> {
         let action = match &self.action {
             Action::Drag { body, node, facet, stiffness, path, largest_force } => Action::Drag {

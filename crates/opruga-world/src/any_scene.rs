@@ -24,7 +24,7 @@ pub trait AnyScene {
     fn credit(&self) -> &str;
     /// What pictures of the scene show; z is 0 in the plane.
     fn pictured(&self) -> Pictured<3>;
-    /// How time passes.
+    /// The duration of the scene, the length of a frame, and the number of substeps.
     fn time(&self) -> Time;
     /// Acceleration of gravity, one number per coordinate [m/s²].
     fn gravity(&self) -> &[f64];
@@ -34,9 +34,9 @@ pub trait AnyScene {
     fn integrator(&self) -> &Values;
     /// Rigid obstacles.
     fn colliders(&self) -> &[ColliderBlueprint];
-    /// How bodies touch one another; none if they pass through one another.
+    /// The contact settings of the bodies; none if bodies pass through one another.
     fn contact(&self) -> Option<&ContactBlueprint>;
-    /// The number of body numbers. A number may belong to a body that was removed.
+    /// The length of the list of bodies. All body numbers are below it; a number may belong to a body that was removed.
     fn body_count(&self) -> usize;
     /// The body with a number, if there is one.
     fn body(&self, number: usize) -> Option<&dyn AnyBody>;
@@ -139,7 +139,7 @@ pub trait AnyBody: core::fmt::Debug {
     fn cell_values(&self) -> &BTreeMap<String, Vec<f64>>;
     /// Numbers of cells by the name of their group.
     fn cell_groups(&self) -> &BTreeMap<String, Vec<u32>>;
-    /// What is drawn instead of the boundary.
+    /// The surface or drawing that is shown instead of the boundary, if there is one.
     fn skin(&self) -> Option<&Skin>;
     /// The signed volume that its facets enclose when its nodes are at the given positions [m³, m² in the plane]; none without facets.
     fn enclosed_volume(&self, positions: &[[f64; 3]]) -> Option<f64>;

@@ -28,7 +28,7 @@ use std::borrow::Cow;
 /// [`AnyBlueprint::build`](crate::blueprint::AnyBlueprint::build) builds one from a scene. Every [`World`] implements this trait; its methods of the
 /// same names are documented in more detail.
 pub trait AnyWorld: core::fmt::Debug + Send {
-    /// The scene, with all changes since.
+    /// The scene, with all changes since the start.
     fn scene(&self) -> &dyn AnyScene;
 
     /// Bodies that commands of the scene will add, in order of time.
@@ -39,11 +39,11 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// # Errors
     /// [`WorldError`] names the body, node and substep. The world is then at its last good frame.
     fn frame(&mut self) -> Result<(), WorldError>;
-    /// Checks whether the step is still stable if energy has appeared without a source.
+    /// If energy has appeared without a source, checks whether the step is still stable. Returns whether there was anything to check.
     fn look_at_steps_again(&mut self) -> bool;
-    /// Keeps the state after every `every` substeps for [`AnyWorld::look_within`].
+    /// Keeps states for [`AnyWorld::look_within`], `every` substeps apart.
     fn keep_looks(&mut self, every: u32);
-    /// Shows the world at the kept states within the last frame, one after another.
+    /// Calls `look` with the world in each state that was kept within the last frame, one after another.
     fn look_within(&mut self, look: &mut dyn FnMut(&mut dyn AnyWorld));
     /// Frames since the start.
     fn frames(&self) -> u64;
@@ -61,13 +61,13 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// # Errors
     /// The errors of [`World::set`].
     fn set(&mut self, path: &str, value: Value) -> Result<(), WorldError>;
-    /// Gives a command that begins now, as if the scene had contained it from the start; returns its number. In the plane the third numbers of
-    /// vectors, axes and rows are ignored.
+    /// Gives the world a command that begins now, as if the scene had contained it from the start; returns its number. In the plane, the z components
+    /// of vectors, axes and rows are ignored.
     ///
     /// # Errors
     /// The errors of [`World::act`]; also if the command adds a body.
     fn act(&mut self, command: &CommandBlueprint<3>) -> Result<usize, WorldError>;
-    /// Gives the last command of a scene that adds a body and has already begun; returns its number.
+    /// Gives the world a command of another scene: the last one that adds a body and has already begun. Returns its number.
     ///
     /// # Errors
     /// The errors of [`World::act`]; also if the scene has no such command or has another dimension.
@@ -89,7 +89,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn finish(&mut self, number: usize, until: f64) -> Result<(), WorldError>;
     /// The command that the last call of [`AnyWorld::frame`] refused, which is the cause of its error.
     fn refused_command(&self) -> Option<RefusedCommand<'_>>;
-    /// Moves a node and gives it a velocity, from outside the physics.
+    /// Sets the position and the velocity of a node directly, without any force.
     ///
     /// # Errors
     /// The errors of [`World::set_node`].
@@ -118,14 +118,14 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// # Errors
     /// The errors of [`World::restore`].
     fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError>;
-    /// Restores the state of a snapshot from the same past.
+    /// Restores the state of a snapshot of a world that had the same commands up to that time.
     ///
     /// # Errors
     /// The errors of [`World::rewind`].
     fn rewind(&mut self, bytes: &[u8]) -> Result<(), WorldError>;
     /// The hash of all positions and velocities, node by node.
     fn state_hash(&self) -> u64;
-    /// The fast hash of the same numbers.
+    /// A faster hash of all positions and velocities.
     fn frame_hash(&self) -> u64;
 
     /// The energy ledger of the last frame.
@@ -134,12 +134,12 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn momentum(&self) -> [[f64; 3]; 2];
     /// The readings of the models of a body.
     fn readings(&mut self, body: usize) -> Vec<Reading>;
-    /// The names of the readings of a body; empty if a model refuses the body. Numbers after those of the scene belong to
+    /// The names of the readings of a body; empty if a model refuses the body. Body numbers beyond those of the scene refer to
     /// [`AnyWorld::coming_bodies`].
     fn reading_names_of(&self, body: usize) -> Vec<Cow<'static, str>>;
     /// The values of a probe.
     fn probe(&mut self, number: usize) -> Vec<(String, f64)>;
-    /// The pressure of the gas that each node of a body bounds [Pa].
+    /// The pressure of the gas at each node of a body that borders a chamber [Pa].
     fn node_pressures(&mut self, body: usize) -> Vec<(u32, f64)>;
     /// Stress and volume ratio of the cells of a body.
     fn cell_states(&self, body: usize) -> Vec<CellState>;
@@ -193,7 +193,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn stable_step_under(&self, integrator: &Values) -> Option<f64>;
     /// The estimates of the stable step.
     fn stability(&self) -> &[(String, Stability)];
-    /// The work of implicit integrators since the start.
+    /// The work of the solvers of implicit integrators since the start: iterations, products, and the largest residual.
     fn solver_work(&self) -> SolverWork;
     /// Whether the results have the same bits on every processor.
     fn same_bits_everywhere(&self) -> bool;
@@ -216,7 +216,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn velocities(&self, body: usize) -> Vectors<'_>;
     /// The mass of a node [kg]; NaN if there is no such body or node.
     fn node_mass(&self, body: usize, node: u32) -> f64;
-    /// The forces on the nodes of a body [N] from the models of one account, or from all models. Every call computes them.
+    /// The forces on the nodes of a body [N] from the models that belong to one account of the ledger, or from all models. Every call computes them.
     fn forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; 3]>;
     /// The forces of obstacles on the nodes of a body in the coming substep [N]. Every call computes them.
     fn contact_forces(&mut self, body: usize) -> Vec<[f64; 3]>;
@@ -228,8 +228,8 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn pulls(&self) -> Vec<[[f64; 3]; 3]>;
     /// The obstacles at the present time, in scene order.
     fn obstacles(&self) -> Vec<Picture<3>>;
-    /// The pairs of nodes that springs of a body join; none if there is no such body or if a model refuses it. Numbers after those of the scene
-    /// belong to [`AnyWorld::coming_bodies`].
+    /// The pairs of nodes that springs of a body join; none if there is no such body or if a model refuses it. Body numbers beyond those of the scene
+    /// refer to [`AnyWorld::coming_bodies`].
     fn springs_of(&self, body: usize) -> Option<Vec<[u32; 2]>>;
 }
 

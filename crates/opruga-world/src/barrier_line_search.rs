@@ -1,4 +1,4 @@
-//! The line search of bodies that a barrier keeps apart: how long a correction may be.
+//! The line search for bodies that a barrier keeps apart. It determines how long a correction may be.
 //!
 //! A correction ends before any pair meets, and the sum of all energies falls along it.
 
@@ -10,9 +10,9 @@ use opruga_math::Lane;
 /// because the energies differ by less than their rounding errors (`what_sticks_on_a_body_does_not_creep`).
 const SLOPE_LEFT: f64 = 0.8;
 
-/// If the slope at the end of a correction is more than this fraction of the slope at its beginning, the next correction may be twice as long, up to
-/// `LONGEST_STRETCH` times its length. A matrix without negative eigenvalues is too stiff for bodies that buckle. Without this rule, a square of
-/// springs that buckles on landing takes more than 100 iterations (`bodies_that_buckle_find_an_end`).
+/// If the slope at the end of a whole correction is still more than this fraction of the slope at its beginning, the factor by which the next
+/// correction is lengthened doubles, up to `LONGEST_STRETCH`. A matrix without negative eigenvalues is too stiff for bodies that buckle. Without this
+/// rule, a square of springs that buckles on landing takes more than 100 iterations (`bodies_that_buckle_find_an_end`).
 const STEEP: f64 = 0.3;
 const LONGEST_STRETCH: f64 = 16.0;
 
@@ -23,7 +23,7 @@ const MOST_HALVINGS: u32 = 40;
 const ROUNDING: f64 = 1e-12;
 
 impl<const D: usize> Search<'_, '_, D> {
-    /// The slope of the sum along the correction, minus the work of the obstacles.
+    /// The slope of the sum of all energies along the correction, minus the work of the obstacles.
     pub(crate) fn slope(&mut self, gradient: &[f64]) -> f64 {
         let mut slope = 0.0;
         for open in &mut self.opened {
@@ -39,7 +39,8 @@ impl<const D: usize> Search<'_, '_, D> {
         slope
     }
 
-    /// Moves along the correction as far as the pairs allow and the sum falls. Returns the fraction of the correction that was made.
+    /// Moves along the correction as far as the pairs allow and the sum of all energies falls. Returns the fraction of the correction that was
+    /// applied.
     pub(crate) fn go(&mut self, slope: f64) -> Result<f64, Refused> {
         for (p, of_point) in self.coordinates.iter().enumerate() {
             let from = &self.x[p];
@@ -117,7 +118,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(gone)
     }
 
-    /// Φ of all bodies plus B and D, and the sum of the sizes of the terms [J]; none with damping.
+    /// The sum of Φ of all bodies, B and D (see `barrier_search`), and the sum of the magnitudes of these terms [J]; none with damping.
     fn energy(&self) -> Option<[f64; 2]> {
         let [mut sum, mut size] = [0.0; 2];
         for open in &self.opened {
@@ -134,7 +135,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Some([sum, size])
     }
 
-    /// The fraction of the paths to these positions [m] that no pair forbids.
+    /// The fraction of the paths to these positions [m] that the points can follow before any pair meets.
     fn free_part(&mut self, far: &[[f64; D]]) -> Result<f64, Refused> {
         let Touching { surface, laws, most, .. } = &*self.touching;
         let mut end = far.to_vec();

@@ -5,9 +5,9 @@
 //! ```
 //!
 //! Newton's method with conjugate gradients finds a direction. Its matrix consists of the matrices of the bodies, each with its own factor, and of
-//! the second derivatives of B and D, which are stored as short vectors. A step ends before any pair meets, and the sum falls. Surfaces that are
-//! apart at the start of a substep are therefore apart at its end. Outer rounds find the friction multipliers and the normal forces on which friction
-//! depends.
+//! the second derivatives of B and D, which are stored as short vectors. A correction ends before any pair meets, and it reduces the sum. Surfaces
+//! that are apart at the start of a substep are therefore apart at its end. Outer rounds find the friction multipliers and the normal forces on which
+//! friction depends.
 //!
 //! Source: M. Li and others, Incremental potential contact, ACM Trans. Graph. 39 (2020), algorithm 1.
 
@@ -25,14 +25,15 @@ use opruga_solve::{Directions, Preconditioner, conjugate_gradients, dot};
 /// The tolerance of the linear solver in the first iteration, relative to its right-hand side. It falls with the residual, as for a single body.
 const LEFT: f64 = 1e-2;
 
-/// The smallest tolerance. Below it the residuals of stiff bodies (1e7 Pa) are rounding errors, and directions computed from them are useless.
+/// The smallest tolerance of the linear solver. Below it the residuals of stiff bodies (1e7 Pa) are rounding errors, and directions computed from
+/// them are useless.
 const LEAST_LEFT: f64 = 1e-9;
 
-/// The maximum number of products of conjugate gradients. Every pair under a large force takes about one.
+/// The maximum number of matrix products in the method of conjugate gradients. Each pair under a large force needs about one product.
 const MOST_PRODUCTS: u32 = 2000;
 
-/// The maximum number of iterations of a search with a budget, including those that do not count against the budget. It is that of exact steps
-/// without friction.
+/// The maximum number of iterations of a search with a budget, including those that do not count against the budget. It equals the limit for exact
+/// steps without friction.
 const MOST_IN_BUDGET: u32 = 100;
 
 /// The maximum number of rounds of friction, and the relative change of the friction force at which they end.
@@ -52,7 +53,7 @@ const MOST_LEFT: f64 = 0.1;
 #[derive(Debug, Default)]
 pub(crate) struct Kept<const D: usize> {
     pub(crate) barrier: Barrier<D>,
-    /// Friction of the previous substep; ascending.
+    /// The friction forces of the previous substep [N], in ascending order of the features of the pairs.
     pub(crate) multipliers: Vec<(u64, [f64; D])>,
     pub(crate) workspaces: Vec<Workspace<D>>,
     /// The maximum number of times that a substep is halved if its search does not converge.
@@ -171,7 +172,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(())
     }
 
-    /// Adds a part of the masses of bodies at rest, which keeps them near their present positions.
+    /// Adds σ times the masses to the matrices of bodies at rest, which keeps these bodies near their present positions.
     fn stay(&mut self) -> Result<(), StepError> {
         let Some(staying) = &self.staying else { return Ok(()) };
         for (body, Opened { island, step, .. }) in self.opened.iter_mut().enumerate() {
@@ -262,8 +263,9 @@ impl<const D: usize> Search<'_, '_, D> {
         changed <= SETTLED * most
     }
 
-    /// Newton's method at given friction, to the tolerance of the bodies; for bodies at rest, one correction. Returns whether a minimum was found.
-    /// For one correction, this is whether the bodies were in equilibrium before it, to a fraction of their forces.
+    /// Minimises the sum at given friction by Newton's method, to the tolerance of the bodies; makes only one correction for bodies at rest. Returns
+    /// whether a minimum was found. After a single correction, this means that the bodies were in equilibrium before it, to a fraction of their
+    /// forces.
     fn find_minimum(&mut self, precise: bool) -> Result<bool, Refused> {
         let (mut first, mut counted) = (0.0, 0);
         self.stretch = if precise { 1.0 } else { self.stretch };
@@ -352,7 +354,7 @@ impl<const D: usize> Search<'_, '_, D> {
         self.staying.is_none() || self.opened.iter().all(balances)
     }
 
-    /// Adds a vector of a pair to the vectors of its points.
+    /// Distributes a force of a pair over the nodes of its points, by weight.
     fn scatter(&self, (points, weights): Weighted<'_>, force: &[f64; D], to: &mut [f64]) {
         for (p, w) in points.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
             self.touching.surface.visit_nodes(*p, |node, share| {
@@ -437,15 +439,15 @@ impl<const D: usize> Search<'_, '_, D> {
             if !changed {
                 break;
             }
-            // The change of friction may be a rounding error.
+            // There may be no solution if the change of friction is only a rounding error.
             let Some(more) = self.solve(&whole, LEFT.larger(linear)) else { break };
             step.iter_mut().zip(&more).for_each(|(s, more)| *s += more);
         }
         Some(self.slope(gradient))
     }
 
-    /// Solves with the matrix of all bodies and of the energies between them, by conjugate gradients; none if the result is not a direction of
-    /// descent.
+    /// Solves the linear system with the matrix of all bodies and of the energies between them by conjugate gradients. Returns none if the result is
+    /// not a direction of descent.
     fn solve(&mut self, right: &[f64], tolerance: f64) -> Option<Vec<f64>> {
         let mut out = vec![0.0; self.length];
         let mut directions = std::mem::take(&mut self.directions);

@@ -92,7 +92,7 @@ impl<const D: usize> Blueprint<D> {
             integrator: self.integrator.clone(),
             bodies,
             colliders,
-            // A part may lack some of the groups.
+            // The part may lack some of the groups to which the settings for pairs refer.
             contact: self.contact.as_ref().map(|c| ContactBlueprint { values: c.values.clone(), pairs: Vec::new() }),
             loads,
             commands: Vec::new(),
@@ -266,7 +266,7 @@ pub struct LoadBlueprint<const D: usize> {
     pub body: usize,
     /// Which nodes.
     pub select: Selector<D>,
-    /// What acts.
+    /// The force that acts.
     pub kind: LoadKind<D>,
     /// A factor over time, rows `[t, factor]`; empty: always 1.
     pub curve: Vec<Vec<f64>>,
@@ -310,7 +310,7 @@ pub enum Action<const D: usize> {
     Drag {
         /// The body, by its index in the list. Bodies that commands add are numbered after the others, in order of time.
         body: usize,
-        /// Pull a node towards a moving pointer by a critically damped spring.
+        /// The node; none: the node, or the point of a facet, that is nearest to the pointer when the drag begins.
         node: Option<u32>,
         /// Whether the drag grabs the nearest point of a facet rather than a node.
         facet: bool,
@@ -402,7 +402,7 @@ pub enum Recorded {
 }
 
 impl Recorded {
-    /// All of them, with their names in scene files.
+    /// All recorded quantities, with their names in scene files.
     pub const ALL: [(&'static str, Recorded); 6] = [
         ("position", Recorded::Position),
         ("velocity", Recorded::Velocity),

@@ -33,7 +33,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The kind of a model, integrator or obstacle, and its fields.
+    /// Writes the kind of a model, integrator or obstacle, and its fields.
     pub(crate) fn values(&mut self, values: &Values) {
         self.text(values.kind());
         self.count(values.iter().count() as u64);
@@ -52,7 +52,7 @@ impl Writer<'_> {
         self.optional(integrator, |out, values| out.values(values));
     }
 
-    /// A body without its mesh.
+    /// Writes a body without its mesh.
     pub(crate) fn body<const D: usize>(&mut self, body: &BodyBlueprint<D>) {
         self.text(&body.name);
         self.vectors(&[body.translation, body.velocity]);
@@ -164,7 +164,7 @@ impl Reader<'_> {
         Ok(if self.count()? == 1 { Some(read(self)?) } else { None })
     }
 
-    /// The values of a kind whose specification `known` returns.
+    /// Reads the values of a kind whose specification `known` returns.
     pub(crate) fn values(
         &mut self,
         dimension: usize,
@@ -195,7 +195,7 @@ impl Reader<'_> {
         self.optional(|reader| reader.values(D, |kind| registry.integrator(kind).map(|rule| rule.spec())))
     }
 
-    /// A body without its mesh, which is added later.
+    /// Reads a body without its mesh, which is added later.
     pub(crate) fn body<const D: usize>(&mut self, registry: &Registry<D>) -> Result<BodyBlueprint<D>, WorldError> {
         let name = self.text()?;
         let [translation, velocity] = self.vectors::<D>()?[..] else { return Err(damaged(Content::Body)) };

@@ -1,4 +1,4 @@
-//! A body that a handle refers to. Readings return an error if the handle is stale, instead of another body.
+//! A body that a handle refers to. If the handle is stale, readings return an error, and never the values of another body.
 
 use crate::blueprint::BodyBlueprint;
 use crate::error::{Part, WorldError};
@@ -43,7 +43,7 @@ impl<'w, const D: usize> BodyView<'w, D> {
     pub fn number(&self) -> usize {
         self.number
     }
-    /// Its blueprint, with all changes since.
+    /// Its blueprint, with all changes since the start.
     pub fn blueprint(&self) -> &'w BodyBlueprint<D> {
         &self.world.blueprint.bodies[self.number]
     }

@@ -196,7 +196,7 @@ impl<const D: usize> Builder<'_, D> {
         system
     }
 
-    /// Adds a model of the first body, with its parameters for all bodies and its memory of them.
+    /// Adds a model: it is built on the mesh of the first body, with the parameters of all bodies, and gets the memory that belongs to each of them.
     fn add_model(
         &self,
         system: &mut System<D>,
@@ -444,7 +444,7 @@ pub(crate) fn build_colliders<const D: usize>(
     Ok(Some(Arc::new(Colliders::<D>::build(&values).map_err(refuse)?)))
 }
 
-/// Builds an integrator from its parameters; `part` says to which part of the scene it belongs.
+/// Builds an integrator from its parameters; `part` is the part of the scene to which it belongs.
 pub(crate) fn build_integrator<const D: usize>(
     registry: &Registry<D>,
     values: &Values,

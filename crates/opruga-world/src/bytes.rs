@@ -76,7 +76,7 @@ impl Writer<'_> {
             self.number(*x);
         }
     }
-    /// The history that the integrator keeps for one body.
+    /// Writes the history that the integrator keeps for one body.
     pub(crate) fn history<const D: usize>(&mut self, system: &System<D>, lane: usize) {
         self.text(system.history.owner());
         let channels = system.history.channels();
@@ -103,7 +103,7 @@ impl Writer<'_> {
             }
         }
     }
-    /// The vectors of the nodes of one body. Memory is reserved once, because they make up most of a snapshot.
+    /// Writes the vectors of the nodes of one body. Memory is reserved once, because these vectors make up most of a snapshot.
     pub(crate) fn columns<const D: usize>(&mut self, columns: &Columns<D>, system: &System<D>, lane: usize) {
         self.count(system.nodes as u64);
         let from = self.0.len();
@@ -139,7 +139,7 @@ impl Reader<'_> {
     pub(crate) fn count(&mut self) -> Result<u64, WorldError> {
         Ok(u64::from_le_bytes(self.eight()?))
     }
-    /// A count of items that take at least eight bytes each. It is never larger than the number of bytes.
+    /// Reads a count of items of at least eight bytes each. Refuses a count for which too few bytes remain.
     pub(crate) fn length(&mut self) -> Result<usize, WorldError> {
         let n = self.count()?;
         if n > self.0.len() as u64 / 8 {

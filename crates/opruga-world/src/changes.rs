@@ -69,8 +69,8 @@ impl<const D: usize> World<D> {
     /// `contact.FIELD`, `world.gravity`, `world.drag`, `world.largest_force`, `world.largest_velocity`, `world.largest_distance`, `world.unfold`,
     /// `time.substeps`.
     ///
-    /// The name of a body with copies means all of them, `NAME[i]` one; a body or a model may be given by its number. The stable step is estimated
-    /// again.
+    /// The name of a body with copies means all of them, and `NAME[i]` means one of them. A body or a model may be given by its number. The stable
+    /// step is estimated again.
     ///
     /// # Errors
     /// [`WorldError`] gives the cause; the world is then unchanged.

@@ -25,7 +25,7 @@ pub(crate) struct Clusters<const D: usize> {
 /// Islands with bodies that may touch, and their contacts. A body that touches nothing forms a group of one island.
 #[derive(Debug)]
 pub(crate) struct Group<const D: usize> {
-    /// By their index in the world, ascending.
+    /// The islands, by their index in the world, ascending.
     pub(crate) islands: Vec<usize>,
     pub(crate) meetings: Vec<Meeting<D>>,
     pub(crate) progress: Progress,
@@ -38,7 +38,7 @@ pub(crate) enum Progress {
     Waiting,
     /// Stepped; its islands hold the outcome.
     Done,
-    /// Stopped by an error at a time [s]; bodies have the numbers of the scene.
+    /// Stopped by an error at a time [s]; the error names bodies by their numbers in the scene.
     Stuck(Trouble, f64),
 }
 
@@ -74,7 +74,7 @@ impl<const D: usize> Clusters<D> {
         self.meetings_mut().for_each(|meeting| meeting.touching.report = report);
     }
 
-    /// Begins a frame. Bodies that will come close with their present velocities are grouped.
+    /// Begins a frame. Bodies that would come close at their present velocities are grouped.
     pub(crate) fn begin(&mut self, blueprint: &Blueprint<D>, islands: &[Island<D>], plan: &FramePlan<'_, D>) {
         let Clusters { scene, partition, boxes, order, .. } = self;
         boxes.clear();
@@ -93,7 +93,7 @@ impl<const D: usize> Clusters<D> {
     }
 
     /// Checks where the bodies have moved. If bodies have come close to bodies of other groups, these groups are merged and have to be stepped
-    /// through the frame again. Returns whether there are any.
+    /// through the frame again. Returns whether there are any such groups.
     pub(crate) fn merge(&mut self, blueprint: &Blueprint<D>, islands: &[Island<D>], plan: &FramePlan<'_, D>) -> bool {
         let Clusters { scene, partition, boxes, order, .. } = self;
         for (number, (island, lane)) in scene.seats.iter().enumerate() {

@@ -21,7 +21,7 @@ use std::sync::{Arc, PoisonError};
 const FARTHEST_PULL: f64 = 10.0;
 
 impl<const D: usize> Action<D> {
-    /// The body that it acts on; none if it names a parameter, or a body by its name.
+    /// The number of the body on which the action acts; none if it changes a parameter, adds a body, or removes one by name.
     pub fn body(&self) -> Option<usize> {
         match self {
             Action::Drag { body, .. }
@@ -66,10 +66,10 @@ impl<const D: usize> World<D> {
         Some(usual_pull(&self.islands[island].system, lane, &self.blueprint.bodies[body]))
     }
 
-    /// Gives a command. It begins at its time, at the beginning of a frame. Nothing is kept of it once it is over.
+    /// Gives the world a command. It begins at its time, at the beginning of a frame. Once it is over, nothing of it is kept.
     ///
     /// # Errors
-    /// [`WorldError`] if it names a body that does not exist, or if no command of a scene could have its content.
+    /// [`WorldError`] if it refers to a body that does not exist, or if a scene could not contain it.
     pub fn command(&mut self, command: CommandBlueprint<D>) -> Result<(), WorldError> {
         if let Some(body) = command.action.body()
             && !self.slots.is_there(body)
@@ -82,7 +82,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Gives a command that begins now, as if the scene had contained it from the start; returns its number.
+    /// Gives the world a command that begins now, as if the scene had contained it from the start; returns its number.
     ///
     /// Commands of the scene that are due begin before it. The number stays the same until the world is rebuilt.
     ///

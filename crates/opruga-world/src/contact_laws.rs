@@ -9,8 +9,8 @@ use opruga_core::spec::{Role, Value, Values};
 use opruga_math::Lane;
 use opruga_mesh::{Mesh, TouchingSurface};
 
-/// The default distance of surfaces in contact, relative to the mean edge. It is small compared with every facet, and many times the error of a gap
-/// from sweeps and rounding.
+/// The default distance of surfaces in contact, relative to the mean edge. It is small compared with every facet, but much larger than the errors of
+/// gaps that sweeps and rounding cause.
 const THICKNESS_OF_EDGE: f64 = 0.01;
 
 impl<const D: usize> BodyBlueprint<D> {
@@ -18,7 +18,7 @@ impl<const D: usize> BodyBlueprint<D> {
     pub(crate) fn touches(&self) -> bool {
         self.contact.as_ref().is_none_or(|own| own.flag("touch"))
     }
-    /// The surface with which it touches: by default the skin that it carries, if any.
+    /// The surface with which it touches other bodies: by default the skin that it carries, if any.
     pub(crate) fn touching_surface(&self) -> TouchingSurface<D> {
         let cells = self.contact.as_ref().is_some_and(|own| own.text("surface") == Some("cells"));
         self.mesh.touching_surface(!cells)

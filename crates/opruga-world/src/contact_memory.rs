@@ -1,7 +1,7 @@
 //! The state of contact that is kept from frame to frame: the impulses at the end of the last substep, which are the starting values of the next one.
 //!
-//! Impulses belong to pairs of features, and pushes belong to nodes. Both are kept by bodies of the scene, independently of clusters, in an order
-//! that depends only on bodies and features.
+//! Impulses belong to pairs of features. Pushes, which are impulses that a step already includes, belong to nodes. Both are stored by the numbers of
+//! bodies in the scene, independently of clusters, in an order that depends only on bodies and features.
 
 use crate::bytes::{Reader, Writer};
 use crate::clusters::Clusters;
@@ -29,13 +29,13 @@ pub(crate) struct PairKey {
     pub(crate) second: [u32; 2],
 }
 
-/// A vertex and a facet, two edges, or a point and a surface of an obstacle that holds nodes.
+/// The number of kinds of pairs: a vertex and a facet, two edges, or a point and a surface of an obstacle that holds nodes.
 const KINDS: u32 = 3;
 
-/// The last of them.
+/// The last kind: a point and a surface of an obstacle.
 const OF_SURFACE: u32 = 2;
 
-/// Added to the number of an obstacle whose corners and edges are features.
+/// The offset that is added to the number of an obstacle whose corners and edges are features.
 const OBSTACLE: u32 = 1 << 31;
 
 /// The impulse of contact on a node in its step [N s].
@@ -47,7 +47,7 @@ pub(crate) struct Push<const D: usize> {
     pub(crate) impulse: [f64; D],
 }
 
-/// The state of contact; ascending.
+/// The state of contact, in ascending order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ContactMemory<const D: usize> {
     pub(crate) pairs: Vec<Kept<D>>,
@@ -95,10 +95,10 @@ impl<const D: usize> ContactMemory<D> {
         }
     }
 
-    /// Reads it from a snapshot.
+    /// Reads the state of contact from a snapshot.
     ///
     /// # Errors
-    /// [`WorldError::Snapshot`] if it contains impossible values.
+    /// [`WorldError::Snapshot`] if the snapshot contains impossible values.
     pub(crate) fn read(reader: &mut Reader<'_>) -> Result<ContactMemory<D>, WorldError> {
         let refuse = || WorldError::snapshot(SnapshotFault::Contact {});
         let index = |reader: &mut Reader<'_>| u32::try_from(reader.count()?).map_err(|_| refuse());
@@ -166,7 +166,7 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
-    /// Starts with the stored impulses of its bodies.
+    /// Takes the stored impulses of its bodies as initial values.
     pub(crate) fn recall(&mut self, memory: &ContactMemory<D>, islands: &mut [&mut Island<D>], h: f64) {
         let number = |body: u32| match body.checked_sub(OBSTACLE) {
             Some(outline) => self.cluster.outlines.binary_search(&outline).ok().map(|k| (self.bodies.len() + k) as u32),

@@ -27,7 +27,8 @@ pub struct Contact<const D: usize> {
     /// The impulse on the first body in the frame [N s]; divided by the length of the frame, it is the mean force. Zero for a contact that ended, and
     /// for a body with itself, because the impulses cancel.
     pub impulse: [f64; D],
-    /// Σ λₙ over all its points and substeps [N s]: how hard the surfaces were pressed together. Zero for a contact that ended.
+    /// The sum of the normal impulses λₙ over all its points and substeps [N s]: how hard the surfaces were pressed together. Zero for a contact that
+    /// ended.
     pub pressed: f64,
 }
 
@@ -50,7 +51,7 @@ impl<const D: usize> Contact<D> {
         }
     }
 
-    /// The same contact as one in space.
+    /// The same contact in space; in the plane, z is 0.
     pub(crate) fn in_space(self) -> Contact<3> {
         let lift = |a: [f64; D]| core::array::from_fn(|d| if d < D { a[d] } else { 0.0 });
         let Contact { bodies, phase, position, normal, impulse, pressed } = self;

@@ -175,7 +175,7 @@ impl<const D: usize> Surfaces<D> {
         lifted.crossing_facets()
     }
 
-    /// The points of the facets of some bodies, which are the only bodies with facets.
+    /// The points of the facets of each of these bodies, in ascending order.
     fn points_of(&self, bodies: &[usize]) -> Vec<Vec<u32>> {
         let mut points = vec![Vec::new(); bodies.len()];
         for (facet, (body, _)) in self.facets.iter().zip(&self.origin) {

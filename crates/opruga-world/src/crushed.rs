@@ -9,8 +9,8 @@ use opruga_mesh::Measure;
 /// The code of the warning.
 const CODE: &str = "contact.no_room";
 
-/// The depth of a node inside an obstacle, relative to the size of its body, from which on the obstacle no longer holds it. Implicit integrators
-/// allow a small penetration.
+/// The depth of a node inside an obstacle, relative to the size of its body, beyond which the obstacle no longer holds it. Implicit integrators allow
+/// a small penetration.
 const DEEP: f64 = 1e-3;
 
 /// Two obstacles that touch leave no space between them if −cos of the angle between their outer normals is above this.

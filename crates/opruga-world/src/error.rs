@@ -69,7 +69,7 @@ messages! {
     /// The reasons why a world could not be built, changed or stepped. The world is as it was before the call.
     #[derive(Clone, Debug, PartialEq)]
     pub enum WorldError {
-        /// A model, integrator or collider refuses. The code is that of the source.
+        /// A model, integrator or collider could not be built. The code is that of `source`.
         "part.build" #[error("{}: {}", refusing(part, &source.kind), source.about)]
         #[allowed("{}", source.about.allowed().unwrap_or_default())] #[hint("{}", source.about.hint().unwrap_or_default())]
         Build { part: Part, source: BuildError },
@@ -105,14 +105,13 @@ messages! {
         #[error("more than {most} pairs of vertices, edges and facets may touch in a step ({found} were found) in the frame from t = {} s; the world is at its last good frame", number(*last))]
         #[allowed("{most}")] #[hint("use a larger `most_pairs` in `[contact]`, or coarser surfaces")]
         TooManyContacts { found: usize, most: usize, last: f64 },
-        /// Surfaces that a barrier should keep apart meet. The second is another body, the same body, or an obstacle. Contains the time at the end of
-        /// the substep \[s\].
+        /// Surfaces that a barrier should keep apart meet. The second surface belongs to another body, the same body, or an obstacle. Contains the
+        /// time at the end of the substep \[s\].
         "contact.surfaces_meet"
         #[error("the surfaces of `{first}` and {} meet at t = {} s, but a barrier needs a gap; the world is at its last good frame", other(first, second), number(*time))]
         #[hint("move the bodies apart, or use a smaller `thickness` or `response = \"constraint\"`")]
         Meet { first: String, second: String, time: f64 },
-        /// Pins and obstacles move bodies through one another. The second is another body, the same body, or an obstacle. Contains the time at the
-        /// end of the substep \[s\].
+        /// Pins and obstacles move a body through another body, itself, or an obstacle. Contains the time at the end of the substep \[s\].
         "contact.led_through"
         #[error("pins and obstacles move `{first}` through {} at t = {} s; the world is at its last good frame", other(first, second), number(*time))]
         #[hint("use another path for these pins or obstacles, or `touch = false` for the pair")]

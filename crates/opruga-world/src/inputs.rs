@@ -39,7 +39,7 @@ pub enum Input<const D: usize> {
         /// The name of the body.
         name: String,
     },
-    /// [`World::act`], [`World::lead`] and [`World::finish`]: commands that are created during a run are stored in a scene.
+    /// [`World::act`], [`World::lead`] or [`World::finish`], which cannot be written as bytes: their commands are saved with the scene instead.
     Act,
     /// [`World::add_force`]: a law of the program, which cannot be written as bytes.
     Force {
@@ -245,7 +245,7 @@ pub(crate) fn write_selector<const D: usize>(out: &mut Writer<'_>, select: &Sele
     }
 }
 
-/// The maximum nesting of sets.
+/// The maximum nesting of sets of nodes.
 const DEEPEST: u32 = 128;
 
 pub(crate) fn read_selector<const D: usize>(reader: &mut Reader<'_>, depth: u32) -> Result<Selector<D>, WorldError> {

@@ -1,9 +1,9 @@
 //! Cells of finite elements that are inverted in the present state, entirely or in part.
 //!
 //! Two checks are made. One uses the integration points with the deformation that the law sees there, which for boxes does not depend on the shape
-//! alone. The other uses J of the shape over the whole cell. For quadratic cells and boxes it is a quotient of polynomials; its coefficients may
-//! prove its sign, or one value may disprove it ([`opruga_mesh::least_jacobian`]). A cell may be folded at a corner although none of its integration
-//! points is inverted, and no force shows it.
+//! alone. The other uses J of the shape over the whole cell. For quadratic cells and boxes, J is a quotient of polynomials: its coefficients may
+//! prove that it is positive everywhere, or one value may disprove this ([`opruga_mesh::least_jacobian`]). A cell may be folded at a corner although
+//! none of its integration points is inverted. No force then shows the fold.
 
 use crate::warnings::{CellHint, InvertedCells, UnfoldHint, Warning, WorldWarning};
 use crate::world::World;
@@ -19,8 +19,8 @@ enum Found {
 }
 
 impl<const D: usize> World<D> {
-    /// A warning (`cells.inverted`) about cells of finite elements that are inverted in the present state, entirely or in part, which the integrators
-    /// allow; none if certainly no cell is inverted. Every call computes it again.
+    /// A warning (`cells.inverted`) about cells of finite elements that are inverted in the present state, entirely or in part. The integrators allow
+    /// such cells. Returns none if certainly no cell is inverted. Every call computes it again.
     ///
     /// J of quadratic cells and boxes is bounded over the whole cell ([`opruga_mesh::least_jacobian`]), independently of the integration points. A
     /// cell that is so close to degenerate somewhere that the bounds are not conclusive counts as possibly inverted.
@@ -89,7 +89,7 @@ impl<const D: usize> World<D> {
         found.collect()
     }
 
-    /// The hint for a body that rests in a degenerate shape, if the scene does not already use it.
+    /// The hint to use `unfold` for a body that rests in a degenerate shape; none if the scene already uses it.
     pub(crate) fn or_unfold(&self) -> Option<UnfoldHint> {
         (!self.blueprint.surroundings.unfold).then_some(UnfoldHint::Unfold)
     }

@@ -108,7 +108,7 @@ impl<const D: usize> Saved<D> {
     }
 }
 
-/// The number of nodes from which threads share the work on one body.
+/// The smallest number of nodes of a body on which threads work together.
 const SHARED_FROM: usize = 1000;
 
 /// The data that a frame needs.
@@ -204,7 +204,7 @@ impl<const D: usize> Island<D> {
         out
     }
 
-    /// Queries every model, prepared for the present state.
+    /// Prepares every model for the present state and passes it to `question`.
     fn ask(&mut self, time: f64, mut question: impl FnMut(&Member<D>, &View<D>)) {
         let system = &mut self.system;
         let view = View {

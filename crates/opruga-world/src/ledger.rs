@@ -36,7 +36,7 @@ pub struct Energy {
     pub loss_integrator: f64,
     /// |loss_integrator| relative to `in_motion`.
     pub closure: f64,
-    /// The largest energy in motion so far, or what rounding alone may add to a body at rest, if that is larger.
+    /// The largest energy in motion so far, or the energy that rounding alone may add to a body at rest, if that is larger.
     pub in_motion: f64,
 }
 
@@ -295,7 +295,7 @@ impl<const D: usize> Work for Look<'_, D> {
 pub(crate) const LARGEST_CLOSURE: f64 = 0.1;
 
 /// The numerical loss, relative to the energy in motion, above which a frame is counted. It is half of the limit for the unexplained energy, because
-/// it is known and has the same sign from step to step.
+/// the loss is known and has the same sign in every step.
 pub(crate) const LARGEST_DAMPING: f64 = 0.05;
 
 /// The relative error of a number after many roundings.

@@ -96,7 +96,7 @@ impl<const D: usize> Potential<D> for CentralForces<D> {
             }
         }
     }
-    /// −∂F/∂x = s/r (1 − n nᵀ).
+    /// −∂F/∂x = s/r (1 − n nᵀ), where r is the distance to the point and n the unit vector towards it.
     fn hessian(&self, view: &View<D>, _scratch: &[f64], keep: Definiteness, sink: &mut dyn Sink<D>) {
         let size = self.value * factor(&self.curve, view.time);
         if size < 0.0 && keep != Definiteness::Exact {
@@ -253,8 +253,8 @@ impl<const D: usize> Pull<D> {
         let limited = !within && self.largest_force.is_finite();
         if limited {
             if !square.is_finite() {
-                // A force that is too large for its square still has a direction. A force without direction, between two infinite components, does
-                // not pull.
+                // A force whose square overflows still has a direction. A component that is the difference of two infinite numbers (NaN) does not
+                // pull.
                 force = force.map(|f| if f.is_nan() { 0.0 } else { FAR * f.clamp(-f64::MAX, f64::MAX) });
                 square = force.iter().map(|f| f * f).sum();
             }
@@ -304,7 +304,7 @@ impl<const D: usize> Potential<D> for Pull<D> {
 impl<const D: usize> Observe<D> for Pull<D> {}
 
 impl<const D: usize> Pull<D> {
-    /// A spring or damper of the given strength at the grabbed point; none if the force is at its limit.
+    /// Adds a spring or damper of the given strength at the grabbed point; adds zeros if the force is at its limit.
     fn add_spring(&self, view: &View<D>, strength: f64, sink: &mut dyn Sink<D>) {
         let (_, _, _, limited) = self.force(view);
         let strength = if limited { 0.0 } else { strength };
@@ -358,7 +358,7 @@ impl<const D: usize> Potential<D> for UserForce<D> {
 impl<const D: usize> Observe<D> for UserForce<D> {}
 
 impl<const D: usize> UserForce<D> {
-    /// The symmetric part of −∂F/∂x or −∂F/∂v at every node, by central differences, because the law is a black box.
+    /// Adds the symmetric part of −∂F/∂x or −∂F/∂v at every node, by central differences, because the law is a black box.
     fn add_slope(&self, view: &View<D>, [of_x, of_v]: [f64; 2], sink: &mut dyn Sink<D>) {
         const STEP: f64 = 6e-6;
         for node in 0..view.nodes {

@@ -4,14 +4,14 @@ use crate::ledger::{Energy, Flows, Momentum};
 use crate::world::World;
 
 impl<const D: usize> World<D> {
-    /// Keeps the state after every `every` substeps of the coming frames for [`World::look_within`]; 0 keeps none.
+    /// Keeps states of the coming frames for [`World::look_within`], `every` substeps apart; 0 keeps none.
     ///
     /// Results do not depend on it. Each kept state is a copy of all positions and velocities. Only the first frame allocates this memory.
     pub fn keep_looks(&mut self, every: u32) {
         (self.looks.every, self.looks.fresh) = (every, false);
     }
 
-    /// Shows the world at each state that was kept within the last frame, one after another; then restores it.
+    /// Calls `look` with the world in each state that was kept within the last frame, one after another; then restores the world.
     ///
     /// Positions, velocities, time, energy, momentum, readings and probes are those of that state.
     pub fn look_within(&mut self, mut look: impl FnMut(&mut World<D>)) {
@@ -26,7 +26,7 @@ impl<const D: usize> World<D> {
             let mut flows = self.looks.flows;
             let mut complete = true;
             for island in &mut self.islands {
-                // Islands that were built since then have no kept states.
+                // Islands that were built after the last frame have no kept states.
                 let work = island.swap_look(number as usize);
                 island.refresh();
                 match work {

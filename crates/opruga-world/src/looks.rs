@@ -1,8 +1,8 @@
-//! States kept within a frame, for readers that need motion that is faster than the frames.
+//! States kept within a frame, for measurements of motions that are faster than the frames.
 
 use crate::ledger::Flows;
 
-/// The settings for states that are kept between frames.
+/// The settings and data for states that are kept within frames.
 #[derive(Debug, Default)]
 pub(crate) struct Looks {
     /// Substeps between two kept states; 0: none.

@@ -77,7 +77,7 @@ pub(crate) struct Substep<'a, const D: usize> {
 }
 
 impl<const D: usize> Substep<'_, D> {
-    /// Runs a computation with the obstacles as seen by single points.
+    /// Runs a computation with a function that finds the obstacles that a single point touches in this substep.
     fn with_obstacles<R>(&self, work: impl FnOnce(Option<Obstacles<'_, D>>) -> R) -> R {
         let Some(obstacles) = self.obstacles else { return work(None) };
         let (time, h) = (self.time, self.plan.h);
@@ -186,7 +186,7 @@ impl<const D: usize> Meeting<D> {
         self.is_one() && self.pushed.iter().any(|pushed| pushed.island == island)
     }
 
-    /// Converts trouble to the numbers that bodies and obstacles have in the scene.
+    /// Returns the error with the numbers that bodies and obstacles have in the scene.
     pub(crate) fn in_scene(&self, trouble: Trouble) -> Trouble {
         let all = |bodies: [u32; 2]| bodies.map(|body| self.numbers[body as usize]);
         match trouble {

@@ -88,7 +88,8 @@ pub(crate) fn check<const D: usize>(
     Err(WorldError::Build { part: Part::body(name), source: BuildError::of("memory", refusal) })
 }
 
-/// Allocates the memory in one piece and frees it. If a limit of the system were lower, building would abort the program.
+/// Whether the system provides this memory: allocates it in one piece and frees it. Without this check, building would abort the program if a limit
+/// of the system were lower.
 fn is_given(bytes: f64) -> bool {
     /// Smaller amounts are not tested: without them nothing works.
     const LITTLE: f64 = 16_777_216.0;

@@ -48,7 +48,7 @@ impl<const D: usize> Mode<D> {
     }
 }
 
-/// A rigid motion is free if it strains the body by less than this fraction of its stiffness.
+/// A rigid motion counts as free if its ω² is at most this fraction of the largest ratio of a diagonal element of K to its mass.
 const FREE: f64 = 1e-9;
 
 /// The maximum memory of a search for modes [bytes].
@@ -101,7 +101,7 @@ struct SmallMotions<const D: usize> {
     pinned: Vec<bool>,
     /// Nodes none of whose axes are pinned.
     free: Vec<bool>,
-    /// The projector of every node that removes pinned axes.
+    /// For every node, the projector that removes its pinned axes.
     projectors: Vec<[[f64; D]; D]>,
     /// The largest ratio of a diagonal element of K to its mass [1/s²].
     fastest: f64,
@@ -199,7 +199,7 @@ impl<const D: usize> SmallMotions<D> {
         Ok(found.into_iter().map(|found| mode(found.square, &found.shape, found.residual)).collect())
     }
 
-    /// A factor of K + s M, and s [1/s²]. The matrix must be positive definite; a state that is about to buckle needs a larger s.
+    /// Factors K + s M; returns the factor and s [1/s²]. The matrix must be positive definite; a state that is about to buckle needs a larger s.
     fn factor(&self) -> Result<(f64, Cholesky), Refusal> {
         let system = &self.system;
         let mut shift = 1e-6 * self.fastest;

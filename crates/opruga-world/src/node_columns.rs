@@ -22,7 +22,7 @@ impl<'w> Strided<'w> {
     pub fn is_empty(self) -> bool {
         self.column.is_empty()
     }
-    /// The number of a node; NaN if there is no such node.
+    /// The value at a node; NaN if there is no such node.
     pub fn at(self, node: usize) -> f64 {
         self.column.get(node * self.stride).copied().unwrap_or(f64::NAN)
     }

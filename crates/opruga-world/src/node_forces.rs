@@ -8,7 +8,8 @@ use opruga_integrators::accelerations;
 use opruga_math::WIDTH;
 
 impl<const D: usize> World<D> {
-    /// The forces on the nodes of a body [N] from the models of one account; without an account, from all models, including gravity.
+    /// The forces on the nodes of a body [N] from the models that belong to one account of the ledger; without an account, from all models, including
+    /// gravity.
     ///
     /// Empty if there is no such body or if a model refuses the state.
     pub fn node_forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; D]> {
@@ -38,8 +39,8 @@ impl<const D: usize> World<D> {
     /// corners and edges of obstacles, are for the last substep, and are the impulse over h.
     ///
     /// v* is the velocity that the present forces would give a node within h without obstacles, and v' is the velocity with obstacles. The force
-    /// consists of the normal force and friction; in an impact, it is the impulse over h. Pinned nodes have no contact force; the pin takes it. Empty
-    /// if there is no such body, if nothing can touch it, or if a model refuses the state.
+    /// consists of the normal force and friction; in an impact, it is the impulse over h. Pinned nodes have no contact force, because the pin takes
+    /// it up. Empty if there is no such body, if nothing can touch it, or if a model refuses the state.
     pub fn contact_forces(&mut self, body: usize) -> Vec<[f64; D]> {
         let mut forces = self.obstacle_forces(body);
         if let Some(clusters) = self.clusters.as_ref().filter(|_| self.handle(body).is_some()) {

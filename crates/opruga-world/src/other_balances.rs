@@ -171,8 +171,8 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// The energies of the models of a system by which its bodies are judged [J], and the forces of these models on all nodes at zero velocity [N]; none
-/// if they are not defined.
+/// The energies [J] of those models of a system by which its bodies are judged, and the forces [N] of these models on all nodes at zero velocity;
+/// none if they are not defined.
 fn elastic<const D: usize>(system: &System<D>, time: f64) -> Option<([f64; WIDTH], Columns<D>)> {
     let still = Columns::<D>::zeros(system.index_count());
     let mut forces = Columns::<D>::zeros(system.index_count());

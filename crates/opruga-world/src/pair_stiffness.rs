@@ -4,7 +4,8 @@
 //! y += Gᵀ S G x,   S = κ m b″ n nᵀ, or ∂²D/∂s² of friction
 //! ```
 //!
-//! G maps the coordinates to the relative motion of a pair.
+//! G maps the coordinates to the relative motion of a pair. S is the stiffness of the barrier along the normal n of the pair (`opruga_collide`,
+//! `barrier.rs`), or that of its friction energy D over the slip s.
 
 use opruga_collide::{Pressed, Rubbing, Surface};
 

@@ -1,10 +1,10 @@
-//! Messages about names of parts of a world, given by a program or a command, that are not valid, and about errors in snapshots.
+//! Messages about invalid names of parts of a world that a program or a command gives, and about errors in snapshots.
 
 use opruga_core::spec::AllowedValues;
 use opruga_math::words::number;
 use opruga_math::{messages, terms};
 
-/// The forms of parameters that may change.
+/// The forms of the paths of parameters that may change.
 pub(crate) const FORMS: &str = "body.NAME.models.KIND.FIELD, body.NAME.integrator.FIELD, integrator.FIELD, collider.NUMBER.FIELD, contact.FIELD, world.gravity, world.drag, \
                      world.largest_force, world.largest_velocity, world.largest_distance, \
                      world.unfold, time.substeps";

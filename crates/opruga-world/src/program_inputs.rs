@@ -39,7 +39,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Moves a node and gives it a velocity, from outside the physics.
+    /// Sets the position and the velocity of a node directly, without any force.
     ///
     /// # Errors
     /// [`WorldError::Path`] if there is no such node, or if a number is not finite; the world is then unchanged.

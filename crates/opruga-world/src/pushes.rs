@@ -24,7 +24,7 @@ use opruga_math::{Lane, WIDTH};
 /// surfaces begin to overlap at this size.
 const AGREED: [(usize, f64); 3] = [(3, 1e-7), (6, 1e-4), (MOST_ROUNDS, 1e-2)];
 
-/// These pairs if all bodies have a budget: surfaces with a thickness keep half of it between them.
+/// The same pairs for the case that all bodies have a budget: surfaces with a thickness keep half of it between them.
 const AGREED_IN_BUDGET: [(usize, f64); 1] = [(MOST_ROUNDS, 0.5)];
 
 /// The maximum number of rounds.
@@ -94,7 +94,7 @@ impl<const D: usize> Respond<D> for Answers<'_, '_, D> {
 }
 
 impl<const D: usize> Meeting<D> {
-    /// Begins a frame and discards everything of the last one.
+    /// Begins a frame and discards the results of the previous one.
     pub(crate) fn begin(&mut self) {
         self.touching.begin();
         self.mixed.clear();
@@ -194,9 +194,9 @@ impl<const D: usize> Meeting<D> {
         true
     }
 
-    /// Lets contact change velocities after the steps if steps and contact do not agree. If all bodies of the meeting are implicit, they keep their
-    /// last result, which is close. If explicit bodies have responded to the impulses too, or a step failed, all return to a step without contact
-    /// forces.
+    /// Lets contact change velocities after the steps if steps and contact do not agree. If all bodies of the meeting have implicit integrators, they
+    /// keep their last result, which is close. If bodies with explicit integrators have also responded to the impulses, or if a step failed, all
+    /// return to a step without contact forces.
     pub(crate) fn part(&mut self, islands: &mut [&mut Island<D>], step: &Substep<'_, D>) {
         let failed = self.pushed.iter().any(|pushed| islands[pushed.island].outcome.is_err());
         let back = failed || self.pushed.len() < self.bodies.len();
@@ -224,7 +224,7 @@ impl<const D: usize> Meeting<D> {
         self.take(islands, step.time);
     }
 
-    /// The velocities of pushed bodies are the mean velocities of the step.
+    /// Sets the velocities of pushed bodies to their mean velocities in the step.
     fn take_mean_velocities(&mut self, h: f64) {
         let Touching { coupled, before: [from, _], after: [x, v], .. } = &mut self.touching;
         for p in (0..coupled.count()).flat_map(|body| coupled.points_of(body)) {
@@ -234,7 +234,8 @@ impl<const D: usize> Meeting<D> {
 
     /// Ends a substep: applies the remaining impulses, and the displacements that separate overlapping bodies.
     pub(crate) fn end_pushes(&mut self, islands: &mut [&mut Island<D>], h: f64) {
-        // Explicit bodies have responded to the impulses of the last solution. The impulses of the step differ from these by a remainder.
+        // Bodies with explicit integrators have responded to the impulses of the last solution. The impulses of the step differ from these by a
+        // remainder.
         let mixed = self.pushed.len() < self.bodies.len();
         for (body, pushed) in self.pushed.iter().enumerate() {
             let system = &mut islands[pushed.island].system;

@@ -151,8 +151,8 @@ impl<const D: usize> World<D> {
         self.apply_running(number);
     }
 
-    /// Records the change of energy by a change of the scene as work of its author. The reference of the energy in motion changes by the same amount,
-    /// so that the height of an added body does not count as motion.
+    /// Records the energy that a change of the scene adds or removes as work of the user. The reference of the energy in motion changes by the same
+    /// amount, so that the height of an added body does not count as motion.
     fn shift_start(&mut self, before: f64) {
         let change = self.stock_energy() - before;
         self.flows.start += change;

@@ -11,7 +11,7 @@
 //!
 //! σ ([`Staying`]) falls as the forces at the end of corrections approach the predicted ones. Friction opposes the sliding of each correction.
 //!
-//! The contact within a correction has the same source as that of implicit integrators (`pushes.rs`).
+//! Contact within a correction is solved by the method of the same publication as for implicit integrators (see `pushes.rs`).
 
 use crate::barrier_search::{Opened, Refused};
 use crate::island::Island;
@@ -39,7 +39,7 @@ const MOST_CORRECTIONS: usize = 200;
 /// The longest correction, as a fraction of the extent of the body.
 const LONGEST: f64 = 0.5;
 
-/// The largest last correction, relative to the thickness of surfaces.
+/// The largest correction after which the bodies count as being at rest, relative to the thickness of surfaces.
 const AT_REST: f64 = 1e-7;
 
 /// The final residual, relative to the forces on a body, that is accepted if rounding keeps it from falling further in this many corrections.
@@ -367,7 +367,7 @@ impl<const D: usize> Search<'_, '_, D> {
             }
         }
         touching.given = given;
-        // Obstacles have their positions at the end.
+        // Obstacles are moved to their positions at the end of the step.
         let Touching { surface, before: [x0, _], after: [x1, _], .. } = &mut *touching;
         for p in (0..x0.len()).filter(|p| surface.is_of_obstacle(*p as u32)) {
             x0[p] = x1[p];
@@ -409,7 +409,7 @@ impl<const D: usize> Search<'_, '_, D> {
     }
 }
 
-/// Exchanges the workspaces of bodies for those that are lent to each.
+/// Exchanges the workspace of each body with the one that is lent to it.
 fn exchange<const D: usize>(pushed: &[Pushed<D>], islands: &mut [&mut Island<D>], lent: &mut [Workspace<D>]) {
     for (pushed, workspace) in pushed.iter().zip(lent) {
         islands[pushed.island].system.exchange(workspace);

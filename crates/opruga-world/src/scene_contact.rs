@@ -38,7 +38,7 @@ pub(crate) struct SceneContact<const D: usize> {
     distance: f64,
 }
 
-/// The state of the scene for which it was made; it is rebuilt if this state changes.
+/// The state of the scene for which the data for contact were made. They are rebuilt if this state changes.
 #[derive(Clone, Debug)]
 pub(crate) struct MadeFor<const D: usize> {
     /// The number of islands that had been built by then.

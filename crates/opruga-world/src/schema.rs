@@ -71,7 +71,7 @@ pub enum Holds {
     Node,
     /// A list of these words, each at most once.
     Words(&'static [&'static str]),
-    /// One whole number from 1 for each dimension of the scene (if there are fewer, the rest are 1).
+    /// One whole number of at least 1 for each dimension of the scene (if there are fewer numbers, the rest are 1).
     Counts,
     /// A value of any type; the parameter to which it belongs determines what is allowed.
     AnyValue,

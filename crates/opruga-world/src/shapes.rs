@@ -468,7 +468,7 @@ pub fn apply_transform<const D: usize>(mesh: &mut Mesh<D>, transform: &Transform
     }
 }
 
-/// Rotates a mesh whose dimension is a type parameter by the code for a known dimension.
+/// Rotates a mesh whose dimension is a type parameter, using the code for a known dimension.
 fn turn<const D: usize, const E: usize>(
     mesh: &mut Mesh<D>,
     rotate: impl FnOnce(&mut Mesh<E>) -> Result<(), MeshError>,

@@ -3,8 +3,8 @@
 //! A cell whose shape functions cannot represent bending has a spurious strain in proportion to its length. A body of thickness T is then too stiff
 //! in bending, with a relative error of about (L/T)², however many cells there are across its thickness. Measurements on beams and plates
 //! (`tests/all/slender_cells.rs`, docs/finite-elements.md) show that the first frequencies are 45 % too high for linear cells with a longest edge of
-//! T, and 10 % too high for quadratic tetrahedra with a longest edge of 8.5 T, which only lack a part of torsion. Quadratic triangles and boxes have
-//! no limit.
+//! T, and 10 % too high for quadratic tetrahedra with a longest edge of 8.5 T. Quadratic tetrahedra lack only a part of torsion. Quadratic triangles
+//! and boxes have no limit.
 
 use crate::blueprint::BodyBlueprint;
 use crate::warnings::{BendingHint, Warning, WorldWarning};
@@ -36,8 +36,8 @@ fn limit(element: Element) -> Option<&'static Limit> {
 }
 
 impl<const D: usize> World<D> {
-    /// Warns about bodies of finite elements with more than half of their volume in cells beyond the limit of their kind. There is one warning, with
-    /// the body that is farthest beyond; copies are counted.
+    /// Warns about bodies of finite elements with more than half of their volume in cells beyond the limit of their kind. There is one warning, for
+    /// the body that exceeds its limit the most; copies are counted.
     pub(crate) fn warn_of_slender_cells(&mut self) {
         let mut worst: Option<(usize, Slender)> = None;
         let mut count = 0;

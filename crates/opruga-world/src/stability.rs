@@ -19,7 +19,7 @@ impl<const D: usize> World<D> {
     /// Estimates the stable step of every kind of body that was rebuilt, and compares all steps with their limits.
     ///
     /// Bodies are of one kind if they agree in everything that the estimate depends on. Unchanged islands keep their estimate, so that a change of
-    /// one body does not refuse a step because of the present state of another.
+    /// one body never causes the refusal of a step because of the present state of another body.
     pub(crate) fn check_stability(&mut self) -> Result<(), WorldError> {
         let mut seen: Vec<(usize, PinnedAxes)> = Vec::new();
         let mut first_of_kind = Vec::new();

@@ -27,7 +27,8 @@ impl<const D: usize> World<D> {
     /// existence of their bodies is checked when they begin.
     ///
     /// # Errors
-    /// [`WorldError`] if the blueprint contains what no scene file could, if a model or obstacle refuses, or if the step is unstable.
+    /// [`WorldError`] if the blueprint contains something that no scene file could contain, if a model or obstacle refuses, or if the step is
+    /// unstable.
     pub fn new(blueprint: Blueprint<D>, options: Options) -> Result<World<D>, WorldError> {
         World::with_registry(blueprint, options, Arc::new(Registry::default()))
     }

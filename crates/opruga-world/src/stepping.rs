@@ -64,8 +64,8 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Steps all islands through the frame, on the available threads. Every island keeps its own outcome; an error is that of bodies that touch, with
-    /// its time.
+    /// Steps all islands through the frame, on the available threads. Every island keeps its own outcome; the returned error is that of bodies that
+    /// touch, with its time [s].
     fn step_islands(&mut self) -> Result<(), (Trouble, f64)> {
         let plan = FramePlan {
             colliders: self.colliders.as_ref(),

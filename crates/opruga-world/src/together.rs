@@ -13,7 +13,7 @@ use opruga_core::threads;
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
-/// The number of nodes from which a group uses more than one thread within a substep.
+/// The smallest number of nodes of a group that uses more than one thread within a substep.
 const SHARED_FROM: usize = 1000;
 
 /// A group that is being stepped through the frame.

@@ -390,8 +390,8 @@ fn displace<const D: usize>(system: &mut System<D>, size: f64, times: u64) {
     system.hold(Stage::Current, 0.0);
 }
 
-/// Does the same, and enters the energy that this takes as work from outside. Does nothing if a law is not defined in the
-/// displaced shape.
+/// Displaces the nodes as [`displace`] does, and enters the energy that this takes into the ledger as work from outside. Does nothing if a law is not
+/// defined in the displaced shape.
 fn displace_with_work<const D: usize>(system: &mut System<D>, size: f64, times: u64) {
     let (x, before) = (system.state.x.clone(), system.stored_energy(Stage::Current, 0.0));
     displace(system, size, times);

@@ -136,7 +136,7 @@ fn scene<const D: usize>(
 
 /// Allocations in every frame after ten frames.
 fn requests<const D: usize>(name: &str, blueprint: Blueprint<D>) {
-    // The stable step of explicit Euler follows from the drag alone, and is shorter.
+    // The stable step of explicit Euler follows from the drag alone, and is shorter than the substep.
     let options = Options { allow_unstable: true, ..Options::default() };
     // Without and with kept states within the frame.
     for look_every in [0, 7] {

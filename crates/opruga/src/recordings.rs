@@ -49,11 +49,11 @@ const BYTE: f64 = 2.1;
 const STATE: f64 = 3_000.0;
 /// The fixed time of a frame [ns].
 const FRAME: f64 = 4_000.0;
-/// A lower bound of the time that a node, a cell and a facet in space add to a step of an explicit integrator [ns].
+/// A lower bound on the time that a node, a cell and a facet in space add to a step of an explicit integrator [ns].
 const WORK: [f64; 3] = [1.0, 3.0, 4.0];
-/// A lower bound of the factor by which a step of an implicit integrator takes longer.
+/// A lower bound on the factor by which a step of an implicit integrator takes longer.
 const IMPLICIT: f64 = 500.0;
-/// The fraction of the time of a run that keeping states may take; the hashes of all frames take as much again.
+/// The fraction of the time of a run that keeping states may take; the hashes of all frames may take as much again.
 const SHARE: f64 = 0.05;
 /// The work that may be lost if the process is killed [ns]. Small frames are written in groups, because writing each of them separately would take as
 /// long as computing it.
@@ -61,8 +61,8 @@ const TOGETHER: f64 = 100_000.0;
 /// The largest number of frames from one kept state to the next that the header of a recording can store.
 const FARTHEST: f64 = u32::MAX as f64;
 
-/// A lower bound of the time of a frame of a world on a common machine [ns]. It depends only on the scene, so that the same run gives the same
-/// recording everywhere.
+/// A lower bound on the time that a frame of a world takes on a common machine [ns]. It depends only on the scene, so that the same run gives the
+/// same recording everywhere.
 fn work(world: &dyn AnyWorld) -> f64 {
     let scene = world.scene();
     let dimension = scene.dimension();

@@ -1,5 +1,5 @@
-//! Measures the cost of a kill for a recording: a process that records reports through a pipe when each frame was finished, and is killed at any
-//! moment.
+//! Measures what a recording loses if its process is killed. The process reports every finished frame through a pipe, and it is killed at an
+//! arbitrary moment.
 #![cfg(unix)]
 #![allow(clippy::disallowed_methods)] // no physics here
 

@@ -88,7 +88,7 @@ Venant–Kirchhoff",
     Case {
         name: "heavy-beam-hexahedra",
         quantity: "deflection of the end of a beam of 1 × 0.1 × 0.1 m under its weight, E = 1e8 Pa, ν = 0.3, ρ = 1000 kg/m³, neo-Hookean",
-        // Changed after its first run, which had half as many cells along it, like the strip.
+        // Changed after its first run, which had half as many cells along the beam, for the same reason as the strip.
         levels: &[20.0, 40.0, 80.0],
         expected: &[0.014686],
         measure: |lab, n| heavy(lab, n, Cells::Boxes, 1e8, 20.0),

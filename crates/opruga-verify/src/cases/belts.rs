@@ -1,4 +1,4 @@
-//! A belt on a drum, and contact between explicit and implicit integrators.
+//! A belt on a drum, and contact between bodies with explicit and with implicit integrators.
 
 use super::BASE;
 use crate::case::{Case, Check, Family, Over, Scale};

@@ -256,7 +256,8 @@ fn tube(lab: &Lab, vertices: f64, stress: bool) -> Result<f64, Trouble> {
     Ok(strain / 0.91 - 0.3 / 0.7)
 }
 
-/// Tension along y, from the strain of the two edges at the end of the hole along x: their mean is that of a chord about this end.
+/// The stress concentration at the end of a hole along x under tension along y. The mean strain of the two edges at this end is that of a chord about
+/// it.
 fn hole(lab: &Lab, vertices: f64) -> Result<f64, Trouble> {
     let mesh = Mesh::ring(1.0, vertices as u32, [0.0, 0.0], 0.0)?;
     let mut pulls = vec![[0.0; 2]; mesh.positions.len()];
@@ -279,7 +280,8 @@ fn hole(lab: &Lab, vertices: f64) -> Result<f64, Trouble> {
     Ok(1.0 + 0.5 * (strain(0, 1) + strain(last, 0)) / SMALL)
 }
 
-/// Tension along x, at the pole of the z axis: the mean strain of the triangles around it, weighted by their areas.
+/// The result for a cavity under tension along x, at its pole on the z axis: from the mean strain of the triangles around the pole, weighted by their
+/// areas.
 fn cavity(lab: &Lab, edges: f64, poisson: f64) -> Result<f64, Trouble> {
     let mesh = Mesh::icosphere(1.0, subdivisions(edges) as u32)?;
     let mut pulls = vec![[0.0; 3]; mesh.positions.len()];

@@ -2,7 +2,7 @@
 
 use opruga::World;
 
-/// Pressures and stresses with strains so small that the change of shape of the body does not matter [E].
+/// A pressure or stress so small that the change of shape of the body does not matter, in units of E.
 pub(super) const SMALL: f64 = 1e-6;
 
 /// A solid of E = 1 Pa, with further fields of its model.

@@ -314,7 +314,7 @@ fn ring_buckles_under_centred_load(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     })
 }
 
-/// No time passes, so any integrator without a limit of the step can be used.
+/// A scene in which no time passes. Any integrator without a limit on the step can be used.
 fn still(dimension: usize) -> Scene {
     Scene::new(dimension, 0.001, 1, "newmark")
 }
@@ -328,7 +328,7 @@ fn beam(lab: &Lab, n: f64, number: usize) -> Result<f64, Trouble> {
 fn free_ring(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let world = lab.plane(still(2).add(&ring(n, "")))?;
     let omega = world.modes(0, 4)?.get(3).ok_or("too few modes")?.omega();
-    // The mass is 1 kg on 2πR.
+    // The mass of 1 kg is distributed over the length 2πR.
     Ok(omega / TAU.sqrt())
 }
 

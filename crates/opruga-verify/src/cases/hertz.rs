@@ -60,7 +60,8 @@ struct Press {
 }
 
 impl Round {
-    /// Half of it (in space a quarter) about the origin, with its pole up or down. Cells near the pole are small.
+    /// The mesh of half of this body (in space, of a quarter of it), with the centre at the origin and the pole up or down. Cells near the pole are
+    /// small.
     fn mesh<const D: usize>(self, up: bool) -> Result<Mesh<D>, Trouble> {
         // Bodies touch at half of the thickness outside their meshes.
         let radius = self.radius - 0.5 * THICKNESS;
@@ -83,8 +84,7 @@ impl Round {
         })
     }
 
-    /// The lines of the scene for its body. The centre is at the given height, and the plane through the centre is displaced by
-    /// `by`.
+    /// The lines of the scene for this body. The centre is at the given height, and the plane through the centre is displaced by `by`.
     fn text<const D: usize>(self, mesh: &Mesh<D>, height: f64, by: f64) -> String {
         let upward =
             |y: f64| (0..D).map(|d| if d == 1 { format!("{y:?}") } else { "0".into() }).collect::<Vec<_>>().join(", ");

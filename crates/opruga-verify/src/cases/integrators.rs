@@ -168,7 +168,7 @@ fn amplitude(lab: &Lab, step: f64) -> Result<f64, Trouble> {
     Ok(x.hypot(0.5 * v) / 0.5)
 }
 
-/// The stable limit by bisection: whether an oscillation of 1 mm grows tenfold within 2000 steps.
+/// The stable limit by bisection: a step is unstable if an oscillation of 1 mm grows a hundredfold within 2000 steps.
 fn limit(lab: &Lab, rule: &str) -> Result<f64, Trouble> {
     let (mut stable, mut unstable) = (1.0, 4.0);
     for _ in 0..16 {

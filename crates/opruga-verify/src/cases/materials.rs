@@ -84,7 +84,7 @@ pub(super) const CASES: &[Case] = &[
         measure: |lab, x| pull(lab, "linear", x, Of::Side),
         ..SIDE
     },
-    // Changed after its first run, with a hexahedron, which is not stable under this law near a stretch of 3.
+    // Changed after its first run, which used a hexahedron. A hexahedron is not stable under this law near a stretch of 3.
     Case {
         name: "uniaxial-stress-corotated",
         quick: false,

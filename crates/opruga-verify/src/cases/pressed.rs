@@ -120,7 +120,7 @@ fn pinned<const D: usize>(mesh: &Mesh<D>, axis: usize, which: impl Fn(&[f64; D])
     format!("{{ select = {{ nodes = {:?} }}, axes = \"{}\" }}", nodes(mesh, which), ["x", "y", "z"][axis])
 }
 
-/// The sides of a block slide on walls.
+/// Pins that let the sides of a block slide on walls.
 fn walls<const D: usize>(mesh: &Mesh<D>) -> Vec<String> {
     let side = |c: f64| c.abs() < 1e-9 || (c - 1.0).abs() < 1e-9;
     (0..D).filter(|d| *d != 1).map(|d| pinned(mesh, d, |x| side(x[d]))).collect()

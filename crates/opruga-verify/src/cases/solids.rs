@@ -5,7 +5,7 @@ use crate::bodies::{Cells, at_radius, hoop_stress_at, mapped, nodes, octant, out
 use crate::case::{Case, Check, Over};
 use crate::lab::{Lab, Scene, Trouble, moved_pins};
 
-/// Pressures and stresses with strains so small that the change of shape of the body does not matter [E].
+/// A pressure or stress so small that the change of shape of the body does not matter, in units of E.
 const SMALL: f64 = 1e-6;
 
 const BAR: Case = Case {
@@ -65,8 +65,8 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "lame-tube-quadrilaterals", quick: true, measure: |lab, n| tube(lab, n, Cells::Boxes, false), ..TUBE },
     Case { name: "lame-tube-triangles", quick: true, measure: |lab, n| tube(lab, n, Cells::Linear, false), ..TUBE },
     Case {
-        // Changed after its first run. It started at 4 cells and had only the pressure. The second-order part of the pressure was most of the error,
-        // which changes its sign between 4 and 8 cells.
+        // Changed after its first run, which started at 4 cells and had only the pressure. The second-order part of the pressure was most of the
+        // error, and the error changes its sign between 4 and 8 cells.
         name: "lame-tube-quadratic-triangles",
         levels: &[8.0, 16.0, 32.0],
         quick: false,
@@ -167,7 +167,8 @@ fn pressed(select: &[u32], pressure: f64) -> String {
     format!("[[load]]\nkind = \"pressure\"\nbody = \"body\"\nselect = {{ nodes = {select:?} }}\nvalue = {pressure:?}")
 }
 
-/// Half of the difference between pressure and suction: a pressure follows the wall, which causes a second-order part.
+/// Half of the difference between the results for pressure and suction. A pressure follows the wall, which causes a second-order part; it cancels in
+/// the difference.
 fn tube(lab: &Lab, n: f64, cells: Cells, stress: bool) -> Result<f64, Trouble> {
     let mesh = octant::<2>(n as u32, n as u32, Some(1.0), 2.0, cells)?;
     let inner = at_radius(&mesh, 1.0);

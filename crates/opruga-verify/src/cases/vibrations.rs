@@ -170,7 +170,7 @@ fn solid(poisson: f64, plane: &str, pins: &str) -> String {
     )
 }
 
-/// No time passes, so any integrator without a limit of the step can be used.
+/// A scene in which no time passes. Any integrator without a limit on the step can be used.
 fn still(dimension: usize) -> Scene {
     Scene::new(dimension, 0.001, 1, "newmark")
 }

@@ -6,7 +6,7 @@ use crate::bodies::{Cells, at_radius, boundary, displacement, mapped, nodes, oct
 use crate::case::{Case, Check, Family, Over, Scale};
 use crate::lab::{Lab, Scene, Trouble, moved_pins};
 
-/// Pressures with strains so small that the change of shape of the body does not matter [E].
+/// A pressure so small that the change of shape of the body does not matter, in units of E.
 const SMALL: f64 = 1e-6;
 
 const AFFINE: Case = Case {
@@ -187,7 +187,8 @@ fn bar(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(-bottom.iter().map(|k| world.position(0, *k)[1]).sum::<f64>() / bottom.len() as f64)
 }
 
-/// Half of the difference between pressure and suction: a pressure follows the wall, which causes a second-order part.
+/// Half of the difference between the results for pressure and suction. A pressure follows the wall, which causes a second-order part; it cancels in
+/// the difference.
 fn tube(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     let mesh = octant::<2>(n as u32, n as u32, Some(1.0), 2.0, cells)?;
     let inner = at_radius(&mesh, 1.0);

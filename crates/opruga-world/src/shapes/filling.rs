@@ -9,7 +9,7 @@ pub const REPORTED_LOSS: f64 = 0.05;
 const REFUSED: f64 = 0.25;
 /// The ratio between successive spacings that are tried for a hint, and their number.
 const FINER: (f64, usize) = (0.85, 6);
-/// The maximum number of nodes of a filling that is tried for a hint: the answer should not take much longer than the body.
+/// The maximum number of nodes of a filling that is tried for a hint: finding the hint should not take much longer than building the body.
 const LARGEST_TRIED: f64 = 10_000.0;
 
 /// The filling of a closed surface: its method, and the side of its cubes [m].
@@ -65,7 +65,7 @@ fn kept(filling: &Mesh<3>, surface: &Mesh<3>) -> f64 {
     filling.enclosed_volume() / surface.enclosed_volume()
 }
 
-/// A spacing of two digits that keeps the volume. The loss falls with the square of the spacing, which gives the first spacing to try.
+/// A spacing with two significant digits that keeps the volume. The loss falls with the square of the spacing, which gives the first spacing to try.
 fn finer(surface: &Mesh<3>, spacing: f64, now: f64) -> Option<f64> {
     let (step, most) = FINER;
     let square = (REPORTED_LOSS / (now - 1.0).abs()).sqrt();

@@ -58,7 +58,7 @@ fn bodies_that_meet_unexpectedly_go_through_the_frame_together() {
             world.frame().expect("a frame");
             world.contact_counts().expect("contact").steps
         };
-        // Alone, neither has contact: these steps belong to both together, in a second attempt.
+        // As long as each body is stepped alone, no contact is counted. These steps belong to both bodies together, in a second attempt at the frame.
         assert_eq!(steps(&alone), 64, "{rule}");
         let known = end(&linked, &[0, 1], 3, 1, true);
         for (threads, batches) in [(1, true), (2, true), (3, true), (8, true), (1, false), (3, false)] {
@@ -68,7 +68,7 @@ fn bodies_that_meet_unexpectedly_go_through_the_frame_together() {
                 "{rule}, {threads} threads, batches: {batches}"
             );
         }
-        // They have met.
+        // The bodies have met: without contact they end elsewhere.
         let mut passing = alone.clone();
         passing.contact = None;
         assert_ne!(end(&passing, &[0, 1], 3, 1, true), known, "{rule}");

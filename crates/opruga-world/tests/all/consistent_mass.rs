@@ -144,7 +144,7 @@ fn every_cell_has_one_material() {
     assert!(refusal(&["", ""]).contains("would add up"));
 }
 
-/// The weight of a body with consistent masses follows from its shape functions: it falls without deformation.
+/// The weight of a body with consistent masses follows from its shape functions, so the body falls without deformation.
 #[test]
 fn a_body_of_consistent_masses_falls_without_being_deformed() {
     let mesh =

@@ -119,7 +119,7 @@ fn fast_bodies_far_apart_are_within_the_limit_of_pairs() {
     }
 }
 
-/// Each body has its own range, which depends on its edges, and obstacles have none: a fine body or a huge obstacle does not shorten a frame.
+/// Each body has its own range, which depends on its edges, and obstacles have none: a fine body or a huge obstacle does not end a frame early.
 #[test]
 fn ranges_of_other_bodies_and_obstacles_cut_no_frame_short() {
     let fine = |x: f64| {
@@ -382,7 +382,7 @@ fn contact_that_never_happens_changes_nothing() {
     assert_eq!(run(&with), run(&without));
 }
 
-/// Bodies that start inside one another separate at the recovery speed, and the energy of this is recorded.
+/// Bodies that start inside one another separate at the recovery speed, and the energy that this takes is recorded.
 #[test]
 fn overlap_is_taken_apart() {
     let bodies = vec![ball("a", 36, [-0.47, 0.0], [0.0; 2]), ball("b", 36, [0.47, 0.01], [0.0; 2])];

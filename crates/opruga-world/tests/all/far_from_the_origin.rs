@@ -29,8 +29,8 @@ fn sinks(mesh: &Mesh<2>, stiffness: f64, far: f64) -> f64 {
     before - world.position(0, corner)[1]
 }
 
-/// According to Euler and Bernoulli it is 12 ρ g L⁴/(8 E t²): about a millimetre and a decimetre. The tolerance is several times the resolution of
-/// positions at 1e6 m, 6e-11 m, because a bar is a hundred times stiffer along its axis than across it.
+/// According to Euler and Bernoulli, the sag is 12 ρ g L⁴/(8 E t²): about a millimetre and a decimetre. The tolerance is several times the resolution
+/// of positions at 1e6 m, 6e-11 m, because a bar is a hundred times stiffer along its axis than across it.
 #[test]
 fn bars_bend_alike_a_thousand_kilometres_away() {
     let boxes = Mesh::<2>::grid([0.0; 2], [1.0, 0.1], [10, 1]).expect("a grid");

@@ -132,7 +132,7 @@ pub(crate) fn square_over_a_box(response: &str) -> Blueprint<2> {
     scene
 }
 
-/// The last round of a step finds impulses with which no round has been made.
+/// The impulses that the last round of a step finds are not tried in another round.
 #[test]
 fn a_square_of_springs_does_not_sink_into_a_box() {
     let mut world = world(&square_over_a_box("constraint"));

@@ -72,8 +72,8 @@ fn nothing_is_told<const D: usize>(blueprint: Blueprint<D>, name: &str) {
             break;
         }
         if name.contains("st_venant_kirchhoff") && world.inverted_cells().is_some() {
-            // A law that softens under compression and has the same energy when inverted: this is reported, and is not an equilibrium of its own
-            // shape.
+            // This law softens under compression, and an inverted cell has the same energy. Inverted cells are reported, and such an equilibrium is
+            // not that of the shape of the body.
             return;
         }
         if frame % 10 == 9 {
@@ -142,7 +142,7 @@ fn folded_bodies_that_pins_carry_and_turn_as_a_whole_are_told_of() {
     ];
     let mut blueprint = solid(mesh.clone(), "backward_euler", &[("when_not_converged", text("halve"))], &fields);
     for (node, x) in mesh.positions.iter().enumerate().filter(|(_, x)| x[0] == 0.0) {
-        // Slowly, after it is at rest, around a point 2 m from the side, and along by 5 m.
+        // When the body is at rest, the pins slowly rotate it about a point 2 m from the side and move it by 5 m along x.
         let row = |k: u32| {
             let (s, c) = (f64::from(k).to_radians().sin(), f64::from(k).to_radians().cos());
             let (dx, dy) = (x[0] + 2.0, x[1]);

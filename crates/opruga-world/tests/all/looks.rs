@@ -109,7 +109,7 @@ fn looks_change_no_bit() {
 
 #[test]
 fn a_look_shows_what_shorter_frames_show() {
-    // A quarter of a power of two is exact, so both worlds have the same times.
+    // A quarter of the longer frame is exact, so both worlds have the same times.
     let mut long = World::new(rings(3, 32), Options::default()).expect("a world");
     let mut short = World::new(rings(3, 8), Options::default()).expect("a world");
     long.keep_looks(8);

@@ -16,8 +16,8 @@ fn world<const D: usize>(mut blueprint: Blueprint<D>, ground: &[(&str, Value)]) 
     World::new(blueprint, Options::default()).expect("a world")
 }
 
-/// A block of 300 kg on a platform that accelerates at 4 m/s², with rows of motion much shorter than a step: the platform supports its weight and
-/// accelerates it. If it had been hit in every step, the integrator would have supplied a quarter of this work.
+/// A block of 300 kg on a platform that accelerates at 4 m/s² and whose motion has many rows per step: the platform supports the weight of the block
+/// and accelerates it. If the platform hit the block in every step, the integrator would supply a quarter of this work.
 #[test]
 fn a_platform_that_speeds_up_does_all_the_work_on_what_it_carries() {
     let (speeding_up, mass) = (4.0, 300.0);
@@ -36,7 +36,7 @@ fn a_platform_that_speeds_up_does_all_the_work_on_what_it_carries() {
     assert!(lost.iter().all(|loss| loss.abs() < 1e-3 * wanted), "{wanted} J: {energy:?}");
 }
 
-/// A cube of 27 kg and 25 J that sticks on a turntable and rotates with it.
+/// A cube of 27 kg with a kinetic energy of 25 J that sticks on a turntable and rotates with it.
 #[test]
 fn a_turntable_takes_nothing_by_friction_of_what_sticks_on_it() {
     let spin = 2.0;

@@ -128,7 +128,7 @@ fn what_is_twisted_once_round_or_drawn_to_a_point_is_told_of() {
         );
     }
     let [(_, boxes), ..] = &bars([1.0; 3], [2; 3])[..] else { panic!("boxes") };
-    // At a point this law has no force.
+    // In a body that is collapsed to a point, this law has no force.
     let said = told(boxes, "stable_neo_hookean", &|_| [0.5; 3]).expect("a body in a point");
     assert!(said.contains("of which 0 J are accounted for, V/V₀ = 0, and cell 0 with J = 0;"), "{said}");
 }

@@ -1,8 +1,8 @@
 //! The effect of pins on the motion of neighbouring nodes, with consistent and lumped masses, and the forces of the pins.
 //!
-//! All bodies here are a bar of one square cell, 1 m and 2 kg, of stiffness 1 N/m between its ends. It has one coordinate u_f at the free end and one
-//! u_p at the pinned end, each for two nodes. With consistent masses M_ff = M_pp = 2/3 kg and M_fp = 1/3 kg, so ω² = 3/2 for the free end; with
-//! lumped ones 1 kg, 1 kg and 0, so ω² = 1.
+//! Every body here is a bar of one square cell, 1 m and 2 kg, with a stiffness of 1 N/m between its ends. The bar has one coordinate u_f at the free
+//! end and one u_p at the pinned end, each for two nodes. With consistent masses M_ff = M_pp = 2/3 kg and M_fp = 1/3 kg, so ω² = 3/2 for the free
+//! end; with lumped ones 1 kg, 1 kg and 0, so ω² = 1.
 
 #![allow(clippy::disallowed_methods)] // expected values of the tests' own
 
@@ -81,8 +81,8 @@ fn swing(world: &mut World<2>, until: f64) -> (f64, f64) {
 }
 
 /// A bar that flies at 1 m/s and whose end is pinned from the first step. The impulse acts only on the pinned nodes, so the free row of M Δv is zero:
-/// v_f = 1 + M_fp/M_ff = 3/2 with consistent masses, 1 with lumped ones, and the amplitude is v_f/ω. The energy is then ½ M_ff v_f², 3/4 J and 1/2 J
-/// of the initial 1 J.
+/// v_f = 1 + M_fp/M_ff = 3/2 with consistent masses, 1 with lumped ones, and the amplitude is v_f/ω. The energy is then ½ M_ff v_f², which is 3/4 J
+/// and 1/2 J of the initial 1 J.
 fn swings_as_one_that_is_caught(world: &mut World<2>, rule: (&str, Option<f64>), mass: &str) {
     let (own, between) = masses(mass);
     let (speed, omega) = (1.0 + between / own, 1.0 / f64::sqrt(own));
@@ -131,8 +131,8 @@ fn every_rule_gives_a_bar_that_a_command_catches_the_same_motion_and_never_more_
     }
 }
 
-/// A base that suddenly moves at 1/2 m/s, at or within a step. The free end is thrown back at M_fp/M_ff of that speed, and oscillates about the base
-/// with the sum of both over ω.
+/// A base that suddenly moves at 1/2 m/s, at the beginning of a step or within it. The free end is thrown back at M_fp/M_ff of that speed. It
+/// oscillates about the base with an amplitude of the sum of both speeds over ω.
 #[test]
 fn every_rule_gives_a_bar_whose_base_sets_off_at_once_the_same_motion() {
     for rule in RULES {

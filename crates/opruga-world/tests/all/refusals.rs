@@ -115,7 +115,7 @@ fn every_part_that_is_refused_is_found_once() {
             "unstable: stiff[0]",
         ]
     );
-    // A scene without problems is accepted, and the reverse.
+    // A scene without problems is accepted, and an accepted scene has no problems.
     let first = World::new(blueprint.clone(), Options::default()).expect_err("refused");
     assert!(World::problems(&blueprint, &Options::default(), &Arc::default()).contains(&first));
     blueprint.bodies.truncate(1);

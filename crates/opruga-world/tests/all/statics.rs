@@ -62,14 +62,14 @@ fn a_pressure_holds_nothing_whatever_its_strength() {
         pin(&mut hung, 0, [true, true]);
         load(&mut hung, Selector::Boundary, LoadKind::Pressure(pressure));
         assert_eq!(refusal(&hung).as_deref(), ONE, "{pressure}");
-        // On one side it drives the square in circles.
+        // On one side only, the pressure drives the square in circles.
         hung.loads[0].select = Selector::Side("top".into());
         assert_eq!(refusal(&hung).as_deref(), ONE, "{pressure}");
         let mut hung = cube();
         pin(&mut hung, 0, [true; 3]);
         load(&mut hung, Selector::Side("top".into()), LoadKind::Pressure(pressure));
         assert!(refusal(&hung).is_some_and(|told| told.ends_with(": 3 rigid modes")), "{pressure}");
-        // Pins at three corners hold it.
+        // Pins at three corners hold the cube.
         pin(&mut hung, 2, [false, true, true]);
         pin(&mut hung, 6, [false, false, true]);
         assert_eq!(refusal(&hung), None, "{pressure}");
@@ -360,7 +360,7 @@ fn blades_of_slivers_carry_loads_below_rounding_and_say_what_is_in_doubt() {
 }
 
 /// Blades of a tenth of a millimetre in sixteen cells: their loads are a twenty-thousandth of the rounding error of their forces, which reduces the
-/// bending of some of them by 6 to 19 per cent. Cells account for a thousandth.
+/// bending of some of them by 6 to 19 per cent. The size of the cells causes an error of a thousandth.
 #[test]
 fn what_rounding_makes_of_thin_blades_is_no_more_than_they_say() {
     let tip = 1e-3;

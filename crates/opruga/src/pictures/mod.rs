@@ -77,7 +77,8 @@ pub struct Moment {
     coordinates: Vec<f32>,
     /// The quantity that the colours show.
     quantity: Quantity,
-    /// That quantity at every node; for strains, the coordinates are not precise enough. Empty if bodies have plain colours.
+    /// That quantity at every node, computed beforehand because the coordinates are not precise enough for strains. Empty if bodies have plain
+    /// colours.
     scalars: Vec<f32>,
     /// The existing bodies.
     bodies: Vec<usize>,
@@ -184,7 +185,7 @@ impl Scenery {
     /// Does the same as [`Scenery::capture`] with another quantity for the colours.
     pub fn capture_quantity(&self, world: &mut dyn AnyWorld, arrows: bool, quantity: Quantity) -> Moment {
         let (mut coordinates, mut scalars) = (Vec::new(), Vec::new());
-        // A body that has replaced one of these since then is unknown here.
+        // A body that has replaced one of these since [`Scenery::new`] is unknown here.
         let known = |body: &usize| {
             let fixed = self.bodies.get(*body);
             fixed.is_some_and(|fixed| match (fixed.generation, world.handle(*body)) {

@@ -27,7 +27,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// All of them, in the order of menus.
+    /// All quantities, in the order of menus.
     pub const ALL: [Quantity; 7] = [
         Quantity::Strain,
         Quantity::ElasticForce,

@@ -95,7 +95,7 @@ messages! {
 }
 
 terms! {
-    /// What is allowed if a scene has nothing of some type.
+    /// What replaces the list of allowed names if a scene has nothing of the requested kind.
     pub enum SweepAllowed = "part.sweep_allowed" { SceneHasNone = "the scene has none" }
 }
 

@@ -49,7 +49,7 @@ pub enum Design {
     Grid,
     /// The values of one parameter after the other, with the others as in the scene.
     Each,
-    /// Points chosen by a seed.
+    /// Random points, which depend only on a seed.
     Sample {
         /// The number of points.
         count: usize,

@@ -180,8 +180,7 @@ impl Failed {
     }
 }
 
-/// Keeps only the sentence that says what is wrong, as for errors of worlds. A row of a table has no room for allowed values
-/// and hints.
+/// Joins the message, the allowed values and the hint in one line, as for errors of worlds.
 impl From<SceneError> for Failed {
     fn from(error: SceneError) -> Failed {
         let mut message = error.message;

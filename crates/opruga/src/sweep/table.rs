@@ -79,8 +79,8 @@ pub fn line(sweep: &Sweep, row: &Row) -> String {
     format!("{cells},{}\n", checksum(&head(sweep), &cells))
 }
 
-/// Reads the rows of a table of this sweep, which may be incomplete. A last line without a line end was being written, and is ignored. Rows are
-/// sorted by their points.
+/// Reads the rows of a table of this sweep, which may be incomplete. A last line without a line end was not written completely, and is ignored. Rows
+/// are sorted by their points.
 ///
 /// # Errors
 /// `sweep.damaged` if the table does not belong to this sweep; `sweep.changed_row` for every row that is not as it was written.

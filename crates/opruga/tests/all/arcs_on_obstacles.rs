@@ -16,7 +16,7 @@ fn floor(height: f64, friction: f64) -> String {
     )
 }
 
-/// A ball with its top at some height above a point of the x-axis.
+/// A ball with its top at a given height above a point of the x-axis.
 fn ball(x: f64, top: f64, friction: f64) -> String {
     format!(
         "[[collider]]\nkind = \"ball\"\ncenter = [{x:?}, {:?}]\nradius = 0.35\nfriction = {friction:?}\n",

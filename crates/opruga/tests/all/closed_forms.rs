@@ -381,7 +381,7 @@ fn pins_do_the_work_of_what_they_move() {
         for pins in [pin.to_string(), format!("{pin}, {{ select = {{ node = 3 }}, axes = \"x\" }}")] {
             let mut world = built(lifted(rule, &pins));
             frames(&mut world, 30);
-            // In the first step the displacements of the integrators differ by g h²: the pins accelerate the body in it.
+            // In the first step, in which the pins accelerate the body, the displacements of the integrators differ by g h².
             assert!((world.energy().work_user - 9.81 - 1.0).abs() < 0.03, "{rule}: {:?}", world.energy());
             frames(&mut world, 60);
             assert!((world.energy().work_user - 19.62).abs() < 0.03, "{rule}: {:?}", world.energy());

@@ -36,7 +36,7 @@ fn the_own_model_sags_as_the_closed_form_says() {
     assert!((sag - expected).abs() < 1e-3 * expected, "{sag} m instead of {expected} m");
 }
 
-/// With symplectic Euler it falls ½ g h t too far, h = 1/1920 s.
+/// With symplectic Euler the ring falls ½ g h t too far, where h = 1/1920 s.
 #[test]
 fn the_own_integrator_is_exact_in_free_fall() {
     let (own, euler) = (own_integrator::run("taylor"), own_integrator::run("symplectic_euler"));

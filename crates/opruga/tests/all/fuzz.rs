@@ -129,7 +129,8 @@ proptest! {
     }
 }
 
-/// Every scene with every integrator, and with every model with two of them; over all scenes, every model occurs with every integrator.
+/// Every scene with every integrator, and every scene with every model under two integrators; over all scenes, every model occurs with every
+/// integrator.
 #[test]
 fn scenes_with_other_integrators_and_models() {
     with_other_integrators_and_models(|number| number % 5 == 0);

@@ -22,7 +22,7 @@ fn reading(world: &mut World<2>, name: &str) -> f64 {
     world.readings(0).into_iter().find(|r| r.0 == name).expect("a reading").1
 }
 
-/// The ramp is linear and ends; the gas that it lets in is work on the gas: P V/(γ − 1) for an adiabatic one.
+/// The ramp is linear and ends. The energy of the gas that it lets in counts as work on the gas: P V/(γ − 1) for an adiabatic gas.
 #[test]
 fn a_ramp_lets_the_gas_in_linearly() {
     let mut world = held("nRT = 80.0, ramp = 0.8");

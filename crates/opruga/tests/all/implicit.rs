@@ -71,8 +71,8 @@ fn on_the_incline(rule: &str, substeps: u32, damping: f64, friction: f64) -> ([f
     ([mean(&world, |n| world.position(0, n)[0]) - 0.2, now, now - early], world.energy())
 }
 
-/// With µ = 0.49 it slides at .0877433 m/s² (validation B5), with one step per frame and with many. An elastic block slips a little farther while it
-/// settles under its weight, with every integrator as far as with Verlet's in tiny steps. With µ = 0.52 it stays where it is.
+/// With µ = 0.49 the block accelerates at .0877433 m/s² (validation B5), with one step per frame and with many. An elastic block slips a little
+/// farther while it settles under its weight, with every integrator as far as with Verlet's in tiny steps. With µ = 0.52 it stays where it is.
 #[test]
 fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
     let across = 9.81 / 1.25f64.sqrt();
@@ -91,7 +91,7 @@ fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
         println!("{rule}: {way:.6} m, {speed:.6} m/s with little damping");
         assert!((way / 0.274_198 - 1.0).abs() < 1e-2, "{rule}: {way} {speed}");
         assert!((speed / 0.219_358 - 1.0).abs() < 3e-3, "{rule}: {way} {speed}");
-        // Friction dissipates µ N s of it.
+        // Friction dissipates µ N s of the lost potential energy.
         let rubbed = 0.49 * 2.0 * across * way;
         assert!((energy.loss_friction / rubbed - 1.0).abs() < 2e-2, "{rule}: {} {rubbed}", energy.loss_friction);
         let ([way, speed, _], energy) = on_the_incline(rule, 1, 20.0, 0.52);
@@ -105,7 +105,7 @@ fn a_block_on_an_incline_sticks_or_slides_by_coulombs_law() {
             if substeps >= 16 {
                 assert!((way / true_way - 1.0).abs() < 1e-2, "{rule}, {substeps} steps: {way} {true_way}");
             }
-            // Friction dissipates µ N s of it.
+            // Friction dissipates µ N s of the lost potential energy.
             let rubbed = 0.49 * 2.0 * across * way;
             let lost = energy.loss_friction;
             assert!((lost / rubbed - 1.0).abs() < 2e-2, "{rule}, {substeps} steps: {lost} {rubbed}");

@@ -31,7 +31,7 @@ fn scene() -> Blueprint<2> {
     ))
 }
 
-/// The scene under a linear isometry; `mirror` says that it is a reflection.
+/// The scene under a linear isometry; `mirror` is true for a reflection.
 fn mapped(mut scene: Blueprint<2>, map: Map, mirror: bool) -> Blueprint<2> {
     let pair = |v: &[f64]| map([v[0], v[1]]);
     scene.surroundings.gravity = map(scene.surroundings.gravity);

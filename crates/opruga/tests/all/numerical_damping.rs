@@ -31,7 +31,7 @@ fn adds_up(start: f64, e: &Energy) {
 
 const TIGHT: &str = "tolerance = 1e-10\n";
 
-/// A head with a tolerance.
+/// The head of a scene whose integrator has a small tolerance.
 fn tight(frame: f64, substeps: u32, gravity: f64, rule: &str) -> String {
     head(frame, substeps, gravity, rule).replace("[world]", &format!("{TIGHT}[world]"))
 }

@@ -90,7 +90,7 @@ fn a_registered_model_is_listed_described_and_paired_with_integrators() {
     assert!(!reference::markdown(&catalogue()).contains(SPEC.kind));
 }
 
-/// If a scene misspells it, the error suggests it; if it is not registered, the scene is refused.
+/// If a scene misspells the name of the model, the error suggests the name. If the model is not registered, the scene is refused.
 #[test]
 fn a_registered_model_is_offered_where_a_scene_misspells_it() {
     let known = catalogue_of(&registries());

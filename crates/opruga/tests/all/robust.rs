@@ -38,7 +38,7 @@ impl Trial {
         Trial { short: true, ..self }
     }
 
-    /// Runs it; returns the failure, or how far bodies are inside one another at the end.
+    /// Runs the trial; returns the failure, or how far bodies are inside one another at the end.
     fn run(&self, seed: u32) -> Result<f64, String> {
         let text = self.text.replacen("seed = 1\n", &format!("seed = {seed}\n"), 1);
         assert!(seed == 1 || text != self.text, "{} names no seed", self.name);

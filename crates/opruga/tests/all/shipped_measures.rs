@@ -321,7 +321,7 @@ fn laid_out(polygons: &Polygons, more: &str) -> Result<(Arc<Mesh<2>>, f64), Vec<
     Ok((mesh, area))
 }
 
-/// Its outline touches itself in the file.
+/// Countries whose outline touches itself in the file.
 const TOUCHING: [&str; 1] = ["Sudan"];
 
 /// Every country is read with all its islands and holes and with the area of its corners, also over the antimeridian and around the pole.

@@ -19,7 +19,7 @@ pub(crate) fn values<const D: usize>(spec: &'static Spec, set: &[(&str, Value)])
     values
 }
 
-/// A body of 1000 kg/m³ with an integrator and fields of both, with steps of 1/60 s.
+/// A body of 1000 kg/m³ with given fields of its model and of the integrator, in steps of 1/60 s.
 pub(crate) fn solid<const D: usize>(
     mesh: Mesh<D>,
     rule: &str,

@@ -6,7 +6,7 @@ use opruga::core::spec::Value;
 /// A loaded body at rest: damping, loads and obstacles neither remove nor add energy, with every integrator, and every ledger is closed.
 #[test]
 fn a_body_that_lies_still_takes_and_gives_no_energy() {
-    // With stages, nodes next to those at rest have velocities of about 1e-7 m/s without moving.
+    // With integrators of several stages, nodes next to those at rest have velocities of about 1e-7 m/s without moving.
     for (rule, most) in [("symplectic_euler", 1e-8), ("verlet", 1e-5), ("runge_kutta", 1e-5), ("heun", 1e-5)] {
         let models =
             "{ kind = \"mass_spring\", stiffness = 600.0, damping = 0.5 }, { kind = \"pressure\", nRT = 30.0 }";

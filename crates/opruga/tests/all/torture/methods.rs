@@ -244,7 +244,7 @@ fn has_energy(body: &Body) -> bool {
     !["finite volumes of quadrilaterals", "finite volumes of hexahedra"].contains(&body.0)
 }
 
-/// Runs a case; returns an error if the body neither recovers nor Opruga reports why not.
+/// Runs a case; returns an error if the body does not recover and Opruga does not report why.
 fn comes_back(body: &Body, rule: &str, (what, spoil): &Spoil) -> Option<String> {
     let (name, dimension, shape, model) = body;
     // Thin bodies are far stiffer when scattered than at rest.

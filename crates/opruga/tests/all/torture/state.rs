@@ -185,7 +185,7 @@ fn bodies_beyond_the_largest_distance_are_taken_away() {
         (counts, warning)
     };
     let (counts, warning) = end(1, false);
-    // 30 m below the start after √(2·30/9.81) = 2.47 s; the last of the row first, because it is farther away.
+    // 30 m below the start after √(2·30/9.81) = 2.47 s; the last body of the row is removed first, because it is farther from the origin.
     let first = counts.iter().position(|c| c.0 < 9).expect("the row goes");
     assert!((125..150).contains(&first), "frame {first}");
     assert!(counts[first].0 > 0 && counts[179].0 == 0 && warning == Some(9), "{warning:?}");
