@@ -1,4 +1,4 @@
-//! Bodies that a barrier keeps apart: one minimisation for all bodies with implicit integrators, whose result is the end of a substep.
+//! One minimisation for all bodies with implicit integrators that a barrier keeps apart. Its result is the end of a substep.
 //!
 //! ```text
 //! Σ Φ(u) + B(x₀ + u) + D(u) → min    Φ of each body, B the barrier, D friction at given normal forces
@@ -128,7 +128,7 @@ struct Residual {
     prescribed: Vec<f64>,
     /// The right-hand side for the correction [N].
     right: Vec<f64>,
-    /// Its norm relative to the largest one of the search.
+    /// The norm of the right-hand side, relative to its largest value in this search.
     share: f64,
     /// Whether bodies at rest are in equilibrium.
     balanced: bool,
@@ -137,7 +137,7 @@ struct Residual {
 /// The points of a pair and their weights.
 type Weighted<'a> = (&'a [u32; 4], &'a [f64; 4]);
 
-/// The factors of all bodies, side by side.
+/// The factors of the matrices of all bodies, which together precondition the common system of equations.
 struct Factors<'a, const D: usize>(&'a [Opened<D>]);
 
 impl<const D: usize> Preconditioner for Factors<'_, D> {

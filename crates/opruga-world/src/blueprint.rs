@@ -101,7 +101,7 @@ impl<const D: usize> Blueprint<D> {
     }
 }
 
-/// What pictures of a scene show. Values that are not given are chosen from the visible objects. No number of the physics depends on them.
+/// What pictures of a scene show. Values that are not given are chosen from the visible objects. No result of the physics depends on them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pictured<const D: usize> {
     /// The number of moments in a film strip.

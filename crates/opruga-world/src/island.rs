@@ -322,7 +322,7 @@ impl<const D: usize> Island<D> {
         }
     }
 
-    /// Repeats the frame and checks every substep.
+    /// Repeats the frame, checks every substep, and returns the first error.
     fn name_culprit(&mut self, plan: &FramePlan<D>) -> Option<StepError> {
         self.system.contacts = plan.colliders.map(|c| Arc::clone(c).into_contacts());
         for substep in 0..plan.substeps {

@@ -71,7 +71,7 @@ impl<const D: usize> Island<D> {
         self.system.work = Work8::default();
     }
 
-    /// Keeps the state after a substep, if it is due.
+    /// Keeps the state after a substep if a kept state is due.
     pub(crate) fn look_together(&mut self, plan: &FramePlan<D>, substep: u32) {
         let done = substep + 1;
         if plan.look_every > 0 && done.is_multiple_of(plan.look_every) && done < plan.substeps {

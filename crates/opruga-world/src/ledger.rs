@@ -117,7 +117,7 @@ pub(crate) struct Survey<const D: usize> {
     pub(crate) finite: bool,
 }
 
-/// Adds the numbers of real bodies, without padding.
+/// Adds up eight parts: those of a single body, or those of the bodies of a batch without its unused lanes.
 pub(crate) fn total_of<const D: usize>(system: &System<D>, parts: &[f64; WIDTH]) -> f64 {
     match system.layout {
         Layout::Single => sum_in_fixed_order(parts),

@@ -30,13 +30,13 @@ pub(crate) struct Meeting<const D: usize> {
     rules: Vec<u32>,
     /// The bodies with different integrators that met in the frame, by their index in the scene, ascending.
     pub(crate) mixed: Vec<[usize; 2]>,
-    /// Corners and edges of obstacles, which come after the bodies, and the first point of each.
+    /// The corners and edges of obstacles, each with the number of its first point. The points of obstacles follow those of bodies.
     pub(crate) outlines: Vec<(Arc<Outline<D>>, usize)>,
     /// The bodies whose steps include contact forces in their balance of forces.
     pub(crate) pushed: Vec<Pushed<D>>,
-    /// Whether they are bodies of statics, which have a common equilibrium.
+    /// Whether the bodies use statics and have a common equilibrium.
     pub(crate) at_rest: bool,
-    /// The barrier that keeps them apart instead of impulses, if the scene has one.
+    /// The barrier that keeps the bodies apart instead of impulses, if the scene has one.
     pub(crate) barrier: Option<Kept<D>>,
     /// A workspace for bodies that repeat their steps.
     pub(crate) workspace: Workspace<D>,

@@ -11,8 +11,8 @@
 //!
 //! Pins that move nodes do work along their whole path, whatever the distance between its ends. A bar that was twisted by three full turns contains
 //! the work of its pins, although its ends are at the same positions as those of the bar at rest. A node that pins have moved therefore counts with
-//! the length sᵢ of its path, minus a rigid motion of all pins, if that is longer: U ≤ Σ |fᵢ| sᵢ if the forces grew along the path. Because they
-//! may also decrease along it, up to 2 sᵢ is allowed.
+//! the length sᵢ of its path, minus a rigid motion of all pins, if that is longer than |xᵢ − yᵢ|. If the forces grew along the path, U ≤ Σ |fᵢ| sᵢ.
+//! Because the forces may also have decreased along it, up to 2 sᵢ is allowed.
 
 use crate::pin_travel::travel_lengths;
 use crate::warnings::{Warning, WorldWarning};

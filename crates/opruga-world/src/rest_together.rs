@@ -5,7 +5,7 @@
 //! contact      f' from the gaps at x and the answers (K + σM)⁻¹ of all bodies, as of implicit rules
 //! ```
 //!
-//! Newton's method for the equilibrium of all bodies at once. Positions and contact forces are unknowns of the same linear problem, so a body that
+//! Newton's method finds the equilibrium of all bodies at once. Positions and contact forces are unknowns of the same linear problem, so a body that
 //! only lies on others is supported by them in every correction. If each body found its own end under given forces instead, errors of these forces
 //! would move it as far as σ permits.
 //!

@@ -256,8 +256,8 @@ fn tube(lab: &Lab, vertices: f64, stress: bool) -> Result<f64, Trouble> {
     Ok(strain / 0.91 - 0.3 / 0.7)
 }
 
-/// The stress concentration at the end of a hole along x under tension along y. The mean strain of the two edges at this end is that of a chord about
-/// it.
+/// The stress concentration of a hole under tension along y, at the node on the x axis. It follows from the mean strain of the two edges at this
+/// node, which is that of a chord.
 fn hole(lab: &Lab, vertices: f64) -> Result<f64, Trouble> {
     let mesh = Mesh::ring(1.0, vertices as u32, [0.0, 0.0], 0.0)?;
     let mut pulls = vec![[0.0; 2]; mesh.positions.len()];

@@ -116,7 +116,7 @@ fn waves_in_bars_are_too_slow_with_lumped_and_too_fast_with_consistent_masses() 
     bar_has_the_frequencies_of_the_closed_form(space, 2.0, 8);
 }
 
-/// Cells of two models would add up, and cells of no model have no stiffness: both are refused if groups are named.
+/// The stiffnesses of cells that belong to two models would add up, and cells of no model have no stiffness. Both are refused if groups are named.
 #[test]
 fn every_cell_has_one_material() {
     let refusal = |groups: &[&str]| {

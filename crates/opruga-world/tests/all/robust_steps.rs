@@ -139,7 +139,7 @@ fn hexahedra(material: &str) -> Blueprint<3> {
     body(Mesh::grid([0.0; 3], [1.0; 3], [3; 3]).unwrap(), material, 1.0 / 30.0, Vec::new())
 }
 
-/// Exactly on a plane, on a line or in a point, where all lateral forces balance, and mirrored.
+/// Bodies that start exactly on a plane, on a line or in a point, where all lateral forces balance, and mirrored bodies.
 #[test]
 fn bodies_that_symmetry_holds_flat_or_inside_out_leave_it_or_say_that_they_stay() {
     leave_symmetry("tetrahedra", tetrahedra, &ALL_MATERIALS[..1]);
@@ -457,7 +457,7 @@ fn layers_of_slivers_hang_where_the_closed_form_says() {
     }
 }
 
-/// Boxes return too, from shapes in which their mean deformation does not depend on their corners.
+/// Boxes also return from shapes in which their mean deformation does not depend on their corners.
 #[test]
 fn boxes_come_back_from_shapes_that_no_body_has() {
     boxes_come_back(&MATERIALS[..1]);

@@ -94,7 +94,7 @@ fn a_dead_load_holds_what_turns_unless_it_acts_where_that_is_held_or_along_its_a
     // Two loads that cancel have no effect.
     couple.loads[1].select = nodes(&[2]);
     assert_eq!(refusal(&couple).as_deref(), ONE);
-    // One that begins at zero.
+    // A load that begins at zero.
     let mut later = force(nodes(&[8]), [1.0, 0.0]);
     later.loads[0].curve = vec![vec![0.0, 0.0], vec![1.0, 1.0]];
     assert_eq!(refusal(&later), None);
