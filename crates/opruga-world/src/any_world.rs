@@ -139,7 +139,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn reading_names_of(&self, body: usize) -> Vec<Cow<'static, str>>;
     /// The values of a probe.
     fn probe(&mut self, number: usize) -> Vec<(String, f64)>;
-    /// The pressure of the gas at each node of a body that borders a chamber [Pa].
+    /// The pressure [Pa] of the gas at every node that borders a chamber of a body.
     fn node_pressures(&mut self, body: usize) -> Vec<(u32, f64)>;
     /// Stress and volume ratio of the cells of a body.
     fn cell_states(&self, body: usize) -> Vec<CellState>;

@@ -1,4 +1,4 @@
-//! One substep of all bodies with implicit integrators that a barrier keeps apart.
+//! One substep of all bodies that have implicit integrators and that a barrier keeps apart.
 //!
 //! Each body begins its step, [`Search`] finds the common end, and each body ends its step with the forces of the others. In statics the end of a
 //! step is the common equilibrium.

@@ -1,4 +1,4 @@
-//! One minimisation for all bodies with implicit integrators that a barrier keeps apart. Its result is the end of a substep.
+//! One minimisation for all bodies that have implicit integrators and that a barrier keeps apart. Its result is the end of a substep.
 //!
 //! ```text
 //! Σ Φ(u) + B(x₀ + u) + D(u) → min    Φ of each body, B the barrier, D friction at given normal forces

@@ -113,7 +113,7 @@ impl<const D: usize> World<D> {
         let time = self.time();
         self.islands[island].readings(lane, time)
     }
-    /// The pressure [Pa] of the gas at each node of a body that borders a chamber, chamber by chamber; empty if there is no gas.
+    /// The pressure [Pa] of the gas at every node that borders a chamber of a body, chamber by chamber; empty if there is no gas.
     pub fn node_pressures(&mut self, body: usize) -> Vec<(u32, f64)> {
         if self.handle(body).is_none() {
             return Vec::new();
