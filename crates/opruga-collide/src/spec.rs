@@ -19,11 +19,11 @@ macro_rules! collider {
             fields: &[
                 $($own,)+
                 Field::new("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact. The speed before an \
-impact is that with which a node meets the surface within the step: √(u² + 2 a g) with its speed u and gap g at the start of the step and its \
-acceleration a by forces, but at most the speed at the end of the step, so that an impact creates no energy. With `rest_speed = 0` it is always the \
-speed at the end of the step, as in the thesis, and a node that forces push towards the surface gains a little energy. Between two impacts at speed \
-v, `symplectic_euler` loses about m g h v of energy: a ball dropped from 1 m loses a tenth of its energy in 20 s at 16 substeps. `verlet` loses \
-none."),
+impact is the speed at which a node meets the surface within the step: √(u² + 2 a g), where u and g are the speed and the gap of the node at the \
+start of the step, and a is its acceleration by forces. This speed is limited to the speed at the end of the step, so that an impact creates no \
+energy. With `rest_speed = 0`, the speed at the end of the step is always used, as in the thesis; a node that forces push towards the surface then \
+gains a little energy. Between two impacts at speed v, `symplectic_euler` loses about m g h v of energy: a ball dropped from 1 m loses a tenth of \
+its energy in 20 s at 16 substeps. `verlet` loses none."),
                 Field::new("friction", Allowed::NOT_NEGATIVE, "", ZERO, "Coulomb's coefficient µ, for both sticking and sliding."),
                 Field::new("rest_speed", Allowed::NOT_NEGATIVE, "m/s", Default::Number(0.05), "Normal speed up to which a contact does not bounce; \
 with 0 every crossing bounces, even that of a node at rest on the collider.").applies(&[Condition::NotZero("restitution")]),
@@ -53,8 +53,8 @@ both! { HALF_SPACE_2D, HALF_SPACE_3D, "half_space", &[Role::HalfSpace],
 }
 
 const BOX_TEXT: &str = "Solid inside, or (`inside = true`) a container that keeps bodies within its walls. The box is given by two opposite corners, \
-or by its centre and size; it can then also be rotated. A node inside leaves through the nearest face; a node that is faster than a quarter of the \
-smallest side per step leaves through the face by which it came in.";
+or by its centre and size; it can then also be rotated. A node inside leaves through the nearest face; a node that moves by more than a quarter of \
+the smallest side in a step leaves through the face by which it came in.";
 const MIN: Field = Field::new(
     "min",
     Allowed::Vector,
@@ -95,7 +95,7 @@ collider! {
 
 both! { BALL_2D, BALL_3D, "ball", &[],
     "a disc (2D) or ball (3D): solid, or a container",
-    "Solid where |x − center| < radius, or outside of it (`inside = true`). A node exactly at the centre leaves along +y.";
+    "Solid where |x − center| < radius, or everywhere else (`inside = true`). A node exactly at the centre leaves along +y.";
     Field::new("center", Allowed::Vector, "m", Default::Origin, "The centre."),
     Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
     Field::new("inside", Allowed::Boolean, "", NO, "Whether bodies are kept inside instead of outside."),
@@ -116,8 +116,8 @@ both! { CONVEX_2D, CONVEX_3D, "convex", &[],
 }
 
 const THIN: &str = "An infinitely thin surface that stops nodes from either side: a node stays on the side on which it was before the step, however \
-fast it is. Nodes keep a distance of at least a hundred-millionth of its size. A node that starts exactly on it goes to the side of the normal (in \
-2D, to the left of the direction in which the points run, in 3D by the right-hand rule).";
+fast it is. Nodes keep a distance of at least a hundred-millionth of the size of the surface. A node that starts exactly on it goes to the side of \
+the normal (in 2D, to the left of the direction in which the points run, in 3D by the right-hand rule).";
 
 collider! {
     /// The parameters of `polyline` (2D).

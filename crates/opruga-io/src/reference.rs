@@ -38,15 +38,15 @@ the start.\n\n| key | selects | form |\n|---|---|---|\n");
     out
 }
 
-const INTRODUCTION: &str = "A scene is a [TOML](https://toml.io) file in UTF-8. Units are SI. Numbers must be finite. A whole number is also a \
-number, but a text is not. Unknown fields, repeated keys and names that no body has are errors. All errors are reported at once. A scene cannot \
-include another one.\n\n";
+const INTRODUCTION: &str = "A scene is a [TOML](https://toml.io) file in UTF-8. Units are SI. Numbers must be finite. Where a number is expected, a \
+whole number is accepted, but a text is not. Unknown fields, repeated keys and names of bodies that do not exist are errors. All errors are reported \
+at once. A scene cannot include another one.\n\n";
 
 const PATHS: &str = "\n## Paths of parameters\n\n`--set PATH=VALUE` and `do = \"set\"` name a parameter by its path: `seed`, `time.substeps`, \
-`world.gravity`, `integrator.kind`, `collider.0.friction`, `body.ball.mass`, `body.0.models.mass_spring.stiffness`. In a list an entry is named by \
-its number from 0, its `name` or its `kind`. `--set` changes the scene before it is read, so it may name any field and numbers count the tables of \
-the file; `do = \"set\"` changes the running world, so it may name fields of `world`, of the integrator, of colliders and of models, and \
-`time.substeps`; a name of a body with copies means all of them.\n";
+`world.gravity`, `integrator.kind`, `collider.0.friction`, `body.ball.mass`, `body.0.models.mass_spring.stiffness`. An entry of a list is named by \
+its number from 0, its `name` or its `kind`. `--set` changes the scene before it is read, so it may name any field, and numbers count the tables of \
+the file. `do = \"set\"` changes the running world, so it may name only `time.substeps` and fields of `world`, of `[contact]`, of the integrator, of \
+colliders and of models. The name of a body with copies then means all of them.\n";
 
 fn heading(out: &mut String, title: &str, section: &'static Section) {
     let _ = writeln!(out, "## {title}\n\n{}\n", sentence(section.spec));

@@ -134,8 +134,8 @@ pub const SCENE: Section = Section {
                 Allowed::Text,
                 "",
                 Default::Text(""),
-                "The authors and licences of the drawings, maps or surfaces that the scene shows. Every picture and film of the scene shows this \
-text below it, in small type.",
+                "The authors and licences of the drawings, maps or surfaces that the scene shows. This text appears in small type at the bottom of \
+every picture and film of the scene.",
             ),
         ],
     ),
@@ -263,8 +263,9 @@ fall for ever. All three are off by default; warnings report how often they act.
                 Allowed::Boolean,
                 "",
                 Default::Boolean(false),
-                "Whether a body is displaced at random to leave a shape in which it is at rest with degenerate or inverted cells, or strained \
-although nothing acts on it. The displacement is 1e-4 of its size, then a hundredth, then a tenth. A warning reports the number of displacements.",
+                "Whether a body that is stuck is displaced at random. A body is stuck if it is at rest with degenerate or inverted cells, or if it \
+is at rest and strained although nothing acts on it. The first displacement is 1e-4 of its size; if the body stays in this shape, displacements of a \
+hundredth and of a tenth follow. A warning reports the number of displacements.",
             ),
         ],
     ),
@@ -303,7 +304,7 @@ the shape's own coordinates, then moved to `position`.",
                 "m",
                 Default::Number(1.0),
                 "Depth out of the plane in 2D, also for gas, loads and bending. In 3D it is the thickness of a sheet or the width of a square wire; \
-only `density` uses it. `density` requires it in 3D, and also for a wire in 2D.",
+only `density` uses it. `density` requires it for sheets in 3D, and for wires in 2D and 3D.",
             ),
             Field::new(
                 "position",
@@ -312,7 +313,13 @@ only `density` uses it. `density` requires it in 3D, and also for a wire in 2D."
                 Default::Origin,
                 "The position of the origin of its shape at the start.",
             ),
-            Field::new("scale", Allowed::POSITIVE, "", Default::Number(1.0), "A factor on the lengths of its shape."),
+            Field::new(
+                "scale",
+                Allowed::POSITIVE,
+                "",
+                Default::Number(1.0),
+                "The factor that multiplies all lengths of its shape.",
+            ),
             Field::new(
                 "simplices",
                 Allowed::Boolean,
@@ -335,14 +342,15 @@ which alternate from cell to cell and favour no direction.",
                 "",
                 Default::Absent,
                 "With 2, triangles and tetrahedra have another node in the middle of every edge; their finite elements then lock neither in bending \
-nor near incompressibility. The default is 2 for a body with a `fem` model, or another model that owns its cells, if all cells are triangles or \
-tetrahedra; it is 1 for other bodies. `finite_volume` needs `order = 1`. `order = 1` is faster, bends too stiffly and is refused above ν = 0.45.",
+nor near incompressibility. The default is 2 if all cells are triangles or tetrahedra and a model of the body computes the stress of its cells, as \
+`fem` does; otherwise it is 1. `finite_volume` needs `order = 1`. Bodies with `order = 1` compute faster, but bend too stiffly and are refused above \
+ν = 0.45.",
             ),
         ],
     ),
     children: &[
         child("shape", Holds::Shape, true, "Its shape at rest."),
-        child("rotation", Holds::Turn, false, "The rotation of its shape at rest [rad], within 1e6."),
+        child("rotation", Holds::Turn, false, "The rotation of its shape at rest [rad], up to 1e6 in magnitude."),
         child(
             "velocity",
             Holds::VectorOr(&VELOCITY),
@@ -356,7 +364,7 @@ tetrahedra; it is 1 for other bodies. `finite_volume` needs `order = 1`. `order 
             "Angular velocity at the start about the centre of mass [rad/s].",
         ),
         child("integrator", Holds::Integrator, false, "Its own integrator; the default is that of the scene."),
-        child("models", Holds::Models, false, "The models that give its forces."),
+        child("models", Holds::Models, false, "The models that compute its forces."),
         contact::OF_BODY,
         child("pin", Holds::List(&PIN), false, "Nodes that are held in place, or moved in a prescribed way."),
         child(
@@ -398,7 +406,7 @@ change them.",
         "angular",
         Holds::Turn,
         false,
-        "Angular velocity about the centre of mass [rad/s], as `angular_velocity` of the body.",
+        "Angular velocity about the centre of mass [rad/s], like `angular_velocity` of the body.",
     )],
 };
 
@@ -407,9 +415,9 @@ pub const PIN: Section = Section {
     spec: &section(
         "pin",
         "Nodes that are held in place, or moved in a prescribed way",
-        "Between the rows of `motion` the displacement is linear; before the first and after the last it is constant. A pinned node follows its pin, \
-even through obstacles: these stop its neighbours, but not the node. The work of the pin against springs and obstacles counts as work of the user. \
-If a pin catches a moving node, or if its motion has a corner, the pin changes the velocity of that node by an impulse. With `mass = \
+        "Between the rows of `motion` the displacement is linear; before the first row and after the last one it is constant. A pinned node follows \
+its pin, even through obstacles: these stop its neighbours, but not the node. The work of the pin against springs and obstacles counts as work of \
+the user. If a pin catches a moving node, or if `motion` has a corner, the pin changes the velocity of that node by an impulse. With `mass = \
 \"consistent\"`, a node shares its inertia with its neighbours, so the impulse makes the neighbours recoil, by the same amount with every \
 integrator. To accelerate them gradually instead, give `motion` many rows.",
         &[
@@ -423,7 +431,7 @@ integrator. To accelerate them gradually instead, give `motion` many rows.",
             Field::new("motion", Allowed::Path, "s, m", Default::Absent, "Displacement from the start over time."),
         ],
     ),
-    children: &[child("select", Holds::Selector, true, "Which nodes.")],
+    children: &[child("select", Holds::Selector, true, "The nodes that are pinned.")],
 };
 
 /// `copies` in a body.
@@ -458,7 +466,7 @@ pub const SELECTORS: &[Spec] = &[
     section(
         "box",
         "Nodes in a box between two corners",
-        "`{ box = [[x, y], [x, y]] }` [m]: at the start; the surface of the box is included.",
+        "`{ box = [[x, y], [x, y]] }` [m]; the surface of the box is included.",
         &[],
     ),
     section(
@@ -472,7 +480,7 @@ pub const SELECTORS: &[Spec] = &[
     ),
     section(
         "half_space",
-        "Nodes on the side of a plane to which its normal points, or on it",
+        "Nodes on a plane, or on the side to which its normal points",
         "`{ half_space = { point = [x, y], normal = [x, y] } }`",
         &[
             Field::new("point", Allowed::Vector, "m", Default::Required, "A point of the plane."),

@@ -79,7 +79,7 @@ static REGULAR_POLYGON: Spec = Spec {
 static POLYGON: Spec = Spec {
     kind: "polygon",
     summary: "an outline through points",
-    documentation: "Node i is point i. The points may run either way; edges run counter-clockwise. Edges must not cross or touch.",
+    documentation: "Node i is point i. The points may run in either direction; edges run counter-clockwise. Edges must not cross or touch.",
     dimensions: &[2],
     fields: &[Field::new(
         "points",
@@ -94,7 +94,7 @@ static POLYGON: Spec = Spec {
 static LINE: Spec = Spec {
     kind: "line",
     summary: "a straight chain",
-    documentation: "Equal edges from one point to another; it encloses nothing.",
+    documentation: "Equal edges from one point to another. A line encloses nothing.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("from", Allowed::Vector, "m", Default::Required, "Its first node."),
@@ -172,7 +172,8 @@ bottom, top (along v).",
 static BOX: Spec = Spec {
     kind: "box",
     summary: "the closed surface of a box",
-    documentation: "Two triangles per cell of each face. Groups: left, right, bottom, top, back, front. Filled boxes are grids.",
+    documentation: "Two triangles per cell of each face. Groups: left, right, bottom, top, back, front. For a box filled with equal cells, use \
+`grid`.",
     dimensions: &[3],
     fields: &[
         Field::new("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),

@@ -37,7 +37,7 @@ pub const SPEC: Spec = Spec {
     summary: "implicit, second order, stable for every step size; damps motion that is much faster than the step",
     documentation: "x₁ = (4 x₀ − x₋₁)/3 + ⅔ h v₁ and the same for velocities, solved by Newton's method. In each step, the amplitude of an \
 oscillation decreases by the fraction (hω)⁴/4 if hω is small. The integrator remembers the previous step; its first step is a step of backward \
-Euler. Each body is an island of its own.",
+Euler. Bodies are not stepped in batches.",
     dimensions: &[2, 3],
     fields: fields!(of_time),
     roles: &[],

@@ -30,8 +30,8 @@ use std::ops::Range;
 pub const SPEC: Spec = Spec {
     kind: "explicit_euler",
     summary: "first order, energy grows: for comparison",
-    documentation: "x₁ = x₀ + h v₀, v₁ = v₀ + h a(x₀, v₀). One force per step. No step is stable without damping: the energy of \
-a mode ω grows by ω²h per second.",
+    documentation: "x₁ = x₀ + h v₀, v₁ = v₀ + h a(x₀, v₀). The forces are evaluated once per step. Without damping, no step is stable: the energy of \
+a mode of angular frequency ω grows at the relative rate ω²h.",
     dimensions: &[2, 3],
     fields: &[],
     roles: &[],

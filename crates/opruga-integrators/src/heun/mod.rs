@@ -29,8 +29,8 @@ use std::ops::Range;
 pub const SPEC: Spec = Spec {
     kind: "heun",
     summary: "the explicit trapezoidal rule: second order; energy grows slowly",
-    documentation: "y₁ = y₀ + h k(y₀), y = y₀ + ½h (k(y₀) + k(y₁)) with k = (v, a). Two forces per step. No step is stable without \
-damping: the energy of a mode ω grows by ¼ω⁴h³ per second.",
+    documentation: "y₁ = y₀ + h k(y₀), y = y₀ + ½h (k(y₀) + k(y₁)) with k = (v, a). The forces are evaluated twice per step. Without damping, no \
+step is stable: the energy of a mode of angular frequency ω grows at the relative rate ¼ω⁴h³.",
     dimensions: &[2, 3],
     fields: &[],
     roles: &[],

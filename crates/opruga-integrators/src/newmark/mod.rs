@@ -39,9 +39,9 @@ pub const SPEC: Spec = Spec {
     kind: "newmark",
     summary: "implicit, second order, stable for every step size: average acceleration, or generalised-α with a spectral radius",
     documentation: "x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁), v₁ = v₀ + h ((1 − γ) a₀ + γ a₁), solved by Newton's method. Average acceleration (β = \
-¼, γ = ½) damps nothing; with `spectral_radius` it is the generalised-α method, which damps motion that is faster than the step. While obstacles \
-hold nodes, average acceleration is replaced by the steps of `implicit_midpoint` in contact, so that bodies come to rest. The integrator remembers \
-the acceleration. Each body is an island of its own.",
+¼, γ = ½) damps nothing. With `spectral_radius`, the integrator is the generalised-α method, which damps motion that is faster than the step. While \
+nodes touch obstacles, the integrator makes the steps of `implicit_midpoint` in contact instead of average acceleration, so that bodies come to \
+rest. The integrator keeps the acceleration from step to step. Bodies are not stepped in batches.",
     dimensions: &[2, 3],
     fields: fields!(
         of_time,

@@ -44,8 +44,9 @@ use std::ops::Range;
 pub const SPEC: Spec = Spec {
     kind: "runge_kutta",
     summary: "fourth order: the classical Runge–Kutta method",
-    documentation: "y = y₀ + h/6 (k₀ + 2 k₁ + 2 k₂ + k₃) with the slopes k = (v, a) at the start, twice in the middle and at the end. Four forces \
-per step. Stable without damping for h ω ≤ 2.828; it then removes (hω)⁶/72 of the energy per step.",
+    documentation: "y = y₀ + h/6 (k₀ + 2 k₁ + 2 k₂ + k₃) with the slopes k = (v, a) at the start, twice in the middle and at the end. The forces are \
+evaluated four times per step. Without damping, the integrator is stable if h ω ≤ 2.828 for the highest angular frequency ω; a step then removes the \
+fraction (hω)⁶/72 of the energy of a mode.",
     dimensions: &[2, 3],
     fields: &[],
     roles: &[],

@@ -19,7 +19,8 @@ use std::ops::Range;
 pub const SPEC: Spec = Spec {
     kind: "symplectic_euler",
     summary: "first order, energy stays bounded: the integrator of the thesis",
-    documentation: "v₁ = v₀ + h a(x₀, v₀), x₁ = x₀ + h v₁. One force per step. Stable without damping for h ω < 2.",
+    documentation: "v₁ = v₀ + h a(x₀, v₀), x₁ = x₀ + h v₁. The forces are evaluated once per step. Without damping, the integrator is stable if h ω \
+< 2 for the highest angular frequency ω.",
     dimensions: &[2, 3],
     fields: &[],
     roles: &[Role::OfferedExplicit],

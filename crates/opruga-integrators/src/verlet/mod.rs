@@ -32,8 +32,8 @@ use std::ops::Range;
 pub const SPEC: Spec = Spec {
     kind: "verlet",
     summary: "second order, energy stays bounded: velocity Verlet, damping at the predicted velocity",
-    documentation: "x₁ = x₀ + h v₀ + ½h² a₀, v₁ = v₀ + ½h (a₀ + a(x₁, v₀ + h a₀)). Two forces per step. Stable without damping for \
-h ω < 2.",
+    documentation: "x₁ = x₀ + h v₀ + ½h² a₀, v₁ = v₀ + ½h (a₀ + a(x₁, v₀ + h a₀)). The forces are evaluated twice per step. Without damping, the \
+integrator is stable if h ω < 2 for the highest angular frequency ω.",
     dimensions: &[2, 3],
     fields: &[],
     roles: &[],

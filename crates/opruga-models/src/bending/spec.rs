@@ -8,14 +8,15 @@ const STIFFNESS: &[&str] = &["stiffness", "modulus"];
 pub const SPEC: Spec = Spec {
     kind: "bending",
     summary: "resistance of outlines, chains and shells to bending away from their rest angles",
-    documentation: "Energy U = Σ ½ k (θ − θ₀)² over hinges: nodes between two edges of an outline or chain, edges between two triangles of a \
-surface; θ is the angle by which the second edge (triangle) turns away from the first, θ₀ that of the rest shape. `stiffness` gives k itself; \
-`modulus` E and `thickness` t give k = EI/ℓ with ℓ the mean length of the two edges, EI = E t³/12 times the depth in 2D and E π t⁴/64 (a round wire) \
-for chains in 3D; k = E t³/12 · l²/(A₁ + A₂) for an edge of length l between triangles A₁ and A₂, which is exact for a sheet rolled up into a \
-cylinder; a sheet that may warp deflects more, by an eighth on regular triangles and by a quarter on right ones. With these values a ring of radius \
-R buckles under the outer pressure 3EI/R³, and a strip clamped by two nodes (the clamp acts halfway between them) bends like an Euler–Bernoulli \
-beam. Angles beyond ±180° from θ₀ are taken the short way round. Edges without length and triangles without area have no angle and give no force; \
-close to such shapes, the force is large (k θ/ℓ). Source: Grinspun et al. 2003, Discrete shells; Seung and Nelson 1988.",
+    documentation: "Energy U = Σ ½ k (θ − θ₀)² over hinges. A hinge is a node between two edges of an outline or chain, or an edge between two \
+triangles of a surface. θ is the angle by which the second edge (triangle) turns away from the first, and θ₀ is this angle in the rest shape. \
+`stiffness` gives k itself. `modulus` E and `thickness` t give k = EI/ℓ for outlines and chains, where ℓ is the mean length of the two edges; EI is \
+E t³/12 times the depth in 2D, and E π t⁴/64 (a round wire) in 3D. For surfaces they give k = E t³/12 · l²/(A₁ + A₂), where l is the length of the \
+edge and A₁ and A₂ are the areas of the two triangles. This is exact for a sheet rolled up into a cylinder. A sheet that may warp deflects more, by \
+an eighth on regular triangles and by a quarter on right-angled ones. With these values a ring of radius R buckles under the outer pressure 3EI/R³, \
+and a strip clamped by two nodes (the clamp acts halfway between them) bends like an Euler–Bernoulli beam. Angles beyond ±180° from θ₀ are taken the \
+short way round. Edges without length and triangles without area have no angle and give no force; close to such shapes, the force is large (k θ/ℓ). \
+Source: Grinspun et al. 2003, Discrete shells; Seung and Nelson 1988.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(

@@ -12,9 +12,8 @@ made symmetric and free of forces under rigid motion, and readings report the si
 Rᵀ(x − x̄) − X, where R is the rotation nearest to the deformation of the whole body, so the body may rotate and fly; strain must be small in the \
 frame R. The mass lies on the boundary, so frequencies differ from those of a solid whose mass is spread through its volume. `exterior = true` \
 models the infinite medium around the boundary instead. This medium does not rotate: R is the identity. Limits: one solid with cavities, at most \
-2000 vertices; large strain and bending by \
-large angles are those of linear elasticity in one frame. Equations and measurements: docs/boundary-elements.md. Source: Brebbia, Telles, Wrobel \
-1984, Boundary element techniques; James, Pai 1999, ArtDefo.",
+2000 vertices; large strain and bending by large angles are computed by linear elasticity in one frame. Equations and measurements: \
+docs/boundary-elements.md. Source: Brebbia, Telles, Wrobel 1984, Boundary element techniques; James, Pai 1999, ArtDefo.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("youngs_modulus", Allowed::POSITIVE, "Pa", Default::Required, "Young's modulus E.").starts_at(1e5),
@@ -45,7 +44,7 @@ large angles are those of linear elasticity in one frame. Equations and measurem
             Allowed::Points,
             "m",
             Default::Absent,
-            "Points of the solid at rest whose stress is read: `stress0.xx`, `stress0.xy`, …, in the frame R.",
+            "Points of the solid at rest at which the stress is read, as `stress0.xx`, `stress0.xy`, …, in the frame R.",
         ),
     ],
     roles: &[Role::InsideOfBoundary],

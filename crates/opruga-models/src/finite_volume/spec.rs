@@ -10,9 +10,9 @@ pub const SPEC: Spec = Spec {
     documentation: "The force on a node is the traction P N of the first Piola–Kirchhoff stress, summed over the faces of its dual cell: those \
 between the middles of edges, sides and cells. On triangles and tetrahedra F is constant, and forces, energy and Hessian are those of linear finite \
 elements (`fem` with `order = 1`). On quadrilaterals and hexahedra F is taken at the middle of each dual face; forces are then not a gradient, their \
-tangent is not symmetric, and only explicit integrators and `equilibrium` can step them. The ledger has no elastic energy of such bodies. Materials, \
-E and ν, plane strain and plane stress have the same meaning as in `fem`. Limits: triangles and tetrahedra lock in bending and above ν = 0.45, where \
-they are refused unless `locking` says otherwise; the model has no damping of its own (use `world.drag`). Equations and measurements: \
+tangent is not symmetric, and only explicit integrators and `equilibrium` can step them. The ledger contains no elastic energy for such bodies. \
+Materials, E and ν, plane strain and plane stress have the same meaning as in `fem`. Limits: triangles and tetrahedra lock in bending and above ν = \
+0.45, where they are refused unless `locking` accepts them; the model has no damping of its own (use `world.drag`). Equations and measurements: \
 docs/finite-volumes.md. Source: Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003, Finite volume methods for the simulation of skeletal muscle.",
     dimensions: &[2, 3],
     fields: &[
@@ -21,7 +21,7 @@ docs/finite-volumes.md. Source: Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003, Finit
             Allowed::Choice(NAMES),
             "",
             Default::Text("stable_neo_hookean"),
-            "The law: small strain (`linear`), large rotation (`corotated`), or rubber.",
+            "The law: `linear` for small strain, `corotated` for small strain with large rotation, or a law of rubber for large strain.",
         ),
         Field::new("youngs_modulus", Allowed::POSITIVE, "Pa", Default::Required, "Young's modulus E."),
         Field::new(

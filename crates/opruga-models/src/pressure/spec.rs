@@ -9,21 +9,20 @@ const AMOUNT: &[&str] = &["nRT", "pressure"];
 pub const SPEC: Spec = Spec {
     kind: "pressure",
     summary: "ideal gas inside closed boundaries: isothermal or adiabatic, with ambient pressure, ramp, leak and heating",
-    documentation: "P V = nRT (isothermal, U = −nRT ln(V/V₀) + P_a V) or P V^γ = P₀ V₀^γ (adiabatic, U = P₀ V₀^γ V^{1−γ}/(γ−1) + P_a V); force (P − \
-P_a) ∂V/∂x on every node, which is half of the force on an edge in 2D and a third of the force on a triangle in 3D. V is the enclosed area times \
-thickness in 2D and the enclosed volume in 3D, by the divergence theorem. The sides of quadratic cells and of boxes are curved in V as they are in \
-the cells, so that a uniform pressure causes a uniform stress. Holes count as negative because of their orientation. Every closed boundary that lies \
-in no other one is a chamber of its own with the same parameters. In a solid body the gas belongs in the cavities: with `inside = \"cavities\"`, \
-each cavity is a chamber of its own. For each body NAME, `diagnostics.csv` has the columns `NAME.volume` [m³] and `NAME.nRT` [J], which are sums \
-over all chambers, and `NAME.pressure` [Pa], the mean pressure weighted by volume. nRT is P V, also for an adiabatic gas, whose temperature \
-changes. A \
-body with several chambers also has `NAME.chamber1.volume`, `NAME.chamber1.pressure`, `NAME.chamber1.nRT`, `NAME.chamber2.volume` and so on. \
-Chambers are numbered in the order in which their first facets appear in the shape. Below V_s = max(`smallest_volume` V₀, the volume of \
-`largest_pressure`) the pressure keeps the value P(V_s), also when the volume passes zero and the body is inverted. U is then still a function of V \
-with a continuous slope, so no energy is created. The smaller V_s is, the shorter this passage is. A step that does not resolve the passage loses a \
-few per cent of the energy; the ledger shows the loss. If V_s is much smaller than the default, use shorter steps: a step that jumps from a \
-thousandth of the volume to the other side of zero feels a force a thousand times as large, and each such jump adds energy. Without ambient pressure \
-U has no minimum in V. Source: Matyka and Ollila 2003; thesis 3.3.",
+    documentation: "P V = nRT (isothermal, U = −nRT ln(V/V₀) + P_a V) or P V^γ = P₀ V₀^γ (adiabatic, U = P₀ V₀^γ V^{1−γ}/(γ−1) + P_a V). The force \
+on every node is (P − P_a) ∂V/∂x: half of the force on each adjacent edge in 2D, a third of the force on each adjacent triangle in 3D. V is the \
+enclosed area times thickness in 2D and the enclosed volume in 3D, by the divergence theorem. If the sides of quadratic cells or of hexahedra are \
+curved, V includes this curvature, so that a uniform pressure causes a uniform stress. Holes count as negative because of their orientation. Every \
+closed boundary that lies in no other one is a chamber of its own with the same parameters. In a solid body the gas belongs in the cavities: with \
+`inside = \"cavities\"`, each cavity is a chamber of its own. For each body NAME, `diagnostics.csv` has the columns `NAME.volume` [m³] and \
+`NAME.nRT` [J], which are sums over all chambers, and `NAME.pressure` [Pa], the mean pressure weighted by volume. nRT is P V, also for an adiabatic \
+gas, whose temperature changes. A body with several chambers also has `NAME.chamber1.volume`, `NAME.chamber1.pressure`, `NAME.chamber1.nRT`, \
+`NAME.chamber2.volume` and so on. Chambers are numbered in the order in which their first facets appear in the shape. Below V_s = \
+max(`smallest_volume` V₀, the volume of `largest_pressure`) the pressure keeps the value P(V_s), even when the volume passes zero and the body is \
+inverted. U is then still a function of V with a continuous slope, so no energy is created. The smaller V_s is, the shorter the passage through zero \
+is. A step that does not resolve the passage loses a few per cent of the energy; the ledger shows the loss. If V_s is much smaller than the default, \
+use shorter steps: a step that jumps from a thousandth of the volume to the other side of zero feels a force a thousand times as large, and each \
+such jump adds energy. Without ambient pressure U has no minimum in V. Source: Matyka and Ollila 2003; thesis 3.3.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -85,8 +84,8 @@ a solid.",
             Allowed::NOT_NEGATIVE,
             "1/s",
             Default::Number(0.0),
-            "Rate λ of loss: d(nRT)/dt = −λ (1 − P_a/P) nRT, which is −λ (P − P_a) V. At constant volume, the pressure approaches that outside as \
-e^(−λt); if it is lower than that outside, air flows in. Gas that has leaked stays lost when the rate changes.",
+            "Rate λ of loss: d(nRT)/dt = −λ (1 − P_a/P) nRT, which is −λ (P − P_a) V. At constant volume, the pressure approaches the ambient \
+pressure as e^(−λt); if it is lower than the ambient pressure, gas flows in. Gas that has leaked stays lost when the rate changes.",
         ),
         Field::new(
             "temperature",

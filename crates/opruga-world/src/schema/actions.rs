@@ -114,7 +114,7 @@ pub const COMMANDS: &[Section] = &[
     Section {
         spec: &section(
             "drag",
-            "Pull a node towards a moving pointer by a critically damped spring",
+            "Pull a node towards a moving pointer with a critically damped spring",
             "",
             &[
                 AT,
@@ -138,8 +138,8 @@ pub const COMMANDS: &[Section] = &[
                     Allowed::POSITIVE,
                     "N",
                     Default::Absent,
-                    "The largest force; each time it acts is counted. The default is the force of the spring stretched by ten times the size of the \
-body.",
+                    "The largest force of the spring; a warning counts how often this limit acts. The default is the force of the spring stretched \
+by ten times the size of the body.",
                 ),
             ],
         ),
@@ -156,7 +156,7 @@ body.",
     Section {
         spec: &section(
             "push",
-            "A force on nodes",
+            "Push nodes with a force",
             "",
             &[AT, UNTIL, Field::new("force", Allowed::Vector, "N", Default::Required, "The force on every node.")],
         ),
@@ -202,7 +202,8 @@ body.",
                     Allowed::Text,
                     "",
                     Default::Required,
-                    "The parameter: `body.NAME.models.KIND.field` (`NAME` of a body with copies: all of them), `body.NAME.integrator.field`, `integrator.field`, `world.field`, `collider.NUMBER.field` or `time.substeps`.",
+                    "The parameter: `body.NAME.models.KIND.field` (`NAME` of a body with copies: all of them), `body.NAME.integrator.field`, \
+`integrator.field`, `world.field`, `contact.field`, `collider.NUMBER.field` or `time.substeps`.",
                 ),
             ],
         ),
@@ -258,11 +259,13 @@ pub const PROBE: Section = Section {
         "Columns of diagnostics.csv that follow nodes",
         "Positions and velocities are means over the nodes, reactions are sums. A reaction is the force of pins: mass times acceleration minus the \
 forces of the models and the weight on pinned nodes. The acceleration of a pin is computed from its motion over the previous frame and the next one. \
-The impulse with which a pin catches a moving node is not included. `contact` is the sum of the forces of obstacles in the next step, normal force \
-and friction; pinned nodes have none. `stress` is Cauchy's stress and `volume_ratio` is J: the value at a node is the mean over the finite elements \
-around it, weighted by their volume at rest. The mean over the nodes is written, with the von Mises stress of that mean. Columns are NAME.x, NAME.y \
+The impulse of a pin that catches a moving node is not included. `contact` is the sum of the normal forces and friction of obstacles in the next \
+substep; obstacles exert none on pinned nodes. With `[contact]`, it also contains the forces of other bodies, and of corners and edges of obstacles, \
+in the previous substep. `stress` is Cauchy's stress and `volume_ratio` is J: the value at a node is the mean over the finite elements around it, \
+weighted by their volume at rest. The mean over the nodes is written, together with the von Mises stress of this mean. Columns are NAME.x, NAME.y \
 (position), NAME.vx … (velocity), NAME.rx … (reaction), NAME.cx … (contact), NAME.sxx, syy, szz, sxy, in 3D syz, szx, and von_mises (stress, szz in \
-2D across the plane), NAME.volume_ratio; they are not a number while the body does not exist or has no finite elements.",
+2D across the plane), NAME.volume_ratio. They are NaN while the body does not exist; stress and volume ratio are also NaN while it has no finite \
+elements.",
         &[Field::new(
             "name",
             Allowed::Text,

@@ -15,10 +15,10 @@ pub const CONTACT: Section = Section {
     spec: &section(
         "contact",
         "How deformable bodies touch one another and themselves",
-        "Without this section bodies pass through one another. Contact acts on boundaries, open surfaces and wires; a body that has none of these is \
-in contact with its points. A body filled by a lattice uses the surface that it carries. Obstacles act not only on nodes: edges and facets meet the \
-corners and edges of obstacles. A substep moves all bodies freely, and then applies impulses to pairs of a vertex and a facet, and in space to pairs \
-of edges.",
+        "Without this section bodies pass through one another. Contact acts on boundaries, open surfaces and wires; if a body has none of these, \
+contact acts on its points. If a lattice fills a body, contact acts on the surface that the lattice carries. Obstacles act not only on nodes: their \
+corners and edges also touch edges and facets of bodies. A substep first moves all bodies as if they did not touch one another. It then applies \
+impulses to pairs of a vertex and a facet, and in space also to pairs of edges.",
         &[
             Field::new(
                 "response",
@@ -26,7 +26,7 @@ of edges.",
                 "",
                 Default::Text("constraint"),
                 "How contact is enforced: `constraint` uses impulses that let pairs touch but not pass; `barrier` uses forces that grow without \
-bound as a gap closes, with implicit integrators.",
+bound as a gap closes, and needs implicit integrators.",
             ),
             Field::new(
                 "reach",
@@ -61,7 +61,7 @@ entered as `work_correction`.",
                 Allowed::Number { least: Bound::Closed(1.0), greatest: Bound::Closed(1e8) },
                 "",
                 Default::Number(4e6),
-                "The largest number of pairs that are considered in a step; a run that needs more ends with `limit.contacts`.",
+                "The largest number of pairs that are considered in a step; a run that needs more ends with the error `limit.contacts`.",
             ),
         ],
     ),
@@ -91,7 +91,7 @@ entries for two groups, the last one applies.",
                 Allowed::FRACTION,
                 "",
                 Default::Absent,
-                "Ratio of the normal speeds of these two.",
+                "Ratio of the normal speeds of these two after and before an impact.",
             ),
         ],
     ),

@@ -20,8 +20,8 @@ const FILLING: Field = Field::new(
     Allowed::Choice(&["none", "triangles", "lattice"]),
     "",
     Default::Text("none"),
-    "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles; angles below 25° occur only where corners \
-of the outline are sharper or the outline is finer than the spacing, and are reported. `lattice`: equal squares that reach a little beyond the \
+    "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles; angles below 25° occur only where the \
+outline has a sharper corner or details finer than the spacing, and they are reported. `lattice`: equal squares that reach a little beyond the \
 outline and carry it for drawing, however fine it is.",
 );
 pub(super) const FILLING_OF_SURFACES: Field = Field::new(
@@ -31,7 +31,7 @@ pub(super) const FILLING_OF_SURFACES: Field = Field::new(
     Default::Text("none"),
     "`none`: a skin of triangles, for bending and gas. `lattice`: equal tetrahedra that reach a little beyond the surface and carry it for drawing. \
 `tetrahedra`: tetrahedra whose boundary follows the surface, with angles from 10.7° to 164.8°, for finite elements; sharp edges are cut off within a \
-spacing, and parts thinner than that may be lost. A change of volume above 5 % is reported; above 25 % it is an error.",
+spacing, and parts thinner than a spacing may be lost. A change of volume above 5 % is reported; above 25 % it is an error.",
 );
 pub(super) const SPACING_OF_FILLINGS: Field = Field::new(
     "spacing",
@@ -63,7 +63,7 @@ static SVG: Spec = Spec {
     kind: "svg",
     summary: "the outline of a drawing",
     documentation: "Paths, rectangles, circles, ellipses and polygons of an SVG file, with their transforms; y points up in the scene. Holes follow \
-the even-odd rule, or the non-zero rule if `fill-rule` says so. Rules of style sheets are applied if their selectors are names, classes or ids. A \
+the even-odd rule, or the non-zero rule if `fill-rule` selects it. Rules of style sheets are applied if their selectors are names, classes or ids. A \
 clip path that cuts nothing off has no effect; one that cuts something off is an error.",
     dimensions: &[2],
     fields: &[
@@ -114,7 +114,7 @@ a border are joined with `overlap = \"union\"`.",
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of the object, for a topology that has several.",
+            "The name of the object to read, for a TopoJSON file that has several.",
         ),
         Field::new(
             "projection",
@@ -186,9 +186,9 @@ static SURFACE: Spec = Spec {
     kind: "surface",
     summary: "a surface of triangles",
     documentation: "OBJ, STL (text or binary), PLY (text or binary), glTF (.gltf, .glb), or the triangles of a mesh file (see `mesh`), according to \
-the ending of the file. Polygons, also concave ones, are cut into triangles inside them. Triangles that face inward are flipped and counted; every \
-closed component is a chamber, and one inside another is a cavity. The centre of its bounding box lies at `center`. Groups: the named parts of the \
-file.",
+the ending of the file. Polygons, including concave ones, are cut into triangles that lie inside them. Triangles that face inward are flipped and \
+counted; every closed component is a chamber, and a component inside another one is a cavity. The centre of its bounding box lies at `center`. \
+Groups: the named parts of the file.",
     dimensions: &[3],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
@@ -236,8 +236,8 @@ names two of them, \"keep\" accepts and counts them.",
             Allowed::POSITIVE,
             "m",
             Default::Absent,
-            "A closed surface is rebuilt from nearly equilateral triangles with edges of about this length, before `scale`; edges sharper than 40° \
-are kept. Nodes are renumbered.",
+            "If it is given, a closed surface is rebuilt from nearly equilateral triangles with edges of about this length, before `scale`. Edges \
+sharper than 40° are kept, and nodes are renumbered.",
         ),
         FILLING_OF_SURFACES,
         SPACING_OF_FILLINGS,
@@ -249,9 +249,9 @@ static MESH: Spec = Spec {
     kind: "mesh",
     summary: "a filled body of cells, meshed by another program",
     documentation: "Gmsh 2.2 and 4.1 (.msh, text or binary), VTK (.vtk, .vtu), TetGen (.node with .ele), MFEM and Medit (.mesh, .mfem), according to \
-the ending of the file. Triangles and quadrilaterals in 2D; tetrahedra and hexahedra in 3D; triangles of 6 and tetrahedra of 10 nodes. Nodes keep \
-the order of the file, and their coordinates in metres. Named parts (physical groups, attributes, references, markers) become groups of nodes and of \
-cells, scalars of elements become values of cells.",
+the ending of the file. The cells may be triangles and quadrilaterals in 2D, tetrahedra and hexahedra in 3D; triangles may have 6 nodes and \
+tetrahedra 10. Nodes keep the order of the file, and their coordinates are in metres. Named parts (physical groups, attributes, references, markers) \
+become groups of nodes and of cells, and scalars of elements become values of cells.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
