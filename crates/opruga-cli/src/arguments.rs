@@ -99,7 +99,7 @@ pub(crate) struct Mesh {
     /// Approximate length of the edges of cells [m]; required for surfaces and drawings
     ///
     /// In space, it is the side of the cubes of a lattice whose points move to the surface; edges are 0.9 of it on average.
-    /// Parts thinner than this may be lost; a message then reports it.
+    /// Parts thinner than this may be lost; a message then reports the loss.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub(crate) size: Option<f64>,
     /// The longest side of the whole body [m], instead of the units of the file; required for drawings
@@ -162,9 +162,9 @@ pub(crate) struct Sweep {
     pub(crate) scene: Option<String>,
     /// The values of a parameter; may be given several times
     ///
-    /// PATH=a,b,c lists them. PATH=LOW..HIGH:COUNT has COUNT values, including both ends; :log makes the ratios of neighbours equal, :whole rounds
-    /// the values. PATH=VALUE changes the parameter for all points. If several parameters vary, the points form a grid, unless --each
-    /// or --sample is given.
+    /// PATH=a,b,c lists them. PATH=LOW..HIGH:COUNT gives COUNT values, including both ends; with :log, neighbouring values have equal ratios; with
+    /// :whole, the values are rounded. PATH=VALUE changes the parameter for all points. If several parameters vary, the points form a grid, unless
+    /// --each or --sample is given.
     #[arg(long = "set", value_name = "PATH=VALUES", conflicts_with = "resume")]
     pub(crate) set: Vec<String>,
     /// Vary one parameter at a time, while the others are as in the scene
@@ -236,7 +236,7 @@ pub(crate) struct Pictures {
     /// Draw arrows: the pressure of gas (without gas, the force on nodes) and the pull of the pointer
     #[arg(long, conflicts_with = "no_pictures")]
     arrows: bool,
-    /// Draw every spring and node, also on surfaces, in crowds and under skins
+    /// Draw every spring and node, even on surfaces, in crowds and under skins
     #[arg(long, conflicts_with = "no_pictures")]
     springs: bool,
 }
@@ -268,8 +268,8 @@ pub(crate) struct Run {
     pub(crate) scene: Option<String>,
     /// The simulated time at which the run ends [s] [default: that of the scene]
     ///
-    /// A run has whole frames; if the last one ends after this time, a note reports it. A resumed run that continues from t = 5 with --seconds 8 runs
-    /// for 3 s; without --seconds, it ends where the earlier run was meant to end. 0 writes the state at the start.
+    /// A run consists of whole frames; if the last one ends after this time, a note reports it. A resumed run that continues from t = 5 with --seconds
+    /// 8 runs for 3 s; without --seconds, it ends where the earlier run was meant to end. 0 writes the state at the start.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
     #[command(flatten)]
@@ -298,16 +298,17 @@ pub(crate) struct Run {
     /// Print the summary, or an error, as JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Continue from the checkpoint of an earlier run, with the same bits
+    /// Continue from the checkpoint of an earlier run; the results are the same, bit for bit, as without the interruption
     ///
-    /// The checkpoint contains the scene with the changes of --set and --seconds, --lenient and --allow-unstable. Other options must be given again.
+    /// The checkpoint contains the scene with the changes made by --set and --seconds, and the options --lenient and --allow-unstable. Other options
+    /// must be given again.
     /// The output covers the rest of the run only, so it goes to a folder of its own.
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
     /// Real time between two checkpoints during the run [s]; 0 writes one only at the end
     ///
-    /// A run that is killed loses no more than that: `checkpoint` and `diagnostics.csv` reach up to then, and `checkpoint.previous` is the checkpoint
-    /// before. --resume continues from either.
+    /// A run that is killed loses at most this much: `checkpoint` and `diagnostics.csv` reach up to the last checkpoint, and `checkpoint.previous` is
+    /// the one before it. --resume continues from either.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 60.0)]
     pub(crate) checkpoint_every: f64,
     /// Record the run to this file, for `opruga replay`, which also writes its frames as VTU, glTF, PC2, MDD, OBJ or PLY
@@ -319,7 +320,7 @@ pub(crate) struct Run {
     /// Keep one state every FRAMES frames of the recording; 1 keeps all states
     ///
     /// States between them are computed again on request, and compared by their hashes. By default, the interval is chosen so that recording
-    /// takes less than a tenth of the run; it is at most 32 frames.
+    /// takes less than a tenth of the time of the run; it is at most 32 frames.
     #[arg(long, value_name = "FRAMES", requires = "record", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) record_every: Option<u32>,
     /// Write a row of diagnostics.csv every FRAMES frames; 1 writes every frame
@@ -328,7 +329,7 @@ pub(crate) struct Run {
     /// larger, rows are left out, and a warning counts them.
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
     pub(crate) diagnostics_every: Option<u32>,
-    /// Check after every frame that no surfaces cross; a run in which some do ends with exit code 1
+    /// Check after every frame that no surfaces cross; a run in which surfaces cross ends with exit code 1
     ///
     /// The check is exact and shares no code with the detection of contact. It covers the bodies that touch by `[contact]`, or all bodies if that
     /// section is missing.

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 pub(crate) enum Bench {
     /// One ring of 8 to 1,048,576 vertices, and many rings: figure 4 of the thesis
     Vertices(BenchVertices),
-    /// A scene without pictures and files: milliseconds per frame, and what they are spent on
+    /// A scene, without writing pictures or files: milliseconds per frame, and where they are spent
     Scene(BenchScene),
     /// Forces and Hessians of finite elements, nanoseconds per element
     Elements(BenchElements),
@@ -110,7 +110,7 @@ pub(crate) struct BenchVertices {
     /// Measure only one row: `36` for one ring of 36 vertices, `27778x36` for 27,778 of them
     #[arg(long, value_name = "[RINGSx]VERTICES")]
     pub(crate) only: Option<String>,
-    /// Processor time spent on each row, above 0 up to 600 [s]
+    /// Processor time spent on each row [s]: more than 0, at most 600
     #[arg(long, allow_negative_numbers = true, default_value_t = 1.0)]
     pub(crate) seconds: f64,
     /// Write the log–log plot to this SVG file, replacing an existing one
