@@ -45,7 +45,7 @@ opruga::math::messages! {
         Between { least: f64, most: f64 },
         "part.call_range" #[error("numbers above 0")]
         Positive {},
-        "part.call_range" #[error("numbers above 0 up to {}", number(*most))]
+        "part.call_range" #[error("numbers above 0, at most {}", number(*most))]
         PositiveUpTo { most: f64 },
         "part.call_range" #[error("the name of a file")]
         FileName {},

@@ -43,7 +43,7 @@ opruga_math::messages! {
         Empty { nothing: Nothing },
         /// A facet, a cell, a segment or a pin refers to a node that the body does not have. The body is given by its index in the picture.
         "draw.failed"
-        #[error("body {body} has {nodes} nodes, but its {list} name node {node}")]
+        #[error("body {body} has {nodes} nodes, numbered from 0, but its {list} name node {node}")]
         Node { body: usize, nodes: usize, list: PictureList, node: u32 },
         /// The list of scalars of a body has a different length from the list of positions. The body is given by its index in the picture.
         "draw.failed"

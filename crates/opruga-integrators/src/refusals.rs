@@ -120,7 +120,7 @@ messages! {
         "part.step_hint" #[error("use `when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`")]
         LoadSteps {},
         "part.step_hint"
-        #[error("positions have sixteen digits here, so {} m and forces of {} N are within rounding; use a larger `tolerance`, larger cells or a less stiff body, or move the scene closer to the origin", number(*of_positions), number(*of_forces))]
+        #[error("positions have sixteen digits here, so distances of {} m and forces of {} N are within rounding; use a larger `tolerance`, larger cells or a less stiff body, or move the scene closer to the origin", number(*of_positions), number(*of_forces))]
         Rounding { of_positions: f64, of_forces: f64 },
     }
 }

@@ -9,7 +9,7 @@ pub fn commented(name: &str) -> String {
 }
 
 const TEMPLATE: &str = r#"# A scene of Opruga. Lengths in metres, masses in kilograms, times in seconds.
-#   opruga check FILE    reads it and says what is wrong
+#   opruga check FILE    reads it and reports all errors
 #   opruga run FILE      runs it
 #   opruga list          shows the models, integrators, shapes and colliders
 format = "opruga-1"
@@ -54,7 +54,7 @@ normal = [0.0, 1.0]
 restitution = 0.5
 friction = 0.3
 
-# From second 2 to 3 a pointer pulls at the ball.
+# From 2 s to 3 s, a pointer pulls the ball.
 [[command]]
 do = "drag"
 at = 2.0

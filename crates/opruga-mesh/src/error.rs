@@ -106,13 +106,13 @@ messages! {
             first[0], first[1], second[0], second[1])]
         SelfIntersection { first: [u32; 2], second: [u32; 2] },
         /// An element or group names a node that does not exist.
-        "part.mesh" #[error("{element} {index} names node {node}, but there are {nodes} nodes")]
+        "part.mesh" #[error("{element} {index} names node {node}, but there are {nodes} nodes, numbered from 0")]
         IndexOutOfRange { element: Element, index: u32, node: u32, nodes: u32 },
         /// An element names the same node twice.
         "part.mesh" #[error("{element} {index} names node {node} twice")]
         RepeatedNode { element: Element, index: u32, node: u32 },
         /// A group of cells names a cell that does not exist.
-        "part.mesh" #[error("the group `{group}` names cell {cell}, but there are {cells} cells")]
+        "part.mesh" #[error("the group `{group}` names cell {cell}, but there are {cells} cells, numbered from 0")]
         CellOutOfRange { group: String, cell: u32, cells: usize },
         /// The number of values of cells differs from the number of cells.
         "part.mesh" #[error("`{name}` has {values} values for {cells} cells")]

@@ -106,7 +106,7 @@ words! {
     pin: "Pin", "Pribodi";
     pin_hint: "Press a body to pin a point. Drag a pinned point to move it; double-click to free it", "Pritisni tijelo da se točka drži; pridržanu točku pomakni, dvostrukim klikom oslobodi";
     shift: "Move", "Pomakni";
-    shift_hint: "Drag a body elsewhere, or turn and scale it with its handles; it starts there, at rest", "Odvuci tijelo drugamo ili ga ručkama zakreni i povećaj: ondje se postavlja u mirovanju";
+    shift_hint: "Drag a body to another position, or turn and scale it with its handles; it starts from there, at rest", "Odvuci tijelo drugamo ili ga ručkama zakreni i povećaj: ondje se postavlja u mirovanju";
     draw: "Draw", "Crtaj";
     draw_hint: "Draw a closed outline: it becomes a body", "Nacrtaj zatvoreni obris: postaje tijelo";
     add: "Add", "Dodaj";
@@ -149,7 +149,7 @@ words! {
     von_mises_hint: "Stress in solids [Pa]; springs have none: see the elastic force", "Naprezanje u čvrstim tijelima [Pa]; opruge ga nemaju: vidi elastičnu silu";
     pressure_hint: "Pressure of the gas in each body [Pa]; bodies without gas have no value", "Plina u cijelom tijelu [Pa]; tijela bez plina ga nemaju";
     compare: "Side by side", "Usporedi";
-    compare_hint: "The same scene twice, in lock step: on the right with another model, integrator or parameter", "Isti prizor dvaput, korak po korak: desno s drugim modelom, integratorom ili parametrom";
+    compare_hint: "Run the same scene twice, side by side in lock step. The right side has another model, integrator or parameter", "Isti prizor dvaput, korak po korak: desno s drugim modelom, integratorom ili parametrom";
     both_sides: "Both", "Obje strane";
     both_sides_hint: "Changes made here apply to both sides", "Promjene vrijede za obje strane";
     right_only: "Right only", "Samo desno";
@@ -200,7 +200,7 @@ words! {
     copy: "Copy", "Kopiraj";
     nodes: "nodes", "čvorova";
     nothing_selected: "Press a body to see and change its physics", "Pritisni tijelo da vidiš i promijeniš njegovu fiziku";
-    crowd: "More than 64 bodies are not listed one by one", "Kad ih je više od 64, tijela se ne navode pojedinačno";
+    crowd: "If there are more than 64 bodies, they are not listed one by one", "Kad ih je više od 64, tijela se ne navode pojedinačno";
     plots: "Plots", "Grafovi";
     energy: "Energy [J]", "Energija [J]";
     gas: "Volume and pressure", "Obujam i tlak";
@@ -234,7 +234,7 @@ words! {
     too_small: "The outline is too small to be a body", "Obris je premalen da bude tijelo";
     only_plane: "Outlines can be drawn only in 2D scenes", "Obrisi se crtaju u ravninskim prizorima";
     own_colours: "As drawn", "Kako je nacrtano";
-    own_colours_hint: "Show a body that carries a drawing in the colours of the drawing", "Tijela koja nose crtež, u njegovim bojama";
+    own_colours_hint: "For bodies that carry a drawing, show the colours of the drawing", "Tijela koja nose crtež, u njegovim bojama";
     step_models: "models", "modeli";
     step_integrator: "integrator", "integrator";
     step_add: "new body", "novo tijelo";
@@ -252,7 +252,7 @@ words! {
     step_compare: "side by side", "usporedba";
     undone: "Undone:", "Poništeno:";
     redone: "Redone:", "Ponovljeno:";
-    pins_let_go: "The scene starts again: pins set with the pointer were removed", "Prizor počinje iznova: točke pribodene pokazivačem oslobođene su";
+    pins_let_go: "The scene was restarted; pins set with the pointer were removed", "Prizor počinje iznova: točke pribodene pokazivačem oslobođene su";
     goes_on: "continues to move: it keeps its positions and velocities, and models that it already had keep their state", "nastavlja u pokretu: položaji i brzine ostaju, a modeli koje je već imalo pamte svoje";
     all_go_on: "Every body continues from its present state with", "Svako tijelo nastavlja odande gdje jest s";
     set_down: "The body is put back at rest, in its new shape", "Tijelo je postavljeno iznova, u mirovanju, u novom obliku";
@@ -268,7 +268,7 @@ words! {
     recording_hint: "Everything up to the mark was recorded; everything after it was computed later", "Do oznake je ono što je snimljeno; što je iza nje izračunato je poslije";
     warning: "Warning", "Upozorenje";
     pictures_pending: "drawing …", "crta se …";
-    shortcuts: "Space\tplay or pause\n→   Home\tone frame; reset\nCtrl Z   Ctrl Y\tundo, redo\nCtrl S\tsave the scene\n1 2 3 4 5\tpull, push, pin, move, draw\nDel   Ctrl D\tdelete the body; duplicate it\n[ ]   + −\tturn the body; scale it\nF   C\tshow everything; the selected body\nP   G   B\tplots; scenes; side by side\nWheel\tzoom\nDrag beside the bodies\tmove the view; in space, turn it\nMiddle drag, Space drag\tmove the view\nRight drag\tpush\nShift drag, double click\tpin a point; free it\nOne finger, two fingers\tpull; zoom and move the view\nEsc\tclose a message\n?\tthis help", "Razmaknica\tpokreni ili zaustavi\n→   Home\tjedna sličica; na početak\nCtrl Z   Ctrl Y\tponišti, ponovi\nCtrl S\tspremi prizor\n1 2 3 4 5\tvuci, guraj, pribodi, pomakni, crtaj\nDel   Ctrl D\tizbriši tijelo; udvostruči ga\n[ ]   + −\tzakreni tijelo; povećaj, smanji\nF   C\tsve u kadar; odabrano tijelo\nP   G   B\tgrafovi; prizori; usporedi\nKotačić\tpribliži\nPovuci pokraj tijela\tpomakni pogled; u prostoru ga okreni\nSrednja tipka, razmaknica\tpomakni pogled\nDesna tipka\tguraj\nShift, dvostruki klik\tpribodi točku; oslobodi je\nJedan prst, dva prsta\tvuci; približi i pomakni pogled\nEsc\tskloni poruku\n?\tova pomoć";
+    shortcuts: "Space\tplay or pause\n→   Home\tone frame; reset\nCtrl Z   Ctrl Y\tundo, redo\nCtrl S\tsave the scene\n1 2 3 4 5\tpull, push, pin, move, draw\nDel   Ctrl D\tdelete the body; duplicate it\n[ ]   + −\tturn the body; scale it\nF   C\tshow everything; the selected body\nP   G   B\tplots; scenes; side by side\nWheel\tzoom\nDrag next to the bodies\tmove the view; in space, turn it\nMiddle drag, Space drag\tmove the view\nRight drag\tpush\nShift drag, double click\tpin a point; free it\nOne finger, two fingers\tpull; zoom and move the view\nEsc\tclose a message\n?\tthis help", "Razmaknica\tpokreni ili zaustavi\n→   Home\tjedna sličica; na početak\nCtrl Z   Ctrl Y\tponišti, ponovi\nCtrl S\tspremi prizor\n1 2 3 4 5\tvuci, guraj, pribodi, pomakni, crtaj\nDel   Ctrl D\tizbriši tijelo; udvostruči ga\n[ ]   + −\tzakreni tijelo; povećaj, smanji\nF   C\tsve u kadar; odabrano tijelo\nP   G   B\tgrafovi; prizori; usporedi\nKotačić\tpribliži\nPovuci pokraj tijela\tpomakni pogled; u prostoru ga okreni\nSrednja tipka, razmaknica\tpomakni pogled\nDesna tipka\tguraj\nShift, dvostruki klik\tpribodi točku; oslobodi je\nJedan prst, dva prsta\tvuci; približi i pomakni pogled\nEsc\tskloni poruku\n?\tova pomoć";
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ messages! {
         NoBodyThen { time: f64 },
         "part.path" #[error("body `{body}` has no model `{kind}`")] #[allowed("{known}")]
         NoModel { body: String, kind: String, known: String },
-        "part.path" #[error("body `{body}` uses the integrator of the scene: integrator.{field}")]
+        "part.path" #[error("body `{body}` uses the integrator of the scene; its parameter is integrator.{field}")]
         FollowsScene { body: String, field: String },
         "part.path" #[error("there is no such integrator")]
         NoSuchIntegrator {},
@@ -36,7 +36,7 @@ messages! {
         NoCollider { collider: String, last: usize },
         "part.path" #[error("there is no such kind of collider")]
         NoColliderKind {},
-        "part.path" #[error("the scene has no `[contact]`, without which bodies pass through one another")] #[allowed("in a scene with one")]
+        "part.path" #[error("the scene has no `[contact]`, without which bodies pass through one another")] #[allowed("in a scene with `[contact]`")]
         NoContact {},
         "part.path" #[error("is {value}")] #[allowed("{allowed}")]
         Is { value: String, allowed: AllowedValues },

@@ -64,12 +64,12 @@ messages! {
         ModesMemory { count: usize, axes: usize, bytes: String, most: String },
         "modes.indefinite" #[error("the stiffness of this state has no natural frequencies")]
         Indefinite {},
-        "contact.implicit" #[error("bodies of `{integrator}` cannot touch bodies of `{other}`: one integrator finds a state of rest, the other follows a motion")]
-        #[allowed("bodies that all rest, or all move")]
+        "contact.implicit" #[error("bodies with `{integrator}` cannot touch bodies with `{other}`: one integrator finds a state of rest, the other follows a motion")]
+        #[allowed("integrators that all find states of rest, or all follow motions")]
         #[hint("`contact.touch = false` in a body lets it pass through the others")]
         RestBesideMotion { integrator: &'static str, other: String },
         "contact.implicit" #[error("`{integrator}` with `arc_length` or `load_steps` applies loads in parts, but bodies that touch are balanced under the whole load")] #[parameters("arc_length", "load_steps")]
-        #[allowed("bodies that touch without `arc_length` and `load_steps`")]
+        #[allowed("no `arc_length` and no `load_steps` for bodies that touch")]
         #[hint("`contact.touch = false` in a body lets it pass through the others")]
         RestInParts { integrator: &'static str },
         "run.model" #[error("no common equilibrium was found for bodies that touch: the steps of the bodies and their contact do not lead to the same state, however short the steps")]
@@ -78,12 +78,12 @@ messages! {
         "run.model" #[error("no common equilibrium was found for bodies that touch: after {steps} steps towards it, they still move by {} m", number(*moved))]
         #[hint("use pins or friction to hold bodies that would slide")]
         NoCommonBalance { steps: usize, moved: f64 },
-        "contact.barrier" #[error("a barrier needs an integrator that solves for the end of a step, which `{integrator}` does not do")]
+        "contact.barrier" #[error("a barrier needs an integrator that solves for the state at the end of a step, which `{integrator}` does not do")]
         #[allowed("an implicit integrator, such as `backward_euler`")] #[hint("`response = \"constraint\"` works with every integrator")]
         NoBarrier { integrator: &'static str },
         "contact.reach"
-        #[error("the reach is {} m and the shortest edge of the body is {} m, so its own features would push one another apart at rest", number(*reach), number(*shortest))]
-        #[allowed("less than that edge")]
+        #[error("the reach is {} m and the shortest edge of the body is {} m, so neighbouring parts of its surface would push one another apart at rest", number(*reach), number(*shortest))]
+        #[allowed("less than the length of that edge")]
         Reach { reach: f64, shortest: f64 },
         "contact.unfold" #[error("`unfold` displaces bodies at random, possibly into other bodies")] #[parameters("unfold")] #[allowed("`unfold = false` in a scene with `[contact]`")]
         Unfold {},
@@ -105,7 +105,7 @@ messages! {
         #[hint("are its units mixed (metres, seconds, radians)?")]
         FastBody { fastest: f64, h: f64, range: f64 },
         "scene.range" #[error("`{word}` is {value}, which gives node {node} a mass of {} kg", number(*mass))] #[value("{value}")] #[parameters(word)]
-        #[allowed("such that every node has at least {} kg and at most {} kg", number(f64::MIN_POSITIVE), number(f64::MAX))]
+        #[allowed("values that give every node a mass of at least {} kg and at most {} kg", number(f64::MIN_POSITIVE), number(f64::MAX))]
         #[hint("are its units mixed (metres, kilograms)?")]
         MassOfNode { word: &'static str, value: String, node: usize, mass: f64 },
         "scene.range" #[error("a weight of {} m/s² takes the energy of the bodies out of the range of finite numbers", number(*weight))]

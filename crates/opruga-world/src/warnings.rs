@@ -167,7 +167,7 @@ messages! {
         #[error("the implicit integrators themselves added {} J, more than a twentieth of the energy in motion (`loss_numerical`). Motion that is fast compared with the step decays or grows because of the integrator, not because of physics. More substeps reduce this, and `backward_euler` damps motion that would grow", number(*energy))]
         MadeByRules { energy: f64 },
         "ledger.closure"
-        #[error("at the end of a frame, more than a tenth of the energy in motion was unexplained (`closure`): {} J {difference} so far, by the error of the integrator; {help}", number(*energy))]
+        #[error("at the end of a frame, more than a tenth of the energy in motion was unexplained (`closure`): {} J {difference} so far, because of the error of the integrator; {help}", number(*energy))]
         Unexplained { energy: f64, difference: Difference, help: ErrorHint },
         "step.not_converged" #[error("a step was accepted although Newton's method had not converged (`when_not_converged = \"accept\"`)")]
         Accepted {},
@@ -176,10 +176,10 @@ messages! {
         #[hint("more substeps (in statics, more `load_steps` or frames) avoid the failed attempts")]
         Halved { h: f64, shortest: f64, parts: u64 },
         "step.cut_off"
-        #[error("a real-time step used up its budget, or took so many products that slow motions may have a large residual: its forces would move single nodes by up to {} m. The body is too stiff or too slender for the step; use more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`", number(*left))]
+        #[error("a real-time step used up its budget, or needed so many products that slow motions may have a large residual: the residual forces would move single nodes by up to {} m. The body is too stiff or too slender for the step; use more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`", number(*left))]
         CutOff { left: f64 },
         "statics.blurred"
-        #[error("an equilibrium was found in which forces are as small as their rounding errors, but the residual could still move nodes by up to {} m: positions have sixteen digits, which is too few for a body so slender, cells so thin or an origin so far away; smaller details of the result are meaningless", number(*error_estimate))]
+        #[error("an equilibrium was found in which forces are as small as their rounding errors, but the residual could still move nodes by up to {} m. Positions have sixteen digits, which is too few for such a slender body, such thin cells or such a distant origin. Smaller details of the result are meaningless", number(*error_estimate))]
         #[hint("use cells that are shorter relative to their thickness, or move the scene to the origin")]
         Estimated { error_estimate: f64 },
         "conditioning"
@@ -223,7 +223,7 @@ messages! {
         #[hint("use more substeps, {help}{}", if_any(unfold))]
         Inverted { time: f64, cells: InvertedCells, cell: u32, body: String, ratio: f64, help: CellHint, unfold: Option<UnfoldHint> },
         "cells.other_balance"
-        #[error("at t = {} s, {} account for: an equilibrium that is not the rest shape, but snapped through, folded, inverted or twisted; the first is body `{body}` with {} J, of which {} J are accounted for, V/V₀ = {}, and cell {cell} with J = {}", number(*time), bodies_hold(*count), rounded(*energy, 4), rounded(*accounted, 4), rounded(*volume, 4), rounded(*ratio, 4))]
+        #[error("at t = {} s, {} account for. Such an equilibrium is not the rest shape, but snapped through, folded, inverted or twisted. The first is body `{body}` with {} J, of which {} J are accounted for, and V/V₀ = {}; its cell {cell} has J = {}", number(*time), bodies_hold(*count), rounded(*energy, 4), rounded(*accounted, 4), rounded(*volume, 4), rounded(*ratio, 4))]
         #[hint("if this is not intended, start from the rest shape, with more damping or more substeps{}", if_any(unfold))]
         OtherBalance { time: f64, count: u64, body: String, energy: f64, accounted: f64, volume: f64, cell: u32, ratio: f64, unfold: Option<UnfoldHint> },
         "law.turned"
@@ -241,7 +241,7 @@ messages! {
         #[error("`{integrator}` has no stable step for body `{body}` (ω = {} rad/s): a motion grows as exp({} t)", number(*omega), number(*growth))]
         NoStableStep { integrator: &'static str, body: String, omega: f64, growth: f64 },
         "step.outgrown"
-        #[error("at t = {} s, the largest stable step of body `{body}` had fallen to {} s, below h = {} s: compressed or stretched parts are stiffer than at rest; substeps >= {substeps} are stable there", number(*time), number(*limit), number(*h))]
+        #[error("at t = {} s, the largest stable step of body `{body}` had fallen to {} s, below h = {} s: compressed or stretched parts are stiffer than at rest; substeps >= {substeps} are stable in this state", number(*time), number(*limit), number(*h))]
         Outgrown { time: f64, body: String, limit: f64, h: f64, substeps: f64 },
     }
 }

@@ -122,7 +122,7 @@ opruga_math::messages! {
 opruga_math::terms! {
     /// What helps if a recording cannot continue.
     pub enum TapeHint = "part.tape_hint" {
-        RunEnded = "the run has ended here; --resume continues from its checkpoint, with --record to another file",
+        RunEnded = "the run ended here; --resume continues from its checkpoint, and --record then needs another file",
     }
 }
 

@@ -261,7 +261,7 @@ fn limits_are_checked_before_memory_is_taken() {
             scene(
                 "shape = { kind = \"ring\", radius = 1, vertices = 50000 }\ncopies = { count = [3000], spacing = [1, 1] }",
             ),
-            "error[limit.memory]: the scene would take about 18028000000 bytes or more",
+            "error[limit.memory]: the scene would take at least about 18028000000 bytes",
         ),
         (
             scene(
@@ -327,7 +327,7 @@ fn calls_that_make_no_sense_are_explained() {
         (vec!["run", "pressures", "--seconds", "1e99"], "allowed: 0 to 1e9"),
         (vec!["run", "--threads", "-1"], "error: invalid value '-1' for '--threads <THREADS>': -1 is not in 1..=256"),
         (vec!["run", "--seconds", "-1"], "error: --seconds is -1; allowed: 0 to 1e9"),
-        (vec!["run", "--fps", "-1"], "error: --fps is -1; allowed: numbers above 0 up to 240"),
+        (vec!["run", "--fps", "-1"], "error: --fps is -1; allowed: numbers above 0, at most 240"),
         (vec!["run", "--thread", "2"], "--threads"),
         (vec!["bench", "vertices", "--threads", "1000"], "1000"),
     ];

@@ -123,7 +123,7 @@ messages! {
         "mesh.duplicate_node" #[error("two nodes have the number {number}")] #[value("{number}")]
         #[allowed("a different number for every node")]
         NodeTwice { number: u64 },
-        "mesh.components" #[error("some nodes have {before} numbers `{name}`, others have {components}")] #[value("{components}")] #[allowed("{before}")]
+        "mesh.components" #[error("`{name}` has {before} numbers at some nodes and {components} at others")] #[value("{components}")] #[allowed("{before}")]
         Components { before: usize, name: String, components: usize },
         "mesh.index" #[error("element {element} names node {node}, which does not exist")] #[value("{node}")] #[allowed("{listed}")]
         NoNode { element: u64, node: u64, listed: Listed },

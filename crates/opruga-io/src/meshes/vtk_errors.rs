@@ -47,7 +47,7 @@ messages! {
         LastOffset { offset: i128, wanted: i128 },
         "vtk.size" #[error("a cell reaches from {start} to {end}")] #[value("{end}")] #[allowed("{start} to {most}")]
         Reach { start: i128, end: i128, most: i128 },
-        "vtk.size" #[error("a cell has {nodes} nodes, but {there} follow")] #[value("{nodes}")] #[allowed("at most {there}")]
+        "vtk.size" #[error("a cell has {nodes} nodes, but only {there} follow")] #[value("{nodes}")] #[allowed("at most {there}")]
         Follow { nodes: i128, there: usize },
         "vtk.size" #[error("numbers follow the last cell: {numbers}")] #[value("{size}")] #[allowed("{wanted}")]
         BehindCells { numbers: usize, size: u64, wanted: u64 },

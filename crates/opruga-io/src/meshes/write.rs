@@ -65,7 +65,7 @@ opruga_math::messages! {
         "mesh.write" #[error("cells of second order are not written to {format} files")] #[value("{cells}")] #[allowed("linear cells")]
         #[hint("`.msh`, `.vtk` and `.vtu` files can store them")]
         SecondOrder { format: &'static str, cells: usize },
-        "mesh.write" #[error("TetGen has no quadrilaterals or hexahedra")] #[value("{cells}")] #[allowed("triangles or tetrahedra")]
+        "mesh.write" #[error("a TetGen file cannot contain quadrilaterals or hexahedra")] #[value("{cells}")] #[allowed("triangles or tetrahedra")]
         Boxes { cells: usize },
     }
 }

@@ -95,7 +95,7 @@ messages! {
         AngleInSpace {},
         "part.scene_allowed" #[error("the axis times the angular speed about it in rad/s: three numbers")]
         SpinInSpace {},
-        "part.scene_allowed" #[error("1 to {dimension} whole numbers from 1")]
+        "part.scene_allowed" #[error("1 to {dimension} whole numbers, each at least 1")]
         Counts { dimension: usize },
         "part.scene_allowed" #[error("exactly one of {fields}")]
         OneOf { fields: String },
@@ -292,7 +292,7 @@ messages! {
     /// Errors in a command.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CommandError {
-        "scene.missing" #[error("`until` is missing: a path of one point does not say when the drag ends")]
+        "scene.missing" #[error("`until` is missing: a path of one point does not define when the drag ends")]
         #[allowed("a time after {at}")] #[hint("a path of several points ends the drag with its last one")]
         NoEnd { at: f64 },
         "scene.range" #[error("the command ends at {until} s, before it begins at {at} s")] #[value("{until}")] #[allowed("a time from {at}")]
@@ -364,8 +364,8 @@ messages! {
         RecordedTwice { word: &'static str },
         "scene.unknown_word" #[error("`record` contains {value}")] #[value("{value}")]
         Records { value: String },
-        "scene.no_stress" #[error("`{word}` is recorded for `{body}`, none of whose models has a stress")] #[value("{word}")]
-        #[allowed("bodies with a model {kinds}")] #[hint("`reaction` and `contact` are forces, which every body has")]
+        "scene.no_stress" #[error("`{word}` is recorded for `{body}`, none of whose models computes stress")] #[value("{word}")]
+        #[allowed("bodies with a model of the kind {kinds}")] #[hint("`reaction` and `contact` are forces, which every body has")]
         NoStress { word: &'static str, body: String, kinds: String },
         "scene.selector" #[error("a selector must have exactly one key, but this one has {count}")] #[value("{value}")]
         #[hint("combine sets with {{ and = [ … ] }} or {{ or = [ … ] }}")]

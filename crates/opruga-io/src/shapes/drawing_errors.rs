@@ -111,7 +111,7 @@ messages! {
         #[value("{count}")]
         Styled { count: usize },
         "svg.fill_rule" #[error("{} no `fill-rule` and would have fewer holes under the non-zero rule", counted(*count as u64, "shape names", "shapes name"))] #[value("{count}")]
-        #[hint("`fill-rule=\"evenodd\"` or `fill-rule=\"nonzero\"` in the file says which is meant")]
+        #[hint("`fill-rule=\"evenodd\"` or `fill-rule=\"nonzero\"` in the file determines which rule applies")]
         FillRule { count: usize },
     }
 
@@ -151,8 +151,8 @@ messages! {
         NoFeature { feature: String },
         "shape.no_area" #[error("the map contains no polygon")] #[value("0")]
         NoPolygon {},
-        "map.range" #[error("({x}, {y}) is not a place on the globe")] #[value("{x}, {y}")]
-        #[allowed("latitudes from -{most} to {most}, longitudes from -540 to 540")] #[hint("{projection} takes coordinates as they are")]
+        "map.range" #[error("({x}, {y}) is not a point on the globe")] #[value("{x}, {y}")]
+        #[allowed("latitudes from -{most} to {most}, longitudes from -540 to 540")] #[hint("{projection} uses coordinates as they are")]
         Range { x: f64, y: f64, most: f64, projection: Setting },
         "json.syntax" #[error("{reason}")] #[value("{found}")]
         Json { reason: String, found: String },

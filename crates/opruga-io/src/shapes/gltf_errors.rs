@@ -72,7 +72,7 @@ messages! {
     pub(crate) enum GltfNotice {
         "gltf.scenes" #[error("{} left out", counted(*count as u64, "other scene is", "other scenes are"))] #[value("{count}")]
         Scenes { count: usize },
-        "gltf.skin" #[error("{} left out", counted(*count as u64, "skin, by which vertices follow bones, is", "skins, by which vertices follow bones, are"))] #[value("{count}")]
+        "gltf.skin" #[error("{} left out", counted(*count as u64, "skin, which makes vertices follow bones, is", "skins, which make vertices follow bones, are"))] #[value("{count}")]
         Skins { count: usize },
         "gltf.morph" #[error("morph targets of {} left out", counted(*count as u64, "part are", "parts are"))] #[value("{count}")]
         Morphs { count: usize },

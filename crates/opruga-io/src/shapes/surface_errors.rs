@@ -36,7 +36,7 @@ messages! {
         "mesh.degenerate_face" #[error("a face crosses or touches itself, or encloses nothing")]
         #[allowed("{CORNERS}")]
         Crossing {},
-        "mesh.degenerate_face" #[error("a face is far from flat: a corner is {off} of the size of the face away from its plane")]
+        "mesh.degenerate_face" #[error("a face is far from flat: the distance of a corner from its plane is {off} of the size of the face")]
         #[allowed("{CORNERS}")]
         Bent { off: String },
     }

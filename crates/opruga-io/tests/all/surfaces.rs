@@ -153,9 +153,9 @@ fn polygons_are_cut_inside_and_concave_and_bent_ones_counted() {
     let error = refused("a.obj", lifted(3.0).as_bytes());
     assert!(error.code == "mesh.degenerate_face" && error.line.is_some(), "{error}");
     assert!(
-        error
-            .message
-            .starts_with("a face is far from flat: a corner is 0.5 of the size of the face away from its plane"),
+        error.message.starts_with(
+            "a face is far from flat: the distance of a corner from its plane is 0.5 of the size of the face"
+        ),
         "{error}"
     );
 }

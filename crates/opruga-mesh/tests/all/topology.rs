@@ -282,7 +282,7 @@ fn problems_are_listed() {
     mesh.facets[3] = [3, 6];
     let error = MeshError::IndexOutOfRange { element: Element::Facet, index: 3, node: 6, nodes: 6 };
     assert_eq!(mesh.check(), [Problem::Topology(error.clone())]);
-    assert_eq!(error.to_string(), "facet 3 names node 6, but there are 6 nodes");
+    assert_eq!(error.to_string(), "facet 3 names node 6, but there are 6 nodes, numbered from 0");
     mesh.facets[3] = [3, 3];
     assert!(matches!(mesh.validate(), Err(MeshError::RepeatedNode { .. })));
     mesh = good.clone();

@@ -18,7 +18,7 @@ messages! {
         "model.one_of" #[error("`held` needs `pointer`")] #[parameters("held", "pointer")]
         NoPointer {},
         /// Intervals that end before they begin.
-        "model.interval" #[error("each row of `held` is [press, release] with press < release")] #[parameters("held")]
+        "model.interval" #[error("each row of `held` must be [press, release] with press < release")] #[parameters("held")]
         Interval {},
         /// A zero volume, by which the pressure would be divided.
         "run.model" #[error("the published \"volume\" Σ ½ |Δx| |Δy| is zero: every edge lies along an axis")] #[hint("turn the body a little")]

@@ -110,7 +110,7 @@ opruga_math::messages! {
     pub enum FiniteDifferenceWarning {
         /// Edges are crushed or folded.
         "finite_difference.folded"
-        #[error("edges of a curve or a surface are shorter than 0.58 of their length at rest, where their law softens, or are folded back on their neighbours, and may stay so (counted in the last state)")]
+        #[error("edges of a curve or a surface are shorter than 0.58 of their length at rest, where their law softens, or are folded back on their neighbours; they may not recover (counted in the last state)")]
         #[hint("use lower loads, or shorter steps before it folds; springs (`mass_spring`) resist any compression")]
         Folded {},
     }

@@ -41,7 +41,7 @@ messages! {
         NoPotentialOfFaces {},
         /// No thickness for which the out-of-plane stress is zero.
         "run.no_thickness"
-        #[error("cell {cell} has no positive thickness with zero stress across the plane at t = {} s: it is stretched or inverted beyond what its material can follow in plane stress", number(*time))]
+        #[error("no positive thickness of cell {cell} gives zero stress across the plane at t = {} s: the cell is stretched or inverted beyond what its material can follow in plane stress", number(*time))]
         NoThickness { cell: usize, time: f64 },
     }
 }

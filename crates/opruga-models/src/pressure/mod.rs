@@ -348,7 +348,7 @@ opruga_math::messages! {
         Limited {},
         /// A chamber without volume.
         "pressure.inverted"
-        #[error("a chamber enclosed nothing or was inverted; its gas pushes it open, as the reference describes, but an outline that passed through itself may stay so (counted once per substep and body)")]
+        #[error("a chamber enclosed nothing or was inverted; its gas pushes it open, as `opruga reference` describes, but an outline that passed through itself may not recover (counted once per substep and body)")]
         Inverted {},
     }
 }

@@ -36,7 +36,7 @@ messages! {
         /// A substep that differs from the declared one.
         "model.step_changed"
         #[error("the substep is {} s, but `goal_step` applies to the substep of {} s that the scene declares", number(*now), number(*declared))] #[parameters("goal_step")]
-        #[allowed("that step")]
+        #[allowed("a substep of this length")]
         #[hint("`stiffness = {}` means the same with any step", number(*stiffness))]
         StepChanged { now: f64, declared: f64, stiffness: f64 },
         /// The reason why the published scheme has no potential, as a part of a refusal.

@@ -291,7 +291,7 @@ fn refusals() {
     );
     assert_eq!(
         refused(values!(as_published, pointer: &PATH, held: &[[0.1, 0.05]])),
-        "model.interval as_published: each row of `held` is [press, release] with press < release"
+        "model.interval as_published: each row of `held` must be [press, release] with press < release"
     );
     assert_eq!(
         refusal(&Mesh::icosphere(1.0, 1).unwrap(), &AsPublished, values!(as_published)),

@@ -156,7 +156,7 @@ impl Language {
             ),
             Report::Scaled(by) => either!(
                 self,
-                "a body cannot be scaled by {by}; allowed: above 0",
+                "a body cannot be scaled by {by}; allowed: factors above 0",
                 "tijelo se ne može povećati {by} puta; dopušteno: više od 0"
             ),
             Report::NoDifference(about) => either!(
@@ -194,7 +194,7 @@ impl Language {
             Report::LinkCopied => self.link_copied().into(),
             Report::AddressTooLong(letters, most) => either!(
                 self,
-                "the scene is too large for an address: {letters} characters; allowed: {most}. Save it as a file",
+                "the scene is too large for a link ({letters} characters; at most {most} are allowed). Save it as a file instead",
                 "prizor je prevelik za adresu: {letters} znakova; dopušteno: {most}. Spremi ga kao datoteku"
             ),
             Report::AddressUnknown(known) => either!(

@@ -264,8 +264,8 @@ substep; obstacles exert none on pinned nodes. With `[contact]`, it also contain
 in the previous substep. `stress` is Cauchy's stress and `volume_ratio` is J: the value at a node is the mean over the finite elements around it, \
 weighted by their volume at rest. The mean over the nodes is written, together with the von Mises stress of this mean. Columns are NAME.x, NAME.y \
 (position), NAME.vx … (velocity), NAME.rx … (reaction), NAME.cx … (contact), NAME.sxx, syy, szz, sxy, in 3D syz, szx, and von_mises (stress, szz in \
-2D across the plane), NAME.volume_ratio. They are NaN while the body does not exist; stress and volume ratio are also NaN while it has no finite \
-elements.",
+2D across the plane), NAME.volume_ratio. They are NaN while the body does not exist; stress and volume ratio are also NaN while no model of the body \
+computes them.",
         &[Field::new(
             "name",
             Allowed::Text,

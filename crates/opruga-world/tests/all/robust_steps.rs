@@ -107,7 +107,7 @@ fn end<const D: usize>(
         return End::Reasoned(reason);
     }
     if let Some(warning) = world.inverted_cells() {
-        assert!(warning.message.contains("of body `body` with J = -"), "{warning:?}");
+        assert!(warning.message.contains("of body `body`, with J = -"), "{warning:?}");
         return End::Reasoned(warning.message);
     }
     let (whole, least) = measure(&world);

@@ -298,7 +298,7 @@ fn a_film_that_cannot_be_is_refused_before_the_run() {
     for fps in ["0", "-1", "nan", "inf", "1e9", "241"] {
         let output = opruga(folder.path(), &["run", "pressures", "--fps", fps]);
         assert_eq!(code(&output), 2, "{fps}: {}", said(&output));
-        assert!(said(&output).contains("allowed: numbers above 0 up to 240"), "{fps}: {}", said(&output));
+        assert!(said(&output).contains("allowed: numbers above 0, at most 240"), "{fps}: {}", said(&output));
     }
     let output = opruga(folder.path(), &["run", "pressures", "--fps", "0.0002", "--seconds", "0.1", "--out", "o"]);
     assert_eq!(code(&output), 0, "{}", said(&output));

@@ -112,7 +112,7 @@ fn parameters_that_make_no_sense() {
         // 72: a drag that would end at its beginning
         (
             ring(16, BALL, "[[command]]\ndo = \"drag\"\nat = 1\nbody = \"b\"\npath = [[1, 0, 0]]"),
-            "error[scene.missing]: `until` is missing: a path of one point does not say when the drag ends",
+            "error[scene.missing]: `until` is missing: a path of one point does not define when the drag ends",
         ),
         (
             ring(16, BALL, "[[command]]\ndo = \"push\"\nat = 1\nuntil = 1\nbody = \"b\"\nforce = [1, 0]"),
