@@ -12,7 +12,7 @@ use opruga_math::{Simd, WIDTH};
 
 const NODES: usize = 1024;
 
-/// Nanoseconds per node and pass, the best of many.
+/// Returns the time per node and pass [ns], the shortest of many.
 fn time(simd: Simd, list: &[Values], height: f64, v: [f64; 2]) -> f64 {
     let contacts = colliders::<2>(list);
     let (mut x0, mut v0) = (Columns::<2>::zeros(NODES), Columns::<2>::zeros(NODES));

@@ -1,5 +1,5 @@
-//! Measures the time of contact in a heap of gas balls in a box, next to that of their free motion: `cargo bench -p
-//! opruga-collide --bench heap`.
+//! Measures the time of contact in a heap of gas balls in a box and, for comparison, the time of their free motion: `cargo
+//! bench -p opruga-collide --bench heap`.
 #![allow(missing_docs)]
 
 mod common;

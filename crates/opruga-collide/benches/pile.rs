@@ -1,5 +1,5 @@
-//! Measures the time of contact in a pile of elastic cubes in a walled box, next to that of their free motion: `cargo bench -p
-//! opruga-collide --bench pile`.
+//! Measures the time of contact in a pile of elastic cubes in a walled box and, for comparison, the time of their free motion:
+//! `cargo bench -p opruga-collide --bench pile`.
 #![allow(missing_docs)]
 
 mod common;

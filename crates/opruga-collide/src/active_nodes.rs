@@ -1,15 +1,15 @@
-//! The nodes of a tile at which a contact is active, and what a node meets.
+//! The nodes of a tile at which a contact is active, and the choice of surfaces that hold a node.
 
 use crate::entries::numbers;
 use opruga_core::tile::TILE;
 use opruga_math::{Register, WIDTH};
 
-/// What a node meets when a collider is processed.
+/// Which surfaces hold a node when a collider is processed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Meets {
-    /// A surface on which it was at the start of the step.
+    /// Only surfaces on which the node was at the start of the step.
     WhatItLiesOn,
-    /// Everything that it is in.
+    /// All surfaces behind which the node is.
     Everything,
 }
 
@@ -17,7 +17,7 @@ pub(crate) enum Meets {
 pub(crate) struct ActiveNodes(pub(crate) [u8; TILE / WIDTH]);
 
 impl ActiveNodes {
-    /// The nodes from index `k + offset` to the end of the pack at `k`: 1 if active, otherwise 0.
+    /// Returns 1 for every active node and 0 for every other one, from index `k + offset` to the end of the pack at `k`.
     #[inline(always)]
     pub(crate) fn numbers(&self, k: usize, offset: usize) -> [f64; WIDTH] {
         let bits = self.0.get(k / WIDTH).copied().unwrap_or(0) >> offset;

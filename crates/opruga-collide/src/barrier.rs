@@ -4,9 +4,9 @@
 //! B = Σ κ m b(g),   b(g) = −(g − r)² ln(g/r) for g < r, else 0
 //! ```
 //!
-//! g [m] is the distance of a vertex and a facet, or of two edges, minus their thickness, and r is the reach. b has two
-//! continuous derivatives and grows without bound as g falls to zero. m fades out pairs of nearly parallel edges, whose closest
-//! points jump. κ [N/m] is the stiffness of the bodies at the pair, so the user need not give one.
+//! g [m] is the distance between a vertex and a facet, or between two edges, minus their thickness, and r is the reach. b has
+//! two continuous derivatives and grows without bound as g falls to zero. The factor m fades out pairs of nearly parallel
+//! edges, whose closest points jump. κ [N/m] is the stiffness of the bodies at the pair, so the user need not give one.
 //!
 //! Only the second derivatives of b are used, κ m b″ ∇g ∇gᵀ: they have no negative eigenvalues, and the next iteration accounts
 //! for the curvature of the distance.
@@ -43,58 +43,59 @@ const KEPT: f64 = 0.1;
 /// The fade-out of nearly parallel edges: the squared sine of their angle, as in the source (2020, section 5.3).
 const PARALLEL: f64 = 1e-3;
 
-/// The stiffness of sticking, relative to that of the pair. The number of rounds for the multipliers depends on its ratio to the
-/// response of the bodies; with 1000 instead, the search for a stack of five blocks alternates between sticking and sliding.
+/// The stiffness of sticking, relative to that of the pair. The ratio of this stiffness to the response of the bodies determines
+/// the number of rounds for the multipliers. With 1000 instead, the search for the equilibrium of a stack of five blocks
+/// alternates between sticking and sliding.
 const STICKING: f64 = 10.0;
 
 /// A pair within reach of the barrier.
 #[derive(Clone, Copy, Debug)]
 pub struct Pressed<const D: usize> {
-    /// Its features; pairs are sorted by it.
+    /// The key of its two features. Pairs are sorted by this key.
     pub id: u64,
     /// Its points; unused entries repeat the first.
     pub points: [u32; 4],
-    /// ∇g = wᵢ n of its points.
+    /// The weights wᵢ of its points, with ∇g = wᵢ n.
     pub weights: [f64; 4],
-    /// From the second feature to the first.
+    /// The unit vector n from the second feature to the first.
     pub normal: [f64; D],
-    /// g [m].
+    /// The gap g [m].
     pub gap: f64,
     /// The energy [J].
     pub energy: f64,
-    /// −κ m b′ [N] and κ m b″ [N/m].
+    /// The normal force −κ m b′ [N].
     pub force: f64,
-    /// See `force`.
+    /// The curvature κ m b″ [N/m].
     pub curvature: f64,
     /// κ b ∂m/∂x of its points [N]: zero except for nearly parallel edges.
     pub fading: [[f64; D]; 4],
-    /// κ [N/m].
+    /// The stiffness κ [N/m].
     pub stiffness: f64,
-    /// µ.
+    /// Coulomb's coefficient µ.
     pub friction: f64,
 }
 
 /// The friction of a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct Rubbing<const D: usize> {
-    /// The pair: its features, points, weights and normal.
+    /// The key of the two features of the pair.
     pub id: u64,
     /// Its points.
     pub points: [u32; 4],
-    /// wᵢ.
+    /// The weights wᵢ of these points.
     pub weights: [f64; 4],
-    /// n.
+    /// The normal n of the pair.
     pub normal: [f64; D],
-    /// µ N [N].
+    /// The largest friction force, µ N [N].
     pub most: f64,
-    /// k [N/m].
+    /// The stiffness of sticking, k [N/m].
     pub stiffness: f64,
-    /// λ [N].
+    /// The multiplier λ [N].
     pub multiplier: [f64; D],
 }
 
 impl<const D: usize> Pressed<D> {
-    /// The friction of the pair, with a multiplier perpendicular to its normal.
+    /// Returns the friction of the pair. Of the multiplier, only the part perpendicular to the normal counts, up to µ N.
     pub fn rubbing(&self, multiplier: [f64; D]) -> Rubbing<D> {
         let Pressed { id, points, weights, normal, .. } = *self;
         let across = subtract(&multiplier, &scaled(&normal, dot(&multiplier, &normal)));
@@ -105,7 +106,7 @@ impl<const D: usize> Pressed<D> {
 }
 
 impl<const D: usize> Rubbing<D> {
-    /// The slip from the displacements of the points since the start of the step [m].
+    /// Returns the slip s [m] that results from the displacements of the points since the start of the step [m].
     pub fn slip(&self, moved: &[[f64; D]]) -> [f64; D] {
         let mut sum = [0.0; D];
         for (p, w) in self.points.iter().zip(&self.weights) {
@@ -113,23 +114,23 @@ impl<const D: usize> Rubbing<D> {
         }
         subtract(&sum, &scaled(&self.normal, dot(&sum, &self.normal)))
     }
-    /// t and its size [N].
+    /// Returns t and its magnitude [N].
     fn pull(&self, slip: &[f64; D]) -> ([f64; D], f64) {
         let pull = add(&self.multiplier, &scaled(slip, self.stiffness));
         (pull, length(&pull))
     }
-    /// The energy [J].
+    /// Returns the friction energy D [J].
     pub fn energy(&self, slip: &[f64; D]) -> f64 {
         let (_, size) = self.pull(slip);
         let inverse = 0.5 / self.stiffness;
         if size <= self.most { size * size * inverse } else { self.most * (2.0 * size - self.most) * inverse }
     }
-    /// −∂D/∂s [N].
+    /// Returns the friction force −∂D/∂s [N].
     pub fn force(&self, slip: &[f64; D]) -> [f64; D] {
         let (pull, size) = self.pull(slip);
         scaled(&pull, -if size > self.most { self.most / size } else { 1.0 })
     }
-    /// ∂²D/∂s², as the direction of t and two values [N/m]: along t, and perpendicular to both t and the normal.
+    /// Returns ∂²D/∂s² as the direction of t and two values [N/m]: along t, and perpendicular to both t and the normal.
     fn curvature(&self, slip: &[f64; D]) -> ([f64; D], [f64; 2]) {
         let (pull, size) = self.pull(slip);
         if size <= self.most {
@@ -137,7 +138,7 @@ impl<const D: usize> Rubbing<D> {
         }
         (scaled(&pull, 1.0 / size), [0.0, self.stiffness * self.most / size])
     }
-    /// ∂²D/∂s² times a relative motion of the pair.
+    /// Returns ∂²D/∂s² times a relative motion of the pair.
     pub fn stiffen(&self, slip: &[f64; D], motion: &[f64; D]) -> [f64; D] {
         let across = subtract(motion, &scaled(&self.normal, dot(motion, &self.normal)));
         let (direction, [along, aside]) = self.curvature(slip);
@@ -156,13 +157,13 @@ pub struct Barrier<const D: usize> {
     /// Boxes around the paths of the points, and the boxes for which the present candidates are valid; empty if there are none.
     boxes: Vec<[[f64; D]; 2]>,
     searched: Vec<[[f64; D]; 2]>,
-    /// The pairs that come within reach on the last paths: features, and whether they are a vertex and a facet.
+    /// The pairs that come within reach on the paths examined last: their features, and whether these are a vertex and a facet.
     close: Vec<([u32; 2], bool)>,
 }
 
 /// The margin around the paths of points within which candidates remain valid, as a fraction of the longest path. Each
-/// correction is shorter than the one before, so that the margin often saves a search; without it, every correction would need
-/// one. The pairs found within reach do not depend on it.
+/// correction is shorter than the one before, so the margin often saves a search. Without a margin, every correction would need
+/// a search. The pairs found within reach do not depend on the margin.
 const MARGIN: f64 = 0.25;
 
 impl<const D: usize> Barrier<D> {
@@ -223,7 +224,7 @@ impl<const D: usize> Barrier<D> {
         margin: f64,
         most: usize,
     ) -> Result<(), Trouble> {
-        // If a margin finds too many pairs, no margin may find few enough.
+        // If there are too many pairs within the margin, there may be few enough without a margin.
         for margin in [margin, 0.0] {
             let wider = |[low, high]: &[[f64; D]; 2]| [low.map(|low| low - margin), high.map(|high| high + margin)];
             self.searched.clear();
@@ -236,7 +237,7 @@ impl<const D: usize> Barrier<D> {
         Err(Trouble::TooMany { found: self.candidates.len() })
     }
 
-    /// Whether the boxes of a pair come within reach on the last paths; pairs that only the margin adds do not.
+    /// Whether the boxes of a pair come within reach on the paths examined last. Pairs that only the margin adds do not.
     fn comes_close(&self, surface: &Surface<D>, distances: [f64; 2], [a, b]: [u32; 2], with_facet: bool) -> bool {
         let at = |p: u32| self.boxes[p as usize];
         let (first, second, points) = if with_facet {
@@ -250,7 +251,7 @@ impl<const D: usize> Barrier<D> {
         (0..D).all(|d| first[0][d] <= second[1][d] + distance && second[0][d] - distance <= first[1][d])
     }
 
-    /// The pairs found: features, and whether they are a vertex and a facet.
+    /// Returns the pairs that the search has found: their features, and whether these are a vertex and a facet.
     fn pairs(&self) -> impl Iterator<Item = ([u32; 2], bool)> + '_ {
         let Candidates { vertex_facet, edge_edge, .. } = &self.candidates;
         vertex_facet.iter().map(|pair| (*pair, true)).chain(edge_edge.iter().map(|pair| (*pair, false)))
@@ -279,15 +280,15 @@ impl<const D: usize> Barrier<D> {
         Pair { points, weights, between }
     }
 
-    /// The first body of a pair, and the second.
+    /// Returns the first and the second body of a pair.
     fn bodies(surface: &Surface<D>, pair: &Pair<D>, with_facet: bool) -> [u32; 2] {
         [pair.points[0], pair.points[if with_facet { 1 } else { 2 }]].map(|p| surface.body[p as usize])
     }
 
-    /// Returns the pairs within reach with the points at x [m], on the last paths.
+    /// Finds the pairs that are within reach when the points are at x [m], a position on the paths examined last.
     ///
     /// # Errors
-    /// [`Trouble::Meet`] if a pair is not apart.
+    /// [`Trouble::Meet`] if the gap of a pair is not positive.
     pub fn press(
         &self,
         surface: &Surface<D>,
@@ -309,7 +310,7 @@ impl<const D: usize> Barrier<D> {
             let gap = distance - law.thickness;
             let stiffness = self.stiffness(&pair.points, with_facet);
             if stiffness == 0.0 {
-                // Pins move both.
+                // Pins determine the motion of both features.
                 continue;
             }
             if gap <= 0.0 || gap.is_nan() {
@@ -346,8 +347,8 @@ impl<const D: usize> Barrier<D> {
         if softness > 0.0 { 1.0 / softness } else { 0.0 }
     }
 
-    /// The fraction of the paths from x to y, which were examined last, that all points may move while each pair keeps a tenth
-    /// of its gap; 1 if nothing is in their way.
+    /// Returns the largest fraction of the paths from x to y along which all points may move while each pair keeps a tenth of
+    /// its gap; 1 if nothing is in the way. These paths must be the ones examined last.
     pub fn free_part(&self, surface: &Surface<D>, laws: &Laws, [x, y]: [&[[f64; D]]; 2]) -> f64 {
         let mut part: f64 = 1.0;
         for (features, with_facet) in self.close.iter().copied() {
@@ -367,8 +368,9 @@ impl<const D: usize> Barrier<D> {
 }
 
 impl<const D: usize> Touching<D> {
-    /// Records the contacts of the barrier in a step of h [s] for reports: pairs and their friction, both ascending, with the
-    /// points at the end. Friction uses the normal forces of the previous round, so it may act on pairs that no longer press.
+    /// Records the contacts of the barrier in a step of h [s] for reports. Takes the pairs and their friction, both ascending,
+    /// and the displacements of the points at the end of the step [m]. Friction uses the normal forces of the previous round,
+    /// so it may act on pairs that no longer press.
     pub fn take_pressed(&mut self, h: f64, pressed: &[Pressed<D>], rubbing: &[Rubbing<D>], moved: &[[f64; D]]) {
         self.rows.clear();
         self.spread.clear();
@@ -406,12 +408,12 @@ struct Pair<const D: usize> {
     between: [f64; D],
 }
 
-/// m of two edges, and its derivatives by their points if they are nearly parallel.
+/// Returns the factor m of two edges and, if they are nearly parallel, its derivatives with respect to their points.
 fn fading<const D: usize>(x: &[[f64; D]], points: &[u32; 4]) -> (f64, Option<[[f64; D]; 4]>) {
     let at = points.map(|p| x[p as usize]);
     let (u, v) = (subtract(&at[1], &at[0]), subtract(&at[3], &at[2]));
     let (uu, vv, uv) = (dot(&u, &u), dot(&v, &v), dot(&u, &v));
-    // sin² of their angle, independent of their lengths.
+    // sin² of the angle between the edges, independent of their lengths.
     let sine = (uu * vv - uv * uv) / (uu * vv);
     if sine >= PARALLEL {
         return (1.0, None);

@@ -7,9 +7,10 @@ use opruga_math::Lane;
 use opruga_mesh::winding_number;
 
 impl<const D: usize> Touching<D> {
-    /// Finds the points inside the closed boundary of another body. The pairs of a step are those that may touch in it, and a
-    /// point deep inside touches nothing. Only points behind the nearest of their candidates are examined; candidates extend only
-    /// to a margin, so deeper points are not found. A nearer facet may not be a candidate, so the whole boundary decides.
+    /// Finds the points inside the closed boundary of another body. The pairs of a step do not include them, because a point deep
+    /// inside touches nothing. A point is examined if it is behind its nearest candidate. Candidates extend only to a margin, so
+    /// deeper points are not found. A facet that is nearer still may not be a candidate, so the whole boundary decides whether
+    /// the point is inside.
     pub(crate) fn find_began_inside(&mut self) {
         self.began_inside.clear();
         self.entangled.clear();
@@ -69,8 +70,8 @@ impl<const D: usize> Touching<D> {
         self.entangled.dedup();
     }
 
-    /// Whether points of one of two bodies were inside the other one at the start of the frame. Edges of such bodies do not form
-    /// pairs: they cross already, and contact between them would lock the bodies together.
+    /// Whether points of one of two bodies were inside the other one at the start of the frame. Edges of two such bodies do not
+    /// form pairs: they cross already, and contact between them would lock the bodies together.
     pub(crate) fn are_entangled(&self, [a, b]: [u32; 2]) -> bool {
         let pair = if a < b { [a, b] } else { [b, a] };
         self.entangled.binary_search(&pair).is_ok()

@@ -20,7 +20,8 @@ impl<const D: usize> Work for Bounds<'_, '_, D> {
         }
         let x = Strip::<D>::new(&x, self.moved.range.start, length);
         let before = Strip::<D>::new(&self.moved.before, 0, length);
-        // Positions before and after, of even and of odd packs, are independent, so that they do not wait for one another.
+        // Four ranges are kept, for positions before and after and for even and odd packs, so that their computations do not
+        // wait for one another.
         let mut ranges = [Range::<P, D>::empty(), Range::empty(), Range::empty(), Range::empty()];
         let mut k = 0;
         while k + 2 * WIDTH <= self.used {

@@ -7,7 +7,8 @@ use crate::surface::Surface;
 use crate::vector::Bounds;
 use opruga_math::{Lane, Simd, WIDTH};
 
-/// Pairs of a vertex and a facet, and in 3D of two edges, whose boxes are closer than a distance; ascending, each once.
+/// Pairs of a vertex and a facet, and in 3D of two edges, whose boxes are closer than a distance, in ascending order, each
+/// once.
 ///
 /// The result depends only on the boxes, not on how they are sorted.
 #[derive(Clone, Debug, Default)]
@@ -69,9 +70,9 @@ impl<const D: usize> Candidates<D> {
     /// Finds all pairs of features with boxes closer than a distance [m] along every axis, given the boxes of the points [m]. The
     /// first distance is for pairs of bodies, the second for pairs with obstacles.
     ///
-    /// `meet` tells whether two bodies, or a body and itself, may touch. Features that share a point, or a node that carries a
-    /// point of both, do not form a pair; nor do facets of obstacles and vertices of bodies whose nodes obstacles hold. Returns
-    /// false if there are more than `most` pairs; the search then ends.
+    /// `meet` returns whether two bodies, or a body and itself, may touch. Two features do not form a pair if they share a
+    /// point, or if a node carries points of both. A facet of an obstacle does not form a pair with a vertex of a body whose
+    /// nodes are held by obstacles. Returns false if there are more than `most` pairs; the search then ends.
     pub fn find(
         &mut self,
         surface: &Surface<D>,
@@ -84,8 +85,8 @@ impl<const D: usize> Candidates<D> {
         self.refresh(surface, boxes, own, distances, most, meet, |_, _| true)
     }
 
-    /// The same for those pairs of bodies, and bodies with themselves, for which `stale` says that their present pairs are
-    /// incomplete; the pairs of others are kept. `own` gives the boxes of points for pairs within one body.
+    /// Searches as [`Self::find`] does, but only between those bodies (and within those) whose present pairs are incomplete
+    /// according to `stale`. All other pairs are kept. `own` gives the boxes of points for pairs within one body.
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn refresh(
         &mut self,
@@ -159,8 +160,8 @@ impl<const D: usize> Candidates<D> {
         complete
     }
 
-    /// Lists the bodies whose boxes are closer than their distance [m], each pair in both orders, and bodies that touch
-    /// themselves.
+    /// Lists the pairs of bodies whose boxes are closer than the distance for such a pair [m], each in both orders. Also lists
+    /// bodies that touch themselves, as pairs of a body with itself.
     fn find_close_bodies(
         &mut self,
         surface: &Surface<D>,
@@ -199,7 +200,7 @@ impl<const D: usize> Candidates<D> {
         }
     }
 
-    /// Collects the features of a body whose boxes are closer than a distance [m] to another body in the first list.
+    /// Collects, in the first list, the features of a body whose boxes are closer than a distance [m] to another body.
     fn choose(
         &mut self,
         features: core::ops::Range<usize>,
@@ -213,7 +214,7 @@ impl<const D: usize> Candidates<D> {
         self.first.extend(own.filter(|(_, own)| meet_boxes(own, &region)));
     }
 
-    /// Calls `visit` with the features of both lists whose boxes overlap.
+    /// Calls `visit` with every feature of the first list and feature of the second list whose boxes overlap.
     fn join(&mut self, mut visit: impl FnMut(u32, u32)) {
         if self.second.len() <= FEW || self.first.len() * self.second.len() <= FEW * WIDTH {
             let Candidates { first, second, columns, simd, .. } = self;
@@ -232,7 +233,7 @@ impl<const D: usize> Candidates<D> {
         self.vertex_facet.len() + self.edge_edge.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no pairs.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,9 +1,9 @@
 //! Continuous collision detection: whether, and when, moving features come closer than a distance.
 //!
 //! Additive steps: features at distance d that approach at a speed of at most l (per step) cannot meet before (d − ξ)/l. The time
-//! advances by nine tenths of that repeatedly, until the distance above ξ is a billionth of its initial value. No polynomial root
-//! is computed, so rounding cannot hide anything: features that meet are always found; features that pass at less than a
-//! billionth of their initial distance count as meeting too.
+//! advances by nine tenths of this bound again and again, until d − ξ has fallen to a billionth of its initial value. No
+//! polynomial root is computed, so rounding cannot hide anything: features that meet are always found. Features that pass at less
+//! than a billionth of their initial distance count as meeting too.
 
 use crate::closest::{closest_of_segments, closest_on_facet, mean};
 use crate::vector::{dot, subtract};
@@ -13,16 +13,16 @@ use opruga_math::Lane;
 const PART: f64 = 0.9;
 
 /// The fraction of the initial distance at which features count as meeting. The source uses a tenth, so that the features stay
-/// apart; here the distance ξ does that, and a tenth would stop features that only pass: in the test queries, 79 instead of 10
-/// (14 with a millionth).
+/// apart. Here the distance ξ keeps them apart, and a tenth would stop features that only pass: 79 of them in the test queries,
+/// instead of 10 (14 with a millionth).
 const LEFT: f64 = 1e-9;
 
 /// The number of steps after which features count as meeting. Features that approach in a straight line take two or three; those
 /// that rotate about one another at a constant distance take the most, since each step advances by at least d/l.
 const MOST_STEPS: usize = 1000;
 
-/// Returns the fraction of the step at which a vertex comes closer to a facet than `distance` [m], or a slightly earlier one;
-/// none if it does not. All points move in straight lines from `[0]` to `[1]`.
+/// Returns the fraction of the step at which a vertex comes closer to a facet than `distance` [m], or a slightly smaller
+/// fraction; none if the vertex stays farther away. All points move in straight lines from `[0]` to `[1]`.
 ///
 /// There are no false negatives. Features that are this close at the start meet at 0.
 ///
@@ -42,7 +42,8 @@ pub fn vertex_meets_facet<const D: usize>(
     })
 }
 
-/// Returns the fraction of the step at which two edges come closer than `distance` [m], as [`vertex_meets_facet`].
+/// Returns the fraction of the step at which two edges come closer than `distance` [m], as [`vertex_meets_facet`] does for a
+/// vertex and a facet.
 pub fn edge_meets_edge<const D: usize>(a: &[[[f64; D]; 2]; 2], b: &[[[f64; D]; 2]; 2], distance: f64) -> Option<f64> {
     let moves = |e: &[[[f64; D]; 2]; 2]| core::array::from_fn::<_, 2, _>(|k| subtract(&e[1][k], &e[0][k]));
     additive(&a[0], &b[0], moves(a), moves(b), distance, |a, b| {
@@ -60,7 +61,7 @@ fn additive<const D: usize, const M: usize, const N: usize>(
     distance: f64,
     square: impl Fn(&[[f64; D]; M], &[[f64; D]; N]) -> f64,
 ) -> Option<f64> {
-    // The common motion of all points does not bring any closer.
+    // The common motion of all points does not bring them closer to one another.
     let mut common = [0.0; D];
     for motion in moves_a.iter().chain(&moves_b) {
         for d in 0..D {

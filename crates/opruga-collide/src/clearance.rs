@@ -6,15 +6,15 @@ use crate::surface::Surface;
 use crate::vector::{add, length, scaled, subtract};
 use opruga_math::Lane;
 
-/// Known bounds of the distances of candidates.
+/// Known lower bounds on the distances of candidates.
 ///
 /// ```text
 /// d(t) ≥ d(t₀) − (s_a(t) − s_a(t₀)) − (s_b(t) − s_b(t₀))
 /// ```
 ///
-/// s is the path of a body: the largest displacement of its points, summed over the steps. It is relative to the mean
-/// displacement of all points, or to that of the points of the body if both features belong to it. So bodies that fall together,
-/// or rotate little, keep their distances.
+/// s is the path of the body of a feature: the largest displacement of its points, summed over the steps. Displacements are
+/// relative to the mean displacement of all points or, if both features belong to one body, to that of its points. So bodies
+/// that fall together, or rotate little, keep their bounds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clearance<const D: usize> {
     /// The positions at the end of the paths [m].
@@ -24,21 +24,23 @@ pub(crate) struct Clearance<const D: usize> {
     whole: Option<[f64; D]>,
     /// The paths of every body [m]: relative to all bodies, and to itself.
     paths: Vec<[f64; 2]>,
-    /// The largest distance that contact may push a point of every body in this step [m].
+    /// For every body, the largest distance by which contact may push one of its points in this step [m].
     push: Vec<f64>,
-    /// Both paths of every body at the end of this step [m], wherever contact pushes its points.
+    /// Upper bounds on both paths of every body at the end of this step [m], wherever contact pushes its points.
     ends: Vec<[f64; 2]>,
-    /// For every body, the path up to which its own pairs were searched, and the distance around its points [m].
+    /// For every body, its path at the last search for its own pairs, and the distance around its points that this search
+    /// covered [m].
     own: Vec<[f64; 2]>,
-    /// For every body, whether this search includes its own pairs.
+    /// For every body, whether the present search includes its own pairs.
     due: Vec<bool>,
     /// Pairs of a vertex and a facet, and of two edges, in the order of the candidates.
     pairs: [Vec<Known>; 2],
     merged: Vec<Known>,
 }
 
-/// The motion of a body in a step: the sum and the number of the displacements of its points, their mean in the previous step,
-/// and the square of the largest one relative to that mean; the largest of the previous step [m].
+/// The motion of a body in a step: the sum and the number of the displacements of its points; their mean in the previous step;
+/// the square of the largest displacement relative to that mean; and the largest relative displacement of the previous step
+/// [m].
 #[derive(Clone, Copy, Debug)]
 struct Motion<const D: usize> {
     sum: [f64; D],
@@ -57,20 +59,21 @@ struct Known {
     until: f64,
 }
 
-/// The sum of the paths of two bodies relative to all; for both features of one body, relative to that body.
+/// The sum of the paths of both bodies relative to all points. If both features belong to one body, the paths are relative to
+/// that body.
 #[inline(always)]
 fn of_both(paths: &[[f64; 2]], [a, b]: &[u32; 2]) -> f64 {
     let own = usize::from(a == b);
     paths[*a as usize][own] + paths[*b as usize][own]
 }
 
-/// For a body without a search.
+/// The entry of a body whose own pairs have not been searched for.
 const NEVER: [f64; 2] = [0.0, f64::NEG_INFINITY];
 
-/// Paths restart at zero beyond this many margins: up to there, additions to them are rounded to 1e-12 of a margin.
+/// Paths restart at zero beyond this many margins: up to this length, additions to them are rounded to 1e-12 of a margin.
 const LONG: f64 = 1e4;
 
-/// Replaces the known pairs by new ones, ascending.
+/// Replaces the known pairs by new ones, both in ascending order. The bounds of pairs in both lists are kept.
 fn take_list(
     known: &mut Vec<Known>,
     merged: &mut Vec<Known>,
@@ -89,7 +92,7 @@ fn take_list(
     std::mem::swap(known, merged);
 }
 
-/// Distances below this fraction of themselves are rounding.
+/// Stored distances are reduced by this fraction to allow for rounding.
 const ROUNDING: f64 = 1e-9;
 
 impl<const D: usize> Clearance<D> {
@@ -106,8 +109,8 @@ impl<const D: usize> Clearance<D> {
             self.pairs.iter_mut().for_each(Vec::clear);
             return;
         }
-        // Relative to the mean displacements of the previous step: their values affect how tight the bounds are, not their
-        // validity.
+        // Displacements are measured relative to the means of the previous step. The choice of these means affects how tight
+        // the bounds are, not whether they are valid.
         for ((from, to), body) in self.x.iter_mut().zip(x).zip(&surface.body) {
             let Motion { sum, points, mean, square, .. } = &mut self.motions[*body as usize];
             let mut own = 0.0;
@@ -138,8 +141,8 @@ impl<const D: usize> Clearance<D> {
         self.own.fill(NEVER);
     }
 
-    /// How far points of a body may move relative to its mean in this step, plus the distance beyond that at which pairs may be
-    /// requested [m].
+    /// How far points of a body may move relative to their mean in this step, plus the additional distance at which pairs may
+    /// be requested [m].
     fn wanted(&self, body: usize, margin: f64) -> f64 {
         2.0 * self.push[body] + 0.125 * margin
     }
@@ -147,22 +150,23 @@ impl<const D: usize> Clearance<D> {
     /// Whether all pairs that a body may have with itself in this step are known.
     pub(crate) fn covers(&self, body: usize, margin: f64) -> bool {
         let ([path, width], wanted) = (self.own[body], self.wanted(body, margin));
-        // Otherwise a body at rest would keep the pairs of its flight after an impact.
+        // Without the second condition, a body that comes to rest after an impact would keep the pairs of its flight.
         self.paths[body][1] - path + wanted <= width && width <= MOST_WIDTHS * (wanted + 0.5 * margin)
     }
 
-    /// Whether this holds for all bodies.
+    /// Whether [`Self::covers`] holds for all bodies.
     pub(crate) fn covers_all(&self, margin: f64) -> bool {
         (0..self.own.len()).all(|body| self.covers(body, margin))
     }
 
-    /// Sets, for each body whose search is due, the distance around its points within which its own pairs are searched. It
-    /// reaches [`beyond`] this step by the motion of the body relative to itself in `steps` more steps, limited by `margin` [m].
+    /// Sets, for each body whose search is due, the distance around its points within which its own pairs are searched for. This
+    /// distance allows for the motion of the points relative to their mean in this step and, limited by `margin` [m], in `steps`
+    /// more steps (see [`beyond`]).
     pub(crate) fn widen(&mut self, margin: f64, steps: f64) {
         self.due.clear();
         for body in 0..self.own.len() {
-            // A range of which half is used will soon be used up; such bodies are included, so that one search serves many
-            // bodies.
+            // A body that has used half of its range will soon need a search. It is included now, so that one search serves
+            // many bodies.
             let due = !self.covers(body, 3.0 * margin);
             self.due.push(due);
             if due {
@@ -172,18 +176,18 @@ impl<const D: usize> Clearance<D> {
         }
     }
 
-    /// Whether the pairs of a body with itself are searched.
+    /// Whether the present search includes the pairs of a body with itself.
     pub(crate) fn is_due(&self, body: u32) -> bool {
         self.due[body as usize]
     }
 
-    /// The box of a point in which pairs of its own body are searched [m].
+    /// The box around a point in which pairs of its own body are searched for [m].
     pub(crate) fn own_box(&self, surface: &Surface<D>, point: u32) -> [[f64; D]; 2] {
         let width = self.own[surface.body[point as usize] as usize][1];
         [-width, width].map(|side| self.x[point as usize].map(|c| c + side))
     }
 
-    /// Takes the pairs of a search, both lists ascending; the bounds of known pairs are kept.
+    /// Takes over the pairs that a search has found, both lists ascending. The bounds of known pairs are kept.
     pub(crate) fn take(&mut self, surface: &Surface<D>, candidates: &Candidates<D>, margin: f64) {
         let body = |point: u32| surface.body[point as usize];
         let of_facet = |[p, f]: [u32; 2]| [body(p), body(surface.facets[f as usize][0])];
@@ -197,7 +201,7 @@ impl<const D: usize> Clearance<D> {
         take_list(&mut self.pairs[1], &mut self.merged, &candidates.edge_edge, of_edges);
     }
 
-    /// Sets how far contact may push a point of every body at most [m].
+    /// Sets, for every body, the largest distance by which contact may push one of its points [m].
     pub(crate) fn set_push(&mut self, push: &[f64]) {
         self.push.copy_from_slice(push);
         self.ends.clear();
@@ -216,7 +220,7 @@ impl<const D: usize> Clearance<D> {
         *until > of_both(&self.ends, bodies) + distance
     }
 
-    /// Records that a pair is at least this far apart at the start of the step [m].
+    /// Records a lower bound on the distance of a pair at the start of the step [m].
     #[inline]
     pub(crate) fn note(&mut self, list: usize, pair: usize, distance: f64) {
         let known = &mut self.pairs[list][pair];

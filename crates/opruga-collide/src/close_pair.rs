@@ -1,4 +1,4 @@
-//! A pair that comes close, before it is known whether it is solved for.
+//! A pair that comes close in a step. Whether its impulse is solved for is decided later.
 
 use crate::row::Row;
 use crate::spread::Spread;
@@ -20,7 +20,7 @@ pub(crate) struct ClosePair<const D: usize> {
 }
 
 impl<const D: usize> ClosePair<D> {
-    /// Its row, without masses.
+    /// Returns its row, without masses.
     pub(crate) fn into_row(self, spread: &mut Spread, surface: &Surface<D>) -> Row<D> {
         let mut row = Row::new(self.id, (self.points, self.weights), self.normal, self.friction);
         (row.gap, row.target) = (self.gap, self.target);

@@ -1,4 +1,4 @@
-//! Closest points of touching features: a point and a facet, two edges.
+//! Closest points of two features: a point and a facet, or two edges.
 
 use crate::vector::{dot, subtract};
 use opruga_math::Lane;
@@ -65,7 +65,7 @@ pub fn closest_on_facet<const D: usize>(p: &[f64; D], corners: &[[f64; D]; D]) -
     out
 }
 
-/// The weights of the closest point on the sides of a triangle.
+/// The weights of the corners of a triangle at the point of its sides that is closest to `p`.
 fn closest_on_sides<const D: usize>(p: &[f64; D], corners: &[[f64; D]; D]) -> [f64; D] {
     let (mut best, mut least) = ([0.0; D], f64::INFINITY);
     best[0] = 1.0;
@@ -122,7 +122,7 @@ pub fn closest_of_segments<const D: usize>(a: &[[f64; D]; 2], b: &[[f64; D]; 2])
 /// The squared sine below which two edges count as parallel: a hundred times the rounding of the products, 1e-16.
 pub(crate) const PARALLEL: f64 = 1e-14;
 
-/// Σ wᵢ xᵢ.
+/// Returns the weighted sum Σ wᵢ xᵢ of points.
 pub(crate) fn mean<const D: usize, const N: usize>(weights: &[f64; N], points: &[[f64; D]; N]) -> [f64; D] {
     let mut out = [0.0; D];
     for (w, x) in weights.iter().zip(points) {

@@ -35,7 +35,7 @@ pub(crate) enum Part<const D: usize> {
 }
 
 impl<const D: usize> Form<D> {
-    /// Whether it has faces between corners; in the plane, lines.
+    /// Whether it has flat faces (in the plane: straight lines) between corners.
     pub(crate) fn has_faces(&self) -> bool {
         match self {
             Form::Box { inside, .. } => !inside,
@@ -56,7 +56,7 @@ impl<const D: usize> Part<D> {
     }
 }
 
-/// The shape as described, for drawing.
+/// The shape as described in the scene, for drawing.
 #[derive(Clone, Debug)]
 pub(crate) enum Form<const D: usize> {
     HalfSpace { point: [f64; D], normal: [f64; D] },
@@ -73,7 +73,7 @@ pub(crate) enum Form<const D: usize> {
 pub(crate) struct Collider<const D: usize> {
     pub(crate) law: Law,
     pub(crate) motion: Motion<D>,
-    /// Its frame in every step, if it is at rest.
+    /// If the collider is at rest, its frame, which is the same in every step.
     pub(crate) still: Option<Frame<D>>,
     pub(crate) form: Form<D>,
     pub(crate) parts: Vec<Part<D>>,
@@ -90,12 +90,12 @@ pub(crate) struct Reach<const D: usize> {
     pub(crate) bend: f64,
 }
 
-/// Why a collider is refused.
+/// Returns the error for a refused collider.
 fn refused(values: &Values, refusal: Refusal) -> BuildError {
     BuildError::of(values.kind(), refusal)
 }
 
-/// The value of a field, as written in the scene.
+/// Returns the value of a field as written in the scene.
 fn shown(values: &Values, field: &str) -> String {
     values.get(field).map_or("absent".to_string(), Value::to_string)
 }
@@ -155,7 +155,7 @@ impl<const D: usize> Collider<D> {
         let margin = |part: &Part<D>| if let Part::Facets(facets) = part { facets.skin() } else { 0.0 };
         self.parts.iter().map(margin).fold(0.0, |most, margin| margin.larger(most))
     }
-    /// Whether it has faces between corners; in the plane, lines.
+    /// Whether it has flat faces (in the plane: straight lines) between corners.
     pub(crate) fn has_faces(&self) -> bool {
         self.form.has_faces()
     }
@@ -163,11 +163,11 @@ impl<const D: usize> Collider<D> {
     pub(crate) fn is_static(&self) -> bool {
         self.still.is_some()
     }
-    /// The positions that it may take within an interval of time.
+    /// How far it may move from its placement within an interval of time.
     pub(crate) fn reach(&self, from: f64, to: f64) -> Reach<D> {
         Reach { shifts: if self.is_static() { [[0.0; D]; 2] } else { self.motion.shifts(from, to) }, bend: 0.0 }
     }
-    /// The positions that it may take within a step that ends at `time`, relative to nodes that move within a box.
+    /// How far it may move, relative to nodes that stay within a box, in a step that ends at `time`.
     ///
     /// The paths of nodes are straight lines in the rotating frame. The straight line in space, (1 − s) T(0) a + s T(1) b,
     /// deviates from T(s) ((1 − s) a + s b) by at most φ |b − a|/4 + φ² r/8 for an angle φ and radius r.
@@ -356,7 +356,7 @@ fn capsule<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     if !(square > 1e-280 && square.is_finite()) {
         return Err(refused(values, Refusal::NoAxis { a: shown(values, "a"), b: shown(values, "b") }));
     }
-    // The coordinate axis that is closest to perpendicular, made exactly so.
+    // The coordinate axis that is closest to perpendicular to the segment, made exactly perpendicular.
     let mut least = 0;
     for d in 1..D {
         if along[d].abs() < along[least].abs() {
@@ -398,7 +398,8 @@ fn convex<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     let flat = || if D == 2 { Refusal::NoArea { count } } else { Refusal::NoVolume { count } };
     let (facets, faces) = Facets::convex(&points).map_err(|_| refused(values, flat()))?;
     let form = if D == 2 {
-        // Faces are in clockwise order; their second corners are the polygon counterclockwise.
+        // Each face runs clockwise, but the faces are listed counterclockwise: their second corners form the polygon
+        // counterclockwise.
         Form::Polygon { points: faces.iter().map(|f| points[f[1]]).collect() }
     } else {
         Form::Triangles {

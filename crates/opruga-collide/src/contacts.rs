@@ -1,4 +1,4 @@
-//! All colliders against the nodes of a tile.
+//! The contact of the nodes of a tile with all colliders.
 
 use crate::active_nodes::{ActiveNodes, Meets};
 use crate::bounds::Bounds;
@@ -30,7 +30,8 @@ fn of_space(colliders: Arc<Colliders<3>>) -> Arc<dyn Contacts<3>> {
 #[derive(Clone, Debug)]
 pub struct Colliders<const D: usize> {
     all: Arc<[Collider<D>]>,
-    /// Whether colliders with faces do not hold nodes, so that bodies meet their faces like the faces of other bodies.
+    /// Whether colliders with faces leave nodes free, because bodies meet their faces in the same way as the faces of other
+    /// bodies.
     without_faces: bool,
 }
 
@@ -48,7 +49,7 @@ impl<const D: usize> Colliders<D> {
         }
         Ok(Colliders { all: colliders.into(), without_faces: false })
     }
-    /// The same colliders, but those with faces do not hold nodes. Surfaces keep their numbers.
+    /// Returns the same colliders, except that those with faces do not hold nodes. Surfaces keep their numbers.
     pub fn without_faces(&self) -> Colliders<D> {
         Colliders { all: Arc::clone(&self.all), without_faces: true }
     }
@@ -73,20 +74,20 @@ impl<const D: usize> Colliders<D> {
     pub fn len(&self) -> usize {
         self.all.len()
     }
-    /// Whether there is none.
+    /// Whether there are no colliders.
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
-    /// Whether any of them moves.
+    /// Whether any collider moves.
     pub fn any_moves(&self) -> bool {
         self.all.iter().any(|collider| !collider.is_static())
     }
-    /// Whether any of them may touch something that stays within the box with the corners `min` and `max` [m] from `time0` to
-    /// `time1` [s]. It may return true if none does, but never false if one does.
+    /// Whether any collider may touch something that stays within the box with the corners `min` and `max` [m] from `time0` to
+    /// `time1` [s]. It may return true although none does, but never false if one does.
     pub fn reach(&self, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
         (0..self.len()).any(|collider| self.one_reaches(collider, time0, time1, min, max))
     }
-    /// Whether one of them may touch something that stays within a box, as for [`Self::reach`].
+    /// Whether a given collider may touch something that stays within a box, as [`Self::reach`] does for all of them.
     pub fn one_reaches(&self, collider: usize, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
         let collider = &self.all[collider];
         let reach = collider.reach(time0, time1);
@@ -109,12 +110,12 @@ impl<const D: usize> Colliders<D> {
     pub fn pictures(&self, time: f64) -> Vec<Picture<D>> {
         self.all.iter().map(|collider| picture(collider, time)).collect()
     }
-    /// Whether there are solids with edges next to something else.
+    /// Whether there are several parts, at least one of them a solid with edges, so that there may be seams.
     fn has_seams(&self) -> bool {
         let parts = || self.all.iter().filter(|collider| self.holds(collider)).flat_map(|collider| &collider.parts);
         parts().nth(1).is_some() && parts().any(Part::has_edges)
     }
-    /// Whether such solids are so close to the nodes of a tile that nodes may move from one solid to another.
+    /// Whether several such parts are so close to the nodes of a tile that nodes may move from one solid to another.
     fn has_seams_in(&self, moved: &Moved<D>, space: &[[f64; D]; 2]) -> bool {
         let (mut count, mut edges) = (0, false);
         for collider in self.all.iter().filter(|collider| self.holds(collider)) {
@@ -126,8 +127,7 @@ impl<const D: usize> Colliders<D> {
         }
         count > 1 && edges
     }
-    /// Whether it is one plane or ball, which has no corners. In this case one pass over all nodes is enough, and no bounds are
-    /// needed.
+    /// Whether there is only one half-space. In this case one pass over all nodes is enough, and no bounds are needed.
     fn is_simple(&self) -> bool {
         matches!(&*self.all, [one] if matches!(&*one.parts, [Part::HalfSpace(_)]))
     }
@@ -164,12 +164,12 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
         if used == 0 {
             return 0;
         }
-        // The box around the nodes, with which distant colliders are skipped.
+        // The box around the nodes, from which distant colliders are recognised and skipped.
         let simple = self.is_simple();
         let mut space = if simple { None } else { Some(simd.run(Bounds { moved, used })) };
         let (mut active, mut ever) = (ActiveNodes([0; TILE / WIDTH]), false);
-        // First apply the surfaces on which nodes were: a node that slides from one solid onto another is held by the first one
-        // until it is on the second, and does not hit the side of the second. Then apply all colliders more than once, since
+        // First apply the surfaces on which nodes were: the first solid then holds a node that slides onto a second one until
+        // it is on the second, and the node does not hit the side of the second. Then apply all colliders more than once, since
         // one may push a node into another.
         let seams = self.has_seams() && space.as_ref().is_some_and(|space| self.has_seams_in(moved, space));
         let first = seams.then_some(Meets::WhatItLiesOn);

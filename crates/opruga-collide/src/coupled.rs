@@ -14,11 +14,11 @@ pub trait Respond<const D: usize> {
     fn matrix(&mut self, body: usize) -> Option<u64>;
     /// Computes the mean velocities over the step of all points of the body due to unit impulses along every axis at one point
     /// [1/kg]. `out[q][d][i]` is that of point q along axis i due to an impulse along axis d. Bodies and their points are
-    /// numbered in the order in which they were added. Returns whether this is known.
+    /// numbered in the order in which they were added. Returns whether the response is known.
     fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool;
 }
 
-/// Such bodies, and their known columns.
+/// Bodies whose points respond together, and the known columns of their responses.
 #[derive(Clone, Debug, Default)]
 pub struct Coupled<const D: usize> {
     bodies: Vec<Body<D>>,
@@ -31,7 +31,8 @@ pub struct Coupled<const D: usize> {
 #[derive(Clone, Debug)]
 struct Body<const D: usize> {
     points: Range<usize>,
-    /// The matrix with which it responds, once determined in this solution; and the matrix of the present columns.
+    /// The number of the matrix with which it responds, once known in this solution; and the number of the matrix to which the
+    /// columns belong.
     matrix: Option<u64>,
     matrix_of_columns: Option<u64>,
     /// The column of each point; `NONE` if it is not known.
@@ -64,12 +65,12 @@ impl<const D: usize> Coupled<D> {
         });
     }
 
-    /// The number of these bodies.
+    /// The number of bodies whose points respond together.
     pub fn count(&self) -> usize {
         self.bodies.len()
     }
 
-    /// The points of one of them.
+    /// The points of one of these bodies.
     pub fn points_of(&self, body: usize) -> Range<usize> {
         self.bodies[body].points.clone()
     }
@@ -81,7 +82,7 @@ impl<const D: usize> Coupled<D> {
         (body != NONE).then_some(body as usize)
     }
 
-    /// Whether a point belongs to such a body, regardless of how it responds in this step.
+    /// Whether a point belongs to a body of [`Coupled`], regardless of how it responds in this step.
     pub(crate) fn has(&self, point: u32) -> bool {
         self.of_point.get(point as usize).is_some_and(|body| *body != NONE)
     }
@@ -100,7 +101,7 @@ impl<const D: usize> Coupled<D> {
         }
     }
 
-    /// Adds the points of a row, and requests their missing columns; returns whether the body responds.
+    /// Adds the points of a row, and requests their missing columns; returns whether all of their bodies respond.
     pub(crate) fn need(&mut self, (points, weights): Weighted<'_>, respond: &mut dyn Respond<D>) -> bool {
         for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             let Some(number) = self.body_of(points[k]) else { continue };
@@ -220,7 +221,7 @@ impl<const D: usize> Coupled<D> {
         self.followers(weighted, |p| v[p as usize] = [0.0; D]);
     }
 
-    /// Visits the other points with contacts that respond together with those of a row.
+    /// Visits all points with contacts that respond together with the points of a row.
     pub(crate) fn followers(&self, (points, weights): Weighted<'_>, mut visit: impl FnMut(u32)) {
         for k in (0..points.len()).filter(|k| weights[*k] != 0.0) {
             if let Some(body) = self.body_of(points[k]) {

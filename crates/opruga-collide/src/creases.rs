@@ -1,5 +1,4 @@
-//! The corners and edges of the surface of an obstacle. A surface of facets is flat in most places, whatever lines divide it into
-//! facets.
+//! The corners and edges of the surface of an obstacle. Lines that divide a flat face into facets are not edges.
 
 use crate::vector::{add, dot, scaled, subtract};
 use core::array::from_fn;
@@ -8,7 +7,7 @@ use opruga_mesh::Mesh;
 /// The smallest angle between the normals of two facets at an edge, in radians.
 const FLAT: f64 = 1e-9;
 
-/// A surface in which the points within plane faces come first.
+/// A surface whose points are sorted: those within plane faces come first.
 pub(crate) struct Creases<const D: usize> {
     pub(crate) mesh: Mesh<D>,
     pub(crate) within_faces: usize,
@@ -18,7 +17,7 @@ pub(crate) struct Creases<const D: usize> {
 
 impl<const D: usize> Creases<D> {
     /// Finds the corners and edges. The nodes of a body that lies on a plane face already hold it there: lines and points within
-    /// the face would hold it again, along a normal that rounding has rotated.
+    /// the face would hold it a second time, along a normal that rounding has rotated.
     pub(crate) fn of(mut mesh: Mesh<D>) -> Creases<D> {
         // The sides of every facet and wire, and the corner opposite to each; in the plane sides are points.
         let mut sides: Vec<([u32; 2], u32)> = Vec::new();
@@ -50,7 +49,7 @@ impl<const D: usize> Creases<D> {
                 is_corner[b as usize] = true;
             }
         }
-        // Unused points are left out.
+        // Unused points are omitted.
         let mut is_used = is_corner.clone();
         sides.iter().for_each(|(side, _)| side.iter().for_each(|p| is_used[*p as usize] = true));
         let mut order: Vec<u32> = (0..mesh.positions.len() as u32).filter(|p| is_used[*p as usize]).collect();

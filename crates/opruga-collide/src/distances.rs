@@ -5,19 +5,19 @@ use crate::surface::Surface;
 use crate::vector::{dot, scaled, subtract};
 use opruga_math::{Lane, Pack, WIDTH, Work, lanes};
 
-/// A candidate that may touch in a step, by the bound of its distance.
+/// A candidate that may touch in a step according to the bound on its distance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unclear {
     /// Its index among the candidates.
     pub(crate) candidate: usize,
     pub(crate) features: [u32; 2],
-    /// The distance at the start of the step, or a bound of it [m].
+    /// The distance at the start of the step, or a lower bound on it [m].
     pub(crate) distance: f64,
 }
 
-/// Computes the distances of pairs of a vertex and a facet, or of two edges, with the points at `x` [m].
+/// Computes the distances of pairs of a vertex and a facet, or of pairs of edges, with the points at `x` [m].
 ///
-/// The distance of a vertex and a facet is negative if the vertex lies behind the plane of the facet.
+/// The distance between a vertex and a facet is negative if the vertex lies behind the plane of the facet.
 pub(crate) struct Distances<'a, const D: usize> {
     pub(crate) surface: &'a Surface<D>,
     pub(crate) x: &'a [[f64; D]],
@@ -32,7 +32,7 @@ impl<const D: usize> Work for Distances<'_, D> {
     fn run<P: Pack>(self) {
         let Distances { surface, x, pairs, with_facet } = self;
         for eight in pairs.chunks_mut(WIDTH) {
-            // The last pair fills the places that are left over.
+            // Unused lanes repeat the last pair.
             let mut own = [eight[eight.len() - 1].features; WIDTH];
             own.iter_mut().zip(&*eight).for_each(|(own, pair)| *own = pair.features);
             let found = if with_facet {
@@ -68,7 +68,7 @@ fn at<P: Pack, const D: usize>(x: &[[f64; D]], point: impl Fn(usize) -> u32) -> 
     lanes!(P, d => P::from_array(out[d]))
 }
 
-/// A number within 0 and 1; 0 for what is not a number.
+/// Limits a number to the range from 0 to 1; NaN becomes 0.
 #[inline(always)]
 fn unit<S: Lane>(t: S) -> S {
     t.larger(S::zero()).smaller(S::one())
@@ -97,7 +97,7 @@ fn of_vertex_and_facet<S: Lane, const D: usize>(p: &[S; D], corners: &[[S; D]; D
         let normal = cross(&ab, &ac);
         let size = dot(&normal, &normal);
         side = dot(&normal, &ap);
-        // Within all three sides, and not of a triangle without area.
+        // Whether the point is above the inside of the triangle: within all three sides. A triangle without area has no inside.
         let mut within = (S::splat(PARALLEL) * dot(&ab, &ab) * dot(&ac, &ac)).less(size);
         for (from, to) in [(a, b), (b, c), (c, a)] {
             let inwards = cross(&normal, &subtract(to, from));
@@ -109,7 +109,7 @@ fn of_vertex_and_facet<S: Lane, const D: usize>(p: &[S; D], corners: &[[S; D]; D
     S::select(side.less(S::zero()), -distance, distance)
 }
 
-/// The distance of two segments, as [`crate::closest::closest_of_segments`] finds it.
+/// The distance between two segments, computed in the same way as by [`crate::closest::closest_of_segments`].
 #[inline(always)]
 fn of_edges<S: Lane, const D: usize>(a: &[[S; D]; 2], b: &[[S; D]; 2]) -> S {
     let (d1, d2, r) = (subtract(&a[1], &a[0]), subtract(&b[1], &b[0]), subtract(&a[0], &b[0]));

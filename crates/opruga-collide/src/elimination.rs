@@ -7,7 +7,7 @@ use opruga_math::{Pack, WIDTH, Work};
 /// depend on it (`solutions_satisfy_their_equations_at_every_size` covers remaining rows).
 const LINES: usize = 4;
 
-/// to += factor from, for whole packs.
+/// Adds `factor` times `from` to `to`, for whole packs.
 pub(crate) struct Add<'a> {
     pub(crate) from: &'a [f64],
     pub(crate) factor: f64,
@@ -34,7 +34,8 @@ fn add_rows<P: Pack>(from: &[f64], factor: f64, to: &mut [f64]) {
     }
 }
 
-/// Replaces the last column by the solution, by elimination with the largest pivot of each column; returns whether there is one.
+/// Solves the equations by elimination with the largest pivot of each column, and replaces the last column by the solution.
+/// Returns whether there is a solution.
 ///
 /// The products are subtracted from every entry in the order of columns, as if columns were eliminated one by one.
 pub(crate) struct Eliminate<'a> {

@@ -1,4 +1,4 @@
-//! Nodes against obstacles of many facets: one node after the other, with a tree.
+//! The contact of nodes with obstacles of many facets. Nodes are processed one after the other, and a tree finds the facets.
 
 use crate::active_nodes::{ActiveNodes, Meets};
 use crate::collider::Law;
@@ -25,7 +25,7 @@ impl<const D: usize> Surface<f64, D> for Placed<'_, D> {
     }
 }
 
-/// Facets against the nodes of a tile, one node at a time.
+/// Applies facets to the nodes of a tile, one node at a time; returns whether they touched any.
 pub(crate) fn hold_back_by_facets<const D: usize>(
     surface: &Placed<D>,
     law: &Law,
@@ -70,8 +70,8 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
                 break;
             }
             let obstacle = surface.pose.velocity_at(&x);
-            // As for other solids: a node that another contact keeps on the surface passes edges, and a node exactly at the
-            // junction of two solids that no contact keeps is in both of them.
+            // As for other solids: if another contact keeps a node on the surface, the node may pass edges. If no contact keeps
+            // a node that is exactly at the junction of two solids, the node is in both of them.
             if surface.facets.solid && !lies && gap.abs() <= surface.facets.grain().larger(rounding(law, &x)) {
                 if !is_active(active) {
                     if let Some((behind, face)) = entry(surface.facets, surface.margin, &from, &to) {

@@ -91,7 +91,7 @@ pub(crate) struct Facets<const D: usize> {
     grain: f64,
 }
 
-/// The result of a node if nothing is within reach; otherwise a gap and a normal.
+/// The gap of a node if nothing is within reach.
 const NOTHING: f64 = f64::INFINITY;
 
 /// Why facets could not be made.
@@ -104,11 +104,11 @@ pub(crate) enum Flaw {
 }
 
 impl<const D: usize> Facets<D> {
-    /// A thin surface from the corners of its facets.
+    /// Makes a thin surface from the corners of its facets.
     pub(crate) fn surface(corners: &[[[f64; D]; D]]) -> Result<Facets<D>, Flaw> {
         Facets::new(corners, false)
     }
-    /// The convex hull of points.
+    /// Makes the convex hull of points.
     pub(crate) fn convex(points: &[[f64; D]]) -> Result<(Facets<D>, Vec<[usize; D]>), Flaw> {
         let faces = hull::faces(points).ok_or(Flaw::Flat)?;
         let corners: Vec<[[f64; D]; D]> = faces.iter().map(|f| f.map(|p| points[p])).collect();
@@ -168,7 +168,7 @@ impl<const D: usize> Facets<D> {
         }
         true
     }
-    /// The gap to a node that moved from `before` to `x`, and the normal; the gap is infinite if it is above `reach`.
+    /// The gap of a node that moved from `before` to `x`, and the normal. A gap above `reach` may be given as infinite.
     ///
     /// Nodes keep the distance `margin` from the surface.
     pub(crate) fn touch(&self, x: &[f64; D], before: &[f64; D], margin: f64, reach: f64) -> (f64, [f64; D]) {
@@ -188,7 +188,7 @@ impl<const D: usize> Facets<D> {
         {
             return found;
         }
-        // For a node on the surface, there is no direction to the surface.
+        // A node on the surface has no direction towards the surface.
         if gap <= self.grain || gap >= margin + reach {
             return (gap - margin, normal);
         }
@@ -266,7 +266,7 @@ impl<const D: usize> Shape<D> for Facets<D> {
 }
 
 impl<const D: usize> Facet<D> {
-    /// None if the facet is degenerate.
+    /// Makes a facet from its corners; none if it is degenerate.
     fn new(corners: &[[f64; D]; D]) -> Option<Facet<D>> {
         let mut weights = [[0.0; D]; D];
         let mut normal = [0.0; D];

@@ -13,13 +13,13 @@ use crate::vector::{add, dot, scaled, subtract};
 use core::ops::Range;
 use opruga_math::Lane;
 
-/// The cosine of the angle between the normals of a surface and of a facet below which they face each other. The corner of a cube
-/// and a facet that it meets have −0.58, a side that begins next to a flat face has 0, and deformation changes both. Without this
-/// limit, points near an edge of the other body leave sideways while others do not: `cubes_that_begin_inside_one_another_part`
-/// ends with interlocked cubes.
+/// A surface and a facet face each other if the cosine of the angle between their normals is below this number. The cosine is
+/// −0.58 for the corner of a cube and a facet that it meets, and 0 for a side that begins next to a flat face; deformation
+/// changes both. Without this limit, points near an edge of the other body leave sideways while others do not, and the cubes of
+/// `cubes_that_begin_inside_one_another_part` end up interlocked.
 const FACING: f64 = -0.3;
 
-/// Finds the pairs of a part of the candidates that come close in a step of h [s].
+/// Finds, in one part of the candidates, the pairs that come close in a step of h [s].
 pub(crate) struct Finder<'a, const D: usize> {
     pub(crate) touching: &'a Touching<D>,
     pub(crate) found: &'a mut Found<D>,
@@ -39,8 +39,8 @@ impl<const D: usize> Finder<'_, D> {
         self.found.unclear = unclear;
     }
 
-    /// Lists the candidates that may touch by the bounds of their distances, and computes these distances. All candidates of points that began
-    /// inside other bodies are among them, and all of bodies at rest.
+    /// Lists the candidates that may touch according to the bounds on their distances, and computes the distances of these candidates. The
+    /// list includes all candidates of points that began inside other bodies, and all candidates of bodies at rest.
     fn find_unclear(&mut self) {
         let Touching { surface, before: [x, _], candidates, clearance, thickest, began_inside, at_once, .. } =
             self.touching;
@@ -79,7 +79,7 @@ impl<const D: usize> Finder<'_, D> {
             inside |= *distance == f64::NEG_INFINITY;
         }
         if inside {
-            // The nearest facet is needed there, whatever was known before.
+            // For a vertex inside a body, the nearest facet is needed, whatever was known before.
             self.found.around.clear();
             self.found.close[0].truncate(close);
             self.take_gaps_of(self.candidates_of(unclear), 0.0, true);
@@ -99,7 +99,7 @@ impl<const D: usize> Finder<'_, D> {
         self.take_around(false);
     }
 
-    /// All candidates of the vertex of some of them.
+    /// The range of all candidates that have the same vertex as some given ones.
     fn candidates_of(&self, some: &[Unclear]) -> Range<usize> {
         let (all, vertex) = (&self.touching.candidates.vertex_facet, some[0].features[0]);
         let (mut first, mut end) = (some[0].candidate, some[some.len() - 1].candidate + 1);
@@ -112,7 +112,7 @@ impl<const D: usize> Finder<'_, D> {
         first..end
     }
 
-    /// Whether features at a distance stay farther apart than another one [m]. The displacement of a point is at most what contact may push it.
+    /// Whether features at a given distance stay farther apart than another distance [m]. No point moves farther than contact may push it.
     fn stay_apart(&self, distance: f64, other: f64, first: &[u32], second: &[u32]) -> bool {
         let reach =
             |points: &[u32]| points.iter().fold(0.0, |most: f64, p| self.touching.reach.push_of(*p).larger(most));
@@ -138,7 +138,7 @@ impl<const D: usize> Finder<'_, D> {
         if bodies[0] == bodies[1] && gap.gap < 0.0 {
             (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
         }
-        // Edges deep inside one another are often those of opposite sides: vertices and facets determine the direction out.
+        // Edges deep inside one another often belong to opposite sides, so vertices and facets determine the direction out.
         if gap.gap < -law.thickness {
             return;
         }
@@ -146,11 +146,12 @@ impl<const D: usize> Finder<'_, D> {
         self.take_around(true);
     }
 
-    /// Activates pairs, or puts them under watch if they do not meet by themselves. Pairs that cannot move are dropped when they are activated.
+    /// Activates the pairs around a vertex or of two edges. Pairs that do not meet by themselves are only watched. Pairs that
+    /// cannot move are dropped when they are activated.
     ///
-    /// Pairs of edges are inactive at first unless they pressed in the previous step, and so are all pairs of coupled bodies: if
-    /// vertices and facets hold surfaces, few edges press, and only a quarter of the pairs near coupled bodies do. Overlapping
-    /// pairs are active, because they must be separated.
+    /// Pairs of edges are inactive at first unless they pressed in the previous step. The same is true of all pairs if there are
+    /// coupled bodies. Where vertices and facets hold surfaces, few edges press, and of the pairs near coupled bodies only a
+    /// quarter press. Overlapping pairs are active, because they must be separated.
     fn take_around(&mut self, of_edges: bool) {
         let starts_inactive =
             !self.touching.at_once && (of_edges || self.touching.coupled.count() > 0 && !self.touching.coupled.apart);
@@ -173,13 +174,14 @@ impl<const D: usize> Finder<'_, D> {
         }
     }
 
-    /// The largest distance that the surface of a point keeps from that of a body [m]. Obstacles come after bodies.
+    /// The largest distance that the surface of a point keeps from that of a body [m].
     fn thickest_at(&self, point: u32) -> f64 {
         self.touching.thickest[usize::from(self.touching.surface.is_of_obstacle(point))]
     }
 
-    /// Computes the gaps of some candidates of one vertex that may come closer than a distance [m]: of `all`, or without those
-    /// that are known to be farther apart. Returns whether the vertex seems to be inside another body.
+    /// Computes the gaps of those among some candidates of one vertex that may come closer than a distance [m]. Unless `all` is
+    /// set, candidates that are known to be farther apart are skipped. Returns whether the vertex seems to be inside another
+    /// body.
     fn take_gaps_of(&mut self, candidates: Range<usize>, distance: f64, all: bool) -> bool {
         let mut inside = false;
         for k in candidates {
@@ -197,15 +199,16 @@ impl<const D: usize> Finder<'_, D> {
         inside
     }
 
-    /// Computes the gap of a candidate of a vertex if it may come closer than a distance [m], given its present one (negative behind the plane of the
-    /// facet). Returns a bound of the distance, for later steps: −∞ if the vertex seems to be inside another body and has to come out, however deep it is.
+    /// Computes the gap of a candidate of a vertex if it may come closer than a distance [m], given its present distance (negative behind the plane
+    /// of the facet). Returns a lower bound on the distance, for later steps: −∞ if the vertex seems to be inside another body and has to come out,
+    /// however deep it is.
     fn take_gap_of_vertex(&mut self, candidate: usize, distance: f64, mut separation: f64) -> f64 {
         let pair @ [vertex, facet] = self.touching.candidates.vertex_facet[candidate];
         let corners = &self.touching.surface.facets[facet as usize];
         let [own, other] = self.touching.clearance.bodies(0, candidate);
         let law = *self.touching.laws.of(own, other);
         if separation.is_finite() && (own == other || !self.touching.surface.closed[facet as usize]) {
-            // There is no inside.
+            // Such a facet has no inner side.
             separation = separation.abs();
         }
         if self.stay_apart(separation, law.thickness + distance, &[vertex], corners) {
@@ -235,7 +238,7 @@ impl<const D: usize> Finder<'_, D> {
         }
         let mut meets = true;
         if gap.gap > law.thickness && !self.touching.at_once && self.goes_far(&gap, with_facet) {
-            // The present closest points are not those of the impact.
+            // The closest points at the start of the step are not those at the impact.
             self.found.impact.resize(self.touching.surface.points(), [0.0; D]);
             let ends = [&self.touching.before[0][..], &self.touching.after[0]];
             let time = meeting_time(&self.touching.surface, ends, law.thickness, pair, with_facet);
@@ -250,12 +253,14 @@ impl<const D: usize> Finder<'_, D> {
         let ([x0, v0], [x1, v1]) = (&self.touching.before, &self.touching.after);
         let (came, comes) = (-gap.along(v0), -gap.along(v1));
         let end = close.gap + gap.along(x1) - gap.along(x0);
-        // A pair that pressed bodies at rest in their last correction does so again, unless it turns out that it need not.
+        // For bodies at rest, a pair that pressed in the previous correction is assumed to press again; the solution may show
+        // that it does not.
         let presses =
             self.touching.at_once && self.touching.last.binary_search_by_key(&close.id, |(id, ..)| *id).is_ok();
         let meets = meets && (end < 0.0 || close.gap < 0.0 || self.h * comes > close.gap || presses);
         if law.restitution > 0.0 && meets && close.gap > 0.0 {
-            // The pair meets within the step, while the force acts to its end: s² = u² + 2 a g, between the speeds at both ends.
+            // The pair meets within the step, but the force acts until the end of the step. So s² = u² + 2 a g, and s is
+            // limited to the range between the speeds at both ends.
             let square = came * came + 2.0 * (comes - came) / self.h * close.gap;
             let speed = square.larger(0.0).sqrt().smaller(came.larger(comes)).larger(came.smaller(comes));
             if speed > self.touching.laws.rest_speed {
@@ -279,8 +284,8 @@ impl<const D: usize> Finder<'_, D> {
         16.0 * dot(&travel, &travel) > dot(&edge, &edge)
     }
 
-    /// Keeps the relevant rows of one vertex: outside of a body, all facets in front of it, each closest point once; inside, the
-    /// nearest one, through which it leaves.
+    /// Keeps the relevant rows of one vertex. Outside a body, these are all facets in front of which it is, each closest point
+    /// once. Inside a body, it is the nearest facet, through which the vertex leaves.
     fn keep_the_nearest(&mut self) {
         if self.found.around.len() < 2 {
             return;
@@ -302,7 +307,7 @@ impl<const D: usize> Finder<'_, D> {
                 }
                 let others = features(other);
                 let [a, b] = [row, other].map(depth);
-                // The same closest point, or one on the rim of a facet over which the vertex is.
+                // Both rows have the same closest point, or one point is on the rim of a facet over which the vertex is.
                 let within = key.iter().all(|p| *p == u32::MAX || others.contains(p));
                 if within && (key != others || k < j) {
                     keep[j] = false;
@@ -317,8 +322,9 @@ impl<const D: usize> Finder<'_, D> {
         around.retain(|_| keep.next() == Some(&true));
     }
 
-    /// Takes the gap through which a vertex leaves each body in which it began: that of the nearest facet, among some candidates
-    /// of the vertex, that faces the surface at the vertex. If none does, the nearest facet counts.
+    /// For each body in which a vertex began, takes the gap through which the vertex leaves. Among the given candidates of the
+    /// vertex, it is the gap of the nearest facet that faces the surface at the vertex. If no facet does, the nearest facet
+    /// counts.
     fn take_exit(&mut self, candidates: Range<usize>) {
         let x = &self.touching.before[0];
         let normal = |facet: u32| {

@@ -6,10 +6,11 @@ use crate::row::Row;
 use crate::spread::Spread;
 use core::ops::Range;
 
-/// The pairs that come close in a step, of a part of the candidates.
+/// The pairs among one part of the candidates that come close in a step.
 #[derive(Debug, Default)]
 pub(crate) struct Found<const D: usize> {
-    /// The candidates of a vertex and a facet, and of two edges. All of one vertex are in the same part.
+    /// The ranges of the candidates of a vertex and a facet, and of two edges. All candidates of one vertex are in the same
+    /// part.
     pub(crate) part: [Range<usize>; 2],
     pub(crate) rows: Vec<Row<D>>,
     pub(crate) watched: Vec<Row<D>>,
@@ -17,9 +18,10 @@ pub(crate) struct Found<const D: usize> {
     pub(crate) inactive: Vec<Row<D>>,
     pub(crate) spread: Spread,
     pub(crate) close: [Vec<([u32; 2], f64)>; 2],
-    /// The candidates that may touch in the step by the bounds of their distances.
+    /// The candidates that may touch in the step according to the bounds on their distances.
     pub(crate) unclear: [Vec<Unclear>; 2],
-    /// Candidates of a vertex and a facet that were examined again, and bounds of their distances at the start of the step [m].
+    /// Candidates of a vertex and a facet that were examined again, and lower bounds on their distances at the start of the
+    /// step [m].
     pub(crate) notes: Vec<(usize, f64)>,
     /// The pairs of one vertex, or of two edges, and whether they meet by themselves; and which of them are kept.
     pub(crate) around: Vec<(ClosePair<D>, bool)>,

@@ -1,4 +1,4 @@
-//! The distance of two features, and the direction out.
+//! The distance between two features, and the direction in which they separate.
 
 use crate::closest::{PARALLEL, closest_of_segments, closest_on_facet, facet_normal, mean};
 use crate::surface::Surface;
@@ -46,14 +46,14 @@ impl<const D: usize> Gap<D> {
         }
         let within = weights.iter().all(|w| *w > 0.0);
         let outward = || if within { facet_normal(&at) } else { normal_around(surface, x, &corners, &weights) };
-        // Usually the point is outside of all facets around; then their angles do not matter.
+        // Usually the point is outside all surrounding facets; their angles then do not matter.
         let may_be_inside = surface.closed[facet as usize]
             && (within || !lies_outside_of_all(surface, x, (&corners, &weights), &between));
         out.point_along(&between, may_be_inside, &p, outward);
         out
     }
 
-    /// The gap of two edges with the points at `x` [m]; none if their closest points are not inside both, or if they are
+    /// The gap of two edges with the points at `x` [m]; none if a closest point is an end of its edge, or if the edges are
     /// parallel: pairs of a vertex and a facet are then sufficient.
     pub fn of_edges(surface: &Surface<D>, x: &[[f64; D]], a: u32, b: u32) -> Option<Gap<D>> {
         let (ea, eb) = (surface.edges[a as usize], surface.edges[b as usize]);
@@ -74,7 +74,7 @@ impl<const D: usize> Gap<D> {
         let between = subtract(&mean(&[1.0 - s, s], &xa), &mean(&[1.0 - t, t], &xb));
         let sides = |edge: u32| surface.sides[edge as usize];
         let closed = [a, b].iter().all(|e| sides(*e) != [u32::MAX; 2]);
-        // Usually the vector points out of all facets beside the second edge and into those beside the first: then their angles do not matter.
+        // Usually the vector points out of all facets beside the second edge and into those beside the first; their angles then do not matter.
         let points_out = || {
             [(a, -1.0), (b, 1.0)].into_iter().all(|(edge, sign)| {
                 let mut beside = sides(edge).into_iter().filter(|side| *side != u32::MAX);
@@ -84,7 +84,7 @@ impl<const D: usize> Gap<D> {
                 })
             })
         };
-        // Out of the second body, and into the first.
+        // The direction out of the second body and into the first.
         let outward = || {
             let mut sum = [0.0; D];
             for (edge, sign) in [(a, -1.0), (b, 1.0)] {
@@ -95,7 +95,8 @@ impl<const D: usize> Gap<D> {
                     }
                 }
             }
-            // Perpendicular to both edges, if the vector between them has no direction.
+            // The result is perpendicular to both edges, because it also serves as the normal if the vector between them has no
+            // direction.
             let mut cross = [0.0; D];
             for d in 0..D {
                 let (i, j) = ((d + 1) % D, (d + 2) % D);
@@ -142,7 +143,7 @@ impl<const D: usize> Gap<D> {
     }
 }
 
-/// A vector of length 1; upwards for a zero vector.
+/// Scales a vector to length 1; a zero vector becomes the unit vector upwards.
 fn unit<const D: usize>(a: &[f64; D]) -> [f64; D] {
     let l = length(a);
     if l > 0.0 && l.is_finite() {
@@ -153,7 +154,7 @@ fn unit<const D: usize>(a: &[f64; D]) -> [f64; D] {
     out
 }
 
-/// Whether a vector from the corner or edge with nonzero weights points to the outer side of all facets around.
+/// Whether a vector from the corner or edge with nonzero weights points to the outer side of all surrounding facets.
 fn lies_outside_of_all<const D: usize>(
     surface: &Surface<D>,
     x: &[[f64; D]],

@@ -28,8 +28,8 @@ struct Level<const D: usize> {
     count: usize,
 }
 
-/// The last cell along an axis, which contains everything beyond. The number of a cell is exact up to there, and overflows beyond
-/// (`boxes_far_beyond_all_others_are_found`).
+/// The last cell along an axis, which contains everything beyond it. The numbers of cells are exact up to this one and would
+/// overflow beyond it (`boxes_far_beyond_all_others_are_found`).
 const FARTHEST: f64 = 1e15;
 
 /// The largest number of levels; the last one contains all larger boxes.
@@ -154,7 +154,7 @@ impl<const D: usize> Grid<D> {
                 from[d] -= 1;
                 cells *= (to[d] - from[d]) as f64 + 1.0;
             }
-            // A box that covers more cells than there are boxes.
+            // If a box covers more cells than there are boxes, all boxes are examined.
             if cells > level.entries.len() as f64 {
                 found.extend(level.entries.iter().filter(|(other, _)| meets(other)).map(|(_, number)| *number));
                 continue;

@@ -31,8 +31,8 @@ pub(crate) fn meeting_time<const D: usize>(
     }
 }
 
-/// The gap of a pair at the start of the step, with the normal and the weights at a time within it; none for edges that then meet
-/// at an end.
+/// The gap of a pair at the start of the step, with the normal and the weights at a time within it; none for edges that meet at
+/// an end at that time.
 pub(crate) fn impact<const D: usize>(
     surface: &Surface<D>,
     [x0, x1]: [&[[f64; D]]; 2],
@@ -41,7 +41,7 @@ pub(crate) fn impact<const D: usize>(
     [a, b]: [u32; 2],
     with_facet: bool,
 ) -> Option<Gap<D>> {
-    // Normals of corners and edges need the facets around.
+    // The normals of corners and edges depend on the surrounding facets.
     let mut go = |p: u32| {
         let (from, to) = (&x0[p as usize], &x1[p as usize]);
         moved[p as usize] = core::array::from_fn(|d| from[d] + time * (to[d] - from[d]));

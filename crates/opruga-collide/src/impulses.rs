@@ -11,26 +11,26 @@ use core::any::Any;
 use opruga_math::Lane;
 
 /// The sweeps end when the remaining contact velocities are below this fraction of the mean approach velocity of the connected
-/// bodies. At rest, where that is h g, a contact then creeps by less than a hundredth of one step of free fall. The next step
-/// starts from these impulses and processes every contact, so the remainders do not accumulate; only at the beginning of a frame
-/// everything starts anew. A thousandth needs two to three times as many turns and changes the kinetic energy of a heap by less
-/// than a thousandth.
+/// bodies. At rest, where that velocity is h g, a contact then creeps by less than a hundredth of one step of free fall. The
+/// next step starts from these impulses and processes every contact, so the remainders do not accumulate. Only the first step of
+/// a frame starts without impulses. A tolerance of a thousandth needs two to three times as many turns and changes the kinetic
+/// energy of a heap by less than a thousandth.
 const TOLERANCE: f64 = 1e-2;
 
-/// The largest number of sweeps in a step. A sweep passes an impulse through all contacts in its direction, so a column of bodies
-/// converges with the number of its contacts that are connected within one step of the elastic wave: a few.
+/// The largest number of sweeps in a step. A sweep passes an impulse through all contacts in its direction. A column of bodies
+/// therefore needs about as many sweeps as it has contacts that the elastic wave connects within one step: a few.
 const MOST_SWEEPS: usize = 60;
 
-/// The same for contacts of bodies that solve for the end of a step. Forces balance the remainder, so it affects the force: with
-/// 1e-5 the pressure on a patch is wrong by 2e-4 (the rows `contact-patch-…` require 1e-6).
+/// The same fraction for contacts of bodies with implicit integrators. Forces balance the remainder, so it changes these forces:
+/// with 1e-5 the pressure on a patch is wrong by 2e-4 (the rows `contact-patch-…` require 1e-6).
 const COUPLED_TOLERANCE: f64 = 1e-9;
 
-/// The same for bodies at rest, relative to the approach in the present correction: the next one solves for the remainder, whose
-/// approach is smaller. With a tenth, one and a half times as many corrections are needed.
+/// The same fraction for bodies at rest, relative to the approach in the present correction. The next correction solves for the
+/// remainder, whose approach is smaller. With a tenth, one and a half times as many corrections are needed.
 const TOLERANCE_AT_REST: f64 = 1e-3;
 
-/// The largest number of their sweeps. Contacts without friction take up to 30; those that alternate between sticking and sliding
-/// never end, and with 300 sweeps no test or row becomes more accurate.
+/// The largest number of sweeps for bodies with implicit integrators and bodies at rest. Contacts without friction take up to 30.
+/// Contacts that alternate between sticking and sliding never converge, and with 300 sweeps no test or row becomes more accurate.
 const MOST_COUPLED_SWEEPS: usize = 100;
 
 /// The number of sweeps before each step in the subspace of the active contacts: one forward, one backward.
@@ -40,14 +40,14 @@ const SWEEPS_BETWEEN: usize = 2;
 /// between sticking and sliding.
 const MOST_FAILURES: usize = 16;
 
-/// After this many of them the sweeps of bodies at rest end; the next correction continues from there.
+/// After this many such steps, the sweeps of bodies at rest end. The next correction continues from their result.
 const MOST_FAILURES_AT_REST: usize = 2;
 
-/// When rows were solved, and when their velocities have changed, counted in turns of rows. Stored separately from the rows,
-/// which are large.
+/// The times at which rows were last solved and at which their velocities last changed, counted in turns of rows. They are
+/// stored separately from the rows, which are large.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns<const D: usize> {
-    /// The last change of the velocity of each point.
+    /// The turn in which the velocity of each point last changed.
     stamps: Vec<u64>,
     /// The points of the rows, and their last turns; 0 before the first.
     heads: Vec<([u32; 4], u64)>,
@@ -66,7 +66,7 @@ pub(crate) struct Turns<const D: usize> {
 }
 
 /// The mean approach velocity of the contacts of connected bodies [m/s]: where one pair crashes, others may be at rest. Bodies
-/// that are not connected to them have no influence.
+/// that are not connected have no influence.
 #[derive(Clone, Debug, Default)]
 struct Approach {
     /// Another body that is connected to each, or the body itself.
@@ -258,7 +258,8 @@ pub(crate) struct Problem<'a, const D: usize> {
     pub(crate) coupled: &'a mut Coupled<D>,
     pub(crate) v: &'a mut Vec<[f64; D]>,
     pub(crate) turns: &'a mut Turns<D>,
-    /// For bodies at rest, the approach velocity over a whole thickness [m/s]: their sweeps also end with the tolerance of that.
+    /// For bodies at rest, the approach velocity over a whole thickness [m/s]: their sweeps also end at the tolerance relative
+    /// to this velocity.
     pub(crate) at_rest: Option<f64>,
     /// Whether coupled bodies have a budget.
     pub(crate) has_budget: bool,
@@ -307,8 +308,8 @@ fn solve_in_space(problem: Problem<'_, 3>) -> usize {
     solve(problem)
 }
 
-/// A row is skipped as long as none of its velocities has changed by more than the tolerance since its last turn, so sweeps cost
-/// only what is still changing.
+/// A row is skipped as long as none of its velocities has changed by more than the tolerance since its last turn, so the cost of
+/// a sweep depends on the number of rows that still change.
 fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
     let Problem { rows, spread, inverse_mass, coupled, v, turns, at_rest, has_budget, body } = problem;
     turns.join(rows, spread, inverse_mass, coupled);
@@ -377,8 +378,9 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
     (*now - begin) as usize
 }
 
-/// Displacements that separate overlapping pairs by at most `most` [m] without causing other overlaps: the same sweeps, on
-/// positions. `wanted` is the gain of every row [m], and `masses` is the mass of its points if each moves by itself [kg].
+/// Finds displacements that separate overlapping pairs by at most `most` [m] without causing other overlaps, with the same
+/// sweeps applied to positions. `wanted` is the required increase of the gap of every row [m], and `masses` is the mass of its
+/// points if each moves by itself [kg].
 pub(crate) fn part<const D: usize>(
     rows: &[Row<D>],
     spread: &Spread,

@@ -13,7 +13,7 @@ pub struct Buried<const D: usize> {
     pub point: usize,
     /// The number of nodes inside.
     pub count: usize,
-    /// The depth of that node, including its margin [m].
+    /// The depth of the deepest node, including its margin [m].
     pub depth: f64,
     /// A shift after which no node is inside any obstacle [m]; none if none was found.
     pub shift: Option<[f64; D]>,
@@ -44,8 +44,8 @@ impl<const D: usize> Colliders<D> {
             let x = add(point, shift);
             let mut inside = false;
             self.touch(&x, &x, 0.0, INSTANT, -slack, &mut |touch| {
-                // A node on a thin surface is within the margin that keeps rounding from putting it on the other side, and that
-                // grows with the distance from the origin.
+                // A node on a thin surface is within the margin that keeps rounding from putting it on the other side. This
+                // margin grows with the distance from the origin.
                 if -touch.gap <= 1.001 * self.collider(self.collider_of(touch.surface)).margin_of_rounding() {
                     return;
                 }
@@ -59,7 +59,7 @@ impl<const D: usize> Colliders<D> {
         deepest.map(|(number, touch)| (number, touch, count))
     }
 
-    /// The body moved out repeatedly along the normal of its deepest node.
+    /// The shift that results from pushing the body out repeatedly along the normal of its deepest node.
     fn pushed_out(&self, points: &[[f64; D]], slack: f64) -> Option<[f64; D]> {
         let mut shift = [0.0; D];
         for _ in 0..PUSHES {

@@ -1,4 +1,5 @@
-//! Impulses of pairs by the numbers of features within their bodies, for callers that keep them while clusters change.
+//! Impulses of pairs, identified by the numbers of features within their bodies. Callers keep them in this form while clusters
+//! change.
 
 use crate::impact::key;
 use crate::row::OBSTACLE_BIT;
@@ -10,8 +11,8 @@ const EDGES: u32 = 1;
 const OF_OBSTACLE: u32 = 2;
 
 impl<const D: usize> Touching<D> {
-    /// The features of a pair from its number: its kind, then body and feature of the first and of the second one. An obstacle
-    /// that holds nodes is not a body, and has the number of a surface.
+    /// Returns what the number of a pair stands for: its kind, then the body and the number of its first feature, and those of
+    /// its second feature. An obstacle that holds nodes is not a body, and has the number of a surface.
     pub fn features_of(&self, id: u64) -> [u32; 5] {
         let part = |shift: u32| ((id >> shift) & ((1 << 31) - 1)) as u32;
         let (a, b) = (part(31), part(0));
@@ -53,8 +54,8 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Calls `visit` with the pressing pairs, by [`Touching::features_of`], and the impulses of the last step along and across
-    /// their normals [N s].
+    /// Calls `visit` with the pressing pairs, by [`Touching::features_of`], and the impulses of the previous step along and
+    /// across their normals [N s].
     pub fn visit_kept(&self, mut visit: impl FnMut([u32; 5], f64, [f64; D])) {
         for (id, along, across) in &self.last {
             visit(self.features_of(*id), *along, *across);

@@ -30,8 +30,8 @@ pub struct Laws {
     pub rest_speed: f64,
     /// The speed at which overlapping bodies are separated [m/s].
     pub recovery_speed: f64,
-    /// The largest distance that surfaces of other bodies of the scene keep in contact [m], from bodies and from obstacles.
-    /// Because of these, the bodies behave in the same way whichever other bodies are present.
+    /// The largest distances that surfaces of other bodies of the scene keep in contact [m], from bodies and from obstacles.
+    /// With these values the bodies behave in the same way whichever other bodies are present.
     pub thickest_elsewhere: [f64; 2],
 }
 
@@ -41,7 +41,7 @@ impl Laws {
     pub fn of(&self, a: u32, b: u32) -> &PairLaw {
         &self.table[self.class[a as usize] as usize * self.classes + self.class[b as usize] as usize]
     }
-    /// Whether two bodies may touch, or a body itself.
+    /// Whether two bodies, or a body and itself, may touch.
     #[inline]
     pub fn meet(&self, a: u32, b: u32) -> bool {
         if a == b { self.itself[self.class[a as usize] as usize] } else { self.of(a, b).touch }
@@ -63,7 +63,7 @@ impl Laws {
         most
     }
 
-    /// The laws of some of these bodies and obstacles, given by their numbers, ascending.
+    /// Returns the laws of some of these bodies and obstacles, whose numbers are given in ascending order.
     pub fn of_some(&self, numbers: &[u32]) -> Laws {
         let class_of = |number: &u32| self.class[*number as usize];
         let mut used: Vec<u32> = numbers.iter().map(class_of).collect();
@@ -81,8 +81,8 @@ impl Laws {
         }
     }
 
-    /// Adds an obstacle. All bodies touch it with its law, at a distance that is increased by half of their own; obstacles do
-    /// not touch one another.
+    /// Adds an obstacle. All bodies touch it with its law; half of the thickness of the body is added to the distance.
+    /// Obstacles do not touch one another.
     pub fn add_obstacle(&mut self, law: PairLaw) {
         let (before, bodies) = (self.classes, self.classes - self.obstacles);
         let apart = PairLaw { touch: false, ..law };

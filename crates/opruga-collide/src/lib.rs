@@ -27,16 +27,17 @@
 //! its new tangential velocity, and then onto the surface, so sticking nodes do not creep by h² g sin θ per step.
 //!
 //! **Energy.** With v₀ before the step, v₁ after it, v̄ = ½ (v₀ + v₁) and the impulse J of the obstacle, the kinetic energy
-//! changes by (J + hF)·v̄. J·v̄ is work_colliders − loss_contact − loss_friction, J·v_c and −J·(v̄ − v_c) along the normal and
-//! the surface: ½ m (u_n² − u_n'²) and ½ m (u_t² − u_t'²) if no force acts. The rest of the potential energy, F·(h v̄ − x₁ + x₀),
-//! is work_correction: the effect of moving the node back to the surface. A node at rest exchanges no energy. F is the mean force
-//! of the step, m (v − v₀)/h with the velocity v before contact.
+//! changes by (J + hF)·v̄. J·v̄ is work_colliders − loss_contact − loss_friction. Here work_colliders is J·v_c. The two losses
+//! are the parts of −J·(v̄ − v_c) along the normal and along the surface: ½ m (u_n² − u_n'²) and ½ m (u_t² − u_t'²) if no force
+//! acts. The rest of the change of the potential energy, F·(h v̄ − x₁ + x₀), is work_correction: the effect of moving the node
+//! back to the surface. A node at rest exchanges no energy. F is the mean force of the step, m (v − v₀)/h with the velocity v
+//! before contact.
 //!
-//! **Walking.** On a slope only a little less steep than the angle of friction, a vibrating soft body creeps down: where it
-//! presses less it slips, and gravity supplies the energy that damping dissipates. This is not an error of the step: a block of 1
-//! m × 0.5 m on a slope of tan θ = ½ with µ = 0.6, placed on the slope suddenly, walks at 0.0682, 0.0683, 0.0683 and 0.0683 m/s
-//! with steps of 1/3840 s to 1/30720 s, at 0.0681 by velocity Verlet and Runge–Kutta, at 0.0654 with cells of half the size; with
-//! µ = 0.65 it comes to rest. Once at rest it stays at rest, with any damping.
+//! **Walking.** On a slope only a little less steep than the angle of friction, a vibrating soft body creeps down: it slips where
+//! it presses less, and gravity supplies the energy that damping dissipates. This is not an error of the step: a block of 1 m ×
+//! 0.5 m on a slope of tan θ = ½ with µ = 0.6, placed on the slope suddenly, walks at 0.0682, 0.0683, 0.0683 and 0.0683 m/s with
+//! steps of 1/3840 s to 1/30720 s, at 0.0681 by velocity Verlet and Runge–Kutta, at 0.0654 with cells of half the size; with µ =
+//! 0.65 it comes to rest. Once at rest it stays at rest, with any damping.
 //!
 //! **Fast nodes.** A half-space has no far side. A node that could cross a ball, box, capsule or convex body within a step is
 //! stopped where it entered. Polylines and triangle meshes are thin and act on both sides: the segment from the previous to the
@@ -47,7 +48,7 @@
 //! The result for a node depends only on the node: not on the tile, the layout or the vector instructions.
 //!
 //! **Deformable bodies.** [`Surface`] holds the features of bodies that touch one another, [`Candidates`] holds the pairs that
-//! may touch, [`Gap`] is the distance of a pair, and [`vertex_meets_facet`] and [`edge_meets_edge`] tell whether and when a pair
+//! may touch, [`Gap`] is the distance of a pair, and [`vertex_meets_facet`] and [`edge_meets_edge`] find whether and when a pair
 //! meets within a step.
 //!
 //! **Whole obstacles.** If bodies meet one another, corners and edges of obstacles ([`Outline`]) are part of the surfaces, with

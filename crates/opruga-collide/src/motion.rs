@@ -53,7 +53,7 @@ pub(crate) struct Frame<const D: usize> {
 }
 
 impl<const D: usize> Frame<D> {
-    /// The frame of the step of `h` that ends at `time`.
+    /// The frame of the step of length `h` that ends at `time`.
     pub(crate) fn new(motion: &Motion<D>, time: f64, h: f64) -> Frame<D> {
         let pose = motion.pose(time);
         Frame { carry: motion.pose(time - h).carry_to(&pose), pose }
@@ -105,7 +105,7 @@ impl<const D: usize> Pose<D> {
             add(&turned(&self.turn, &subtract(x, &self.pivot)), &self.center)
         }
     }
-    /// The present direction of a direction of the shape at rest.
+    /// The present direction of a vector that is fixed to the shape, given its direction at rest.
     pub(crate) fn direct(&self, n: &[f64; D]) -> [f64; D] {
         if self.upright { *n } else { turned(&self.turn, n) }
     }

@@ -37,8 +37,8 @@ const MOST_PROXIMAL: f64 = 1.0;
 const FIRMER: f64 = 10.0;
 const LOOSER: f64 = 0.03;
 
-/// The number of sweeps between attempts with Newton's method. They determine which contacts stick and slide; by themselves they
-/// do not converge.
+/// The number of sweeps between attempts with Newton's method. Sweeps determine which contacts stick and slide; by themselves
+/// they do not converge.
 const SWEEPS: usize = 10;
 
 /// The largest number of consecutive attempts that do not halve the change of a sweep.
@@ -79,7 +79,7 @@ enum Case<const D: usize> {
 
 struct Equations<const D: usize> {
     contacts: Vec<Contact<D>>,
-    /// W by unknowns, in rows of `stride` numbers.
+    /// The matrix W of all unknowns, in rows of `stride` numbers.
     mobility: Vec<f64>,
     stride: usize,
     /// Velocities without impulses, relative to the targets [m/s].
@@ -112,14 +112,14 @@ pub(crate) fn count_of<const D: usize>(row: &Row<D>) -> usize {
 pub(crate) struct Aim {
     /// The largest change of velocity that a turn of a contact may make at the end [m/s].
     pub(crate) enough: f64,
-    /// The largest number of further sweeps, if only sweeps are used after they have not converged at once; if it is none,
-    /// Newton's method completes the solution.
+    /// What follows if the first sweeps have not converged: at most this number of further sweeps, or Newton's method if it is
+    /// none.
     pub(crate) sweeps: Option<usize>,
 }
 
-/// Finds the impulses with which all contacts obey their laws: sweeps over all contacts, and Newton's method if these have not
-/// converged. Ends when no turn of a contact changes its velocity by more than `enough` [m/s], or when many consecutive
-/// attempts have hardly reduced this change. Returns the number of turns.
+/// Finds the impulses with which all contacts obey their laws. Uses sweeps over all contacts, and Newton's method if sweeps
+/// have not converged. Ends when no turn of a contact changes its velocity by more than `enough` [m/s], or when many
+/// consecutive attempts have hardly reduced this change. Returns the number of turns.
 pub(crate) fn solve<const D: usize>(
     rows: &mut [Row<D>],
     spread: &Spread,
@@ -213,8 +213,8 @@ impl<const D: usize> Equations<D> {
         equations
     }
 
-    /// One turn of every contact: the normal impulse that its bound requires, then the friction that this impulse allows.
-    /// Velocities do not include the restraining term. Returns the largest change of a velocity [m/s].
+    /// Takes one turn of every contact: sets the normal impulse that its bound requires, then the friction that this impulse
+    /// allows. Velocities do not include the restraining term. Returns the largest change of a velocity [m/s].
     fn sweep(&self, impulses: &mut [f64], u: &mut [f64], back: bool) -> f64 {
         let change = |k: usize, by: f64, impulses: &mut [f64], u: &mut [f64]| {
             if by != 0.0 {
@@ -250,8 +250,8 @@ impl<const D: usize> Equations<D> {
         largest
     }
 
-    /// Newton's method with changes counted from some impulses, which are replaced by those with the smallest residual. Returns
-    /// whether it converged.
+    /// Runs Newton's method. Changes are counted from the given impulses, which are then replaced by those with the smallest
+    /// residual. Returns whether it converged.
     fn improve(&mut self, impulses: &mut Vec<f64>, enough: f64) -> bool {
         self.center.clone_from(impulses);
         let mut trial = self.trial(impulses.clone(), self.velocities(impulses));
@@ -295,7 +295,7 @@ impl<const D: usize> Equations<D> {
         out
     }
 
-    /// The change of velocities with impulses, including the restraining term.
+    /// The change of velocities due to a change of impulses, including the restraining term.
     fn by_changes(&self, impulses: &[f64]) -> Vec<f64> {
         let mut out = self.by_impulses(impulses);
         out.iter_mut()
@@ -366,7 +366,8 @@ impl<const D: usize> Equations<D> {
         let mut matrix = vec![0.0; size * stride];
         let mut lines = matrix.chunks_exact_mut(stride);
         for (contact, case) in &present {
-            // Rows of W including the restraining term, and the velocity that is lost at the end.
+            // Rows of W, followed by the velocity that is lost because contacts that are apart lose their impulses. The
+            // restraining term is added below.
             let line_of = |k: usize, line: &mut [f64]| {
                 let from = &self.mobility[(contact.first + k) * self.stride..][..self.stride];
                 line.iter_mut().zip(&unknowns).for_each(|(to, column)| *to = from[*column]);
@@ -390,7 +391,7 @@ impl<const D: usize> Equations<D> {
                     line.copy_from_slice(&of_axes[k]);
                     continue;
                 };
-                // F − µ a d with a = N − ρ uₙ and d the direction of F − r uₜ, over r.
+                // The derivative of (F − µ a d)/r, with a = N − ρ uₙ and with the direction d of F − r uₜ.
                 let [along, across] = contact.mass;
                 let by_normal = contact.friction * direction[k];
                 Simd::best().run(Add { from: normal, factor: by_normal * along / across, to: line });
@@ -492,7 +493,7 @@ mod tests {
         v[0] = [0.0; 3];
         solved(&mut rows, &inverse_mass, &mut v);
         assert!(v.iter().flatten().all(|v| v.abs() < 1e-9), "{v:?}");
-        // The lowest two carry all seven points, which had two impulses of 1 N s from above and below.
+        // The lowest two contacts carry all seven points, in addition to their previous impulses of 1 N s each.
         let carried: f64 = rows[..2].iter().map(|row| row.normal_impulse).sum();
         assert!((carried - 2.0 - 7.0).abs() < 1e-9, "{carried}");
     }

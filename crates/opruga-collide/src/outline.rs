@@ -10,8 +10,8 @@ use opruga_mesh::Mesh;
 
 /// The corners and edges of an obstacle.
 ///
-/// A ball is a corner and a capsule is an edge, with the radius as a distance. Hollow shapes and half-spaces have no corners that
-/// could pass between the nodes of a body.
+/// A ball is represented by a corner and a capsule by an edge, with the radius as part of the contact distance. Hollow shapes and
+/// half-spaces have no corners that could pass between the nodes of a body.
 #[derive(Clone, Debug)]
 pub struct Outline<const D: usize> {
     /// The number of the collider.
@@ -21,9 +21,9 @@ pub struct Outline<const D: usize> {
     pub mesh: Mesh<D>,
     /// The number of points inside plane faces; in the plane, inside straight lines. These belong only to faces.
     pub within_faces: usize,
-    /// In space the edges, ascending, except those between two coplanar faces.
+    /// In space, the edges, ascending. Edges between two coplanar faces are omitted.
     pub edges: Vec<[u32; 2]>,
-    /// Their contact law.
+    /// The contact law of these features.
     pub law: PairLaw,
 }
 

@@ -12,7 +12,7 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// Takes boxes in place of those at hand.
+    /// Replaces the present boxes by new ones.
     pub(crate) fn fill<const D: usize>(&mut self, boxes: &[(u32, Bounds<D>)]) {
         self.padded = boxes.len().next_multiple_of(WIDTH);
         // Nothing overlaps a box from infinity to minus infinity.
@@ -33,7 +33,8 @@ impl Columns {
     }
 }
 
-/// Calls `visit` with the features of both lists whose boxes overlap; `columns` holds the boxes of the second one.
+/// Calls `visit` with every feature of the first list and feature of the second list whose boxes overlap; `columns` holds the
+/// boxes of the second list.
 pub(crate) struct Overlaps<'a, F, const D: usize> {
     pub(crate) first: &'a [(u32, Bounds<D>)],
     pub(crate) second: &'a [(u32, Bounds<D>)],

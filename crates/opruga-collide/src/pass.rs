@@ -1,4 +1,4 @@
-//! One shape against the nodes of a tile.
+//! The contact of the nodes of a tile with one shape.
 
 use crate::active_nodes::{ActiveNodes, Meets};
 use crate::collider::Law;
@@ -24,7 +24,7 @@ impl<S: Lane, T: Shape<D>, const D: usize> Surface<S, D> for Around<'_, T> {
     }
 }
 
-/// One shape against the nodes of a tile, eight at a time.
+/// Applies one shape to the nodes of a tile, eight at a time.
 pub(crate) struct Pass<'a, 'm, T, const D: usize> {
     pub(crate) shape: T,
     pub(crate) law: &'a Law,
@@ -77,7 +77,8 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
         let has_far_side = far < f64::INFINITY;
         let far = far * far;
 
-        // One check of all nodes is usually enough. It takes four packs at once, which need not wait for the previous four.
+        // One check of all nodes is usually enough. It processes four packs at once, so that the computations of one pack need
+        // not wait for those of another.
         let look = Look {
             shape,
             carry: self.carry,
@@ -87,7 +88,8 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
         };
         let lies = self.meets == Meets::WhatItLiesOn;
         let mut k = 0;
-        // A node that was on the surface may be next to it now.
+        // If only nodes that were on the surface are processed, there is no first check: such a node may now be beside the
+        // surface.
         let mut has_candidates = lies;
         while k + 4 * WIDTH <= used && !has_candidates {
             has_candidates = look.any_candidate::<4>(&tile, k, P::first(WIDTH));
@@ -101,7 +103,8 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
             return false;
         }
 
-        // The few candidates, register by register: this needs more values at a time than there are registers.
+        // The few candidates are processed register by register, because a whole pack would need more values at a time than
+        // there are registers.
         let second = SecondLook { shape, law, pose: self.pose, carry: self.carry, h: *h, far, has_far_side, lies };
         let mut taken = Taken { loss_contact, loss_friction, work: work_colliders, correction: work_correction };
         let mut touched = false;
@@ -151,7 +154,7 @@ struct Taken<'a> {
     correction: &'a mut [f64; WIDTH],
 }
 
-/// Adds to the numbers of one register.
+/// Adds the numbers of one register to the sums from index `offset` on.
 #[inline(always)]
 fn add_to<R: Register>(sums: &mut [f64; WIDTH], offset: usize, more: R) {
     let sums = &mut sums[offset..];

@@ -1,4 +1,5 @@
-//! Pairs that would pass through one another within a step whatever was solved for, found on the final motion.
+//! Pairs that would still pass through one another within a step after the impulses have been found. They are found by checking
+//! the final motion.
 
 use crate::gap::Gap;
 use crate::impact::{impact, key, meeting_time};
@@ -35,8 +36,8 @@ impl<const D: usize> Touching<D> {
         found
     }
 
-    /// Whether a pair cannot meet in the step because each of its points travels less than half of its distance at the start [m], with a
-    /// margin for rounding.
+    /// Whether a pair cannot meet in the step because each of its points travels less than half of the distance between its features at
+    /// the start [m], with a margin for rounding.
     fn is_out_of_reach(&self, [a, b]: [u32; 2], with_facet: bool, distance: f64) -> bool {
         let mut most: f64 = 0.0;
         let mut travel = |p: u32| {
@@ -81,7 +82,7 @@ impl<const D: usize> Touching<D> {
             return false;
         }
         let Some(gap) = impact(&self.surface, ends, &mut self.impact, time, pair, with_facet) else { return false };
-        // A pair that touches at the start passes if the end is behind.
+        // A pair that touches at the start passes only if its gap at the end is negative.
         if time == 0.0 && gap.along(&self.end) >= -ROUNDING * h * (1.0 + gap.gap.abs()) {
             return false;
         }
@@ -147,8 +148,8 @@ impl<const D: usize> Touching<D> {
         self.rows.sort_by_key(|row| row.id);
     }
 
-    /// Makes the points of pairs that still pass move rigidly together: x = x₀ + h (c + ω × r), in which no two features pass,
-    /// with the momenta of the points.
+    /// Makes the points of pairs that still pass move rigidly together: x = x₀ + h (c + ω × r). In this motion no two features
+    /// pass. It has the momentum and the angular momentum of the points.
     ///
     /// # Errors
     /// [`Trouble::LedThrough`] if pins and obstacles prevent that.
@@ -181,8 +182,8 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// The rigid motion of the points of a zone: prescribed by pins and obstacles, otherwise with their momentum and angular
-    /// momentum.
+    /// The rigid motion of the points of a zone. Pins and obstacles prescribe it; otherwise it has the momentum and angular
+    /// momentum of the points.
     fn motion_of(&self, points: &[u32], h: f64) -> Option<Zone<D>> {
         let mut led = Led::default();
         for p in points {

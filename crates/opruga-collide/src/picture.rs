@@ -61,7 +61,7 @@ pub enum Picture<const D: usize> {
 }
 
 impl<const D: usize> Picture<D> {
-    /// The same in space, with z = 0 for shapes of the plane.
+    /// Returns the same picture in space, with z = 0 for shapes of the plane.
     pub fn in_space(self) -> Picture<3> {
         let three = |p: [f64; D]| core::array::from_fn(|d| p.get(d).copied().unwrap_or(0.0));
         let all = |points: Vec<[f64; D]>| points.into_iter().map(three).collect();

@@ -1,4 +1,4 @@
-//! How far points may move within a step, and whether the present candidates include all pairs that meet there.
+//! How far points may move within a step, and whether the present candidates include all pairs that meet in it.
 
 use crate::vector::{Bounds, dot, subtract};
 use opruga_math::Lane;
@@ -15,23 +15,24 @@ pub(crate) struct Reach<const D: usize> {
     pub(crate) swept: Vec<Bounds<D>>,
     /// The box of every point for which the present candidates are complete [m]; empty if there are none.
     pub(crate) found_in: Vec<Bounds<D>>,
-    /// The largest of these displacements for every body.
+    /// For every body, the largest displacement that contact may add to the motion of one of its points [m].
     body_push: Vec<f64>,
-    /// For every body, whether boxes of the step are not inside those for which candidates were searched, with a quarter of a
-    /// margin to spare, or whether those are for a faster motion.
+    /// For every body, whether its candidates must be searched for again. This is so if a box of the step is not inside the box
+    /// of the last search with a quarter of a margin to spare, or if that box is far too large because it was made for a faster
+    /// motion.
     stale: Vec<bool>,
-    /// For every body, whether it will soon be stale. A search then covers all of these at once.
+    /// For every body, whether it will soon be stale. The next search covers all such bodies at once.
     due: Vec<bool>,
 }
 
-/// Boxes this many times as wide as they would be now are computed anew: otherwise bodies at rest would keep the candidates of
-/// their flight after an impact (`candidates_of_a_flight_are_dropped_at_rest`). Points that move straight ahead have twice the
-/// width behind them.
+/// A box whose margin is this many times as wide as it would be now is computed anew. Otherwise bodies that come to rest after
+/// an impact would keep the candidates of their flight (`candidates_of_a_flight_are_dropped_at_rest`). The number is above 2
+/// because a point that moves straight ahead has up to twice the margin behind it.
 pub(crate) const MOST_WIDTHS: f64 = 4.0;
 
-/// The distance beyond a step within which candidates are searched for something that moves by `moves` in it [m]: as far as it
-/// moves in `steps` more steps, but at least half a margin and at most a whole one. Otherwise long steps of fast bodies would
-/// make everything around them a candidate (ten times as many for eight falling cubes).
+/// Returns how far beyond the box of a step candidates are searched for [m], for a point or body that moves by `moves` in the
+/// step. This is as far as it moves in `steps` more steps, but at least half a margin and at most a whole one. Otherwise long
+/// steps of fast bodies would make everything around them a candidate (ten times as many for eight falling cubes).
 pub(crate) fn beyond(moves: f64, steps: f64, margin: f64) -> f64 {
     (0.5 * margin).larger((steps * moves).smaller(margin))
 }
@@ -79,24 +80,24 @@ impl<const D: usize> Reach<D> {
         }
     }
 
-    /// Whether all boxes are inside those for which candidates were searched, with a quarter of a margin to spare. Pairs that are
-    /// needed beyond the step are then known, whenever they were searched.
+    /// Whether all boxes are inside those of the last search, with a quarter of a margin to spare. Pairs that are needed slightly
+    /// beyond the boxes of the step are then known too, whenever they were searched for.
     pub(crate) fn is_covered(&self) -> bool {
         !self.stale.contains(&true)
     }
 
-    /// Whether this does not hold for a body.
+    /// Whether the candidates of a body must be searched for again.
     pub(crate) fn is_stale(&self, body: u32) -> bool {
         self.stale[body as usize]
     }
 
-    /// Makes bodies that are due stale.
+    /// Marks all bodies that are due as stale.
     pub(crate) fn take_due(&mut self) {
         self.stale.iter_mut().zip(&self.due).for_each(|(stale, due)| *stale |= due);
     }
 
-    /// Sets the boxes of stale bodies for which candidates are searched: those of the step, extended [`beyond`] it by the motion
-    /// of the points in `steps` more steps, limited by `margin` [m].
+    /// Sets the boxes in which candidates of stale bodies are searched for: the boxes of the step, extended by the motion of the
+    /// points in `steps` more steps (see [`beyond`]), limited by `margin` [m].
     pub(crate) fn widen(&mut self, body: &[u32], margin: f64, steps: f64) {
         let own = self.swept.iter().zip(&self.push).zip(body);
         for (found, ((swept, push), body)) in self.found_in.iter_mut().zip(own) {
@@ -118,7 +119,7 @@ impl<const D: usize> Reach<D> {
         self.stale.fill(true);
     }
 
-    /// Keeps everything, but searches for the candidates of all bodies.
+    /// Makes the next search cover all bodies. The boxes are kept.
     pub(crate) fn look_at_all(&mut self) {
         self.stale.fill(true);
     }

@@ -30,13 +30,13 @@ impl<S: Lane, const D: usize> Surface<S, D> for Face<S, D> {
 pub(crate) struct Meeting<S, const D: usize> {
     /// Position after the free motion [m].
     pub(crate) x: [S; D],
-    /// Velocity after it [m/s].
+    /// Velocity after the free motion [m/s].
     pub(crate) v: [S; D],
     /// Position before the free motion, carried along with the collider [m].
     pub(crate) before: [S; D],
-    /// Position before it [m].
+    /// Position before the free motion [m].
     pub(crate) from: [S; D],
-    /// Mean force of the step on it [N].
+    /// Mean force on the node during the step [N].
     pub(crate) force: [S; D],
     /// Mass [kg].
     pub(crate) mass: S,
@@ -52,7 +52,7 @@ pub(crate) struct Meeting<S, const D: usize> {
     pub(crate) h: S,
 }
 
-/// The node after contact, and its energy balance.
+/// The state of a node after contact, and its energy balance.
 ///
 /// The obstacle gives an impulse J, and the force F has given the impulse hF. With v₀ before the step, v₁ after it and v̄ =
 /// ½(v₀ + v₁), the kinetic energy changes by exactly (J + hF)·v̄; J·v̄ is the work of the motion of the obstacle minus the two
@@ -63,9 +63,9 @@ pub(crate) struct Parting<S, const D: usize> {
     pub(crate) x: [S; D],
     /// Velocity [m/s].
     pub(crate) v: [S; D],
-    /// Energy taken along the normal [J].
+    /// Energy that contact took along the normal [J].
     pub(crate) loss_contact: S,
-    /// Energy taken by friction [J].
+    /// Energy that friction took [J].
     pub(crate) loss_friction: S,
     /// Work of a moving collider [J].
     pub(crate) work: S,
@@ -120,8 +120,8 @@ pub(crate) fn respond<S: Lane, T: Surface<S, D>, const D: usize>(
     let closing = S::both(hit, un.less(zero));
     let speed = S::select(closing, -un, zero);
 
-    // An impact returns a fraction e of the speed. If a node began the step on the surface, or is slower than the rest speed, it
-    // is not an impact: its speed comes from the step itself, from weight or from the body behind it.
+    // An impact returns a fraction e of the speed. If a node began the step on the surface, or is slower than the rest speed,
+    // this is not an impact: its speed comes from the step itself, from weight or from the body behind it.
     let small = rounding(law, &node.before);
     // If another contact has already acted in this step, it has accounted for the effect of the force.
     let weighs = S::both(zero.less(node.mass), node.active.less_or_equal(zero));

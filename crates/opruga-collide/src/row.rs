@@ -9,10 +9,10 @@ use opruga_math::Lane;
 /// The bit in the number of a row for a point and an obstacle that holds it.
 pub(crate) const OBSTACLE_BIT: u64 = 1 << 63;
 
-/// One contact: a lower bound of its normal velocity, and Coulomb friction.
+/// One contact: a lower bound on its normal velocity, and Coulomb friction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<const D: usize> {
-    /// Its features; rows are sorted by it, and it identifies the impulses of the last substep.
+    /// The key of its features. Rows are sorted by this key, and the impulses of the previous substep are found by it.
     pub(crate) id: u64,
     pub(crate) points: [u32; 4],
     pub(crate) weights: [f64; 4],
@@ -26,7 +26,7 @@ pub(crate) struct Row<const D: usize> {
     /// The velocity of an obstacle [m/s]; zero between bodies.
     pub(crate) carry: [f64; D],
     pub(crate) friction: f64,
-    /// The inverse of the inverse mass along the normal, and the smallest one across it [kg]; 0 if nothing can move.
+    /// The effective mass along the normal, and the smallest effective mass across it [kg]; 0 if nothing can move.
     pub(crate) mass: [f64; 2],
     /// Multipliers: the impulse along the normal and that across it [N s].
     pub(crate) normal_impulse: f64,
@@ -38,9 +38,9 @@ pub(crate) struct Row<const D: usize> {
 }
 
 /// The fraction of the mobility of its own points below which a pair cannot move. If obstacles hold all of its points, about
-/// 1e-16 remains, which is rounding; a stiff body of a million nodes moves as a whole, with 1e-6. Half-spaces and round obstacles
-/// hold nodes of implicit bodies in this way. It was made for corners of polylines, which are pairs of their own now, and no test
-/// of contact changes if it is 0.
+/// 1e-16 of it remains, which is rounding. A stiff body of a million nodes moves as a whole and has 1e-6. Half-spaces and round
+/// obstacles hold the nodes of bodies with implicit integrators in this way. The limit was introduced for corners of polylines,
+/// which form their own pairs now. No test of contact changes if it is 0.
 const IMMOBILE: f64 = 1e-12;
 
 impl<const D: usize> Row<D> {
@@ -119,7 +119,7 @@ impl<const D: usize> Row<D> {
         for d in 0..D {
             after[d] -= (u[d] - un * self.normal[d]) * self.mass[1];
         }
-        // Impulses of the last substep may have been along another normal.
+        // Impulses of the previous substep may have been along another normal.
         let along = dot(&after, &self.normal);
         for d in 0..D {
             after[d] -= along * self.normal[d];
@@ -128,7 +128,7 @@ impl<const D: usize> Row<D> {
         if size > most { scaled(&after, most / size) } else { after }
     }
 
-    /// One turn for coupled or carried points, as [`Row::solve`].
+    /// Takes one turn of a row with coupled or carried points, as [`Row::solve`] does for other rows.
     pub(crate) fn solve_coupled(
         &mut self,
         spread: &Spread,
@@ -162,7 +162,7 @@ impl<const D: usize> Row<D> {
         changed
     }
 
-    /// Distributes it over the nodes that carry its points, if any is carried.
+    /// If nodes carry any of its points, distributes the contact over these nodes.
     pub(crate) fn put_into(&mut self, spread: &mut Spread, surface: &Surface<D>) {
         self.spread = spread.put(surface, (&self.points[..=D], &self.weights[..=D]));
     }
@@ -173,13 +173,13 @@ impl<const D: usize> Row<D> {
         if self.spread[1] == 0 { (&self.points[..=D], &self.weights[..=D]) } else { spread.at(self.spread) }
     }
 
-    /// The entry that represents these points outside of the row.
+    /// The entry that represents these points in lists outside the row.
     #[inline]
     pub(crate) fn head(&self) -> [u32; 4] {
         if self.spread[1] == 0 { self.points } else { Spread::head(self.spread) }
     }
 
-    /// Σ wᵢ aᵢ.
+    /// Returns Σ wᵢ aᵢ for its points.
     #[inline]
     pub(crate) fn mean(&self, spread: &Spread, of: &[[f64; D]]) -> [f64; D] {
         mean(self.on(spread), of)
@@ -206,8 +206,8 @@ impl<const D: usize> Row<D> {
         out
     }
 
-    /// One turn of a row that acts on its points: the normal impulse that its bound needs, then the friction that this allows.
-    /// Returns the change of its velocity [m/s].
+    /// Takes one turn of a row that acts on its points: sets the normal impulse that its bound needs, then the friction that
+    /// this impulse allows. Returns the change of its velocity [m/s].
     #[inline(always)]
     pub(crate) fn solve(&mut self, inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) -> f64 {
         // Velocities and inverse masses of its points, which are at most D + 1, are read from memory once.
@@ -257,7 +257,8 @@ impl<const D: usize> Row<D> {
         }
         if changed > 0.0 {
             (self.normal_impulse, self.friction_impulse) = (new, after);
-            // The first point is last: an obstacle has no points, and repeats it.
+            // The first point is written last: a contact with an obstacle has no other points, and its unused entries repeat
+            // the first one.
             for k in (0..=D).rev() {
                 v[self.points[k] as usize] = own[k];
             }
@@ -266,7 +267,7 @@ impl<const D: usize> Row<D> {
     }
 }
 
-/// Σ wᵢ aᵢ of some points.
+/// Returns Σ wᵢ aᵢ for some points.
 #[inline]
 fn mean<const D: usize>((points, weights): Weighted<'_>, of: &[[f64; D]]) -> [f64; D] {
     let mut sum = [0.0; D];

@@ -30,7 +30,8 @@ impl<const D: usize> Touching<D> {
         self.put_passing(h);
     }
 
-    /// Divides the candidates into parts: one, or several if there are threads for them. The result does not depend on it.
+    /// Divides the candidates into parts: one, or several if there are threads for them. The result does not depend on their
+    /// number.
     fn divide(&self, all: &mut Vec<Found<D>>) {
         let pairs = &self.candidates.vertex_facet;
         let lists = [pairs.len(), self.candidates.edge_edge.len()];
@@ -59,7 +60,7 @@ impl<const D: usize> Touching<D> {
         all.truncate(number);
     }
 
-    /// Adds the pairs of a part of the candidates to those of the parts before.
+    /// Adds the pairs found in a part of the candidates to those of the previous parts.
     fn take_in(&mut self, found: &mut Found<D>) {
         let first = self.spread.append(&mut found.spread);
         if first > 0 {
@@ -82,7 +83,7 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Gives the memory of the lists to a part of the candidates, which gives it back with what it finds.
+    /// Lends the memory of the lists to a part of the candidates, which returns it with the pairs that it finds.
     fn lend_lists(&mut self, found: &mut Found<D>) {
         std::mem::swap(&mut self.rows, &mut found.rows);
         std::mem::swap(&mut self.watched, &mut found.watched);
@@ -108,7 +109,7 @@ impl<const D: usize> Touching<D> {
     }
 }
 
-/// The least number of candidates for a part of its own: they take some ten microseconds.
+/// The least number of candidates in a part. So many candidates take some ten microseconds.
 const LEAST_PART: usize = 1024;
 
 /// Moves all of a list behind another one.

@@ -1,4 +1,4 @@
-//! The pairs of a step: all that may meet in it, whatever contact does.
+//! The search for all pairs that may meet in a step, whatever contact does.
 
 use crate::touching::{Touching, Trouble};
 
@@ -7,7 +7,7 @@ impl<const D: usize> Touching<D> {
     pub(crate) fn begin_search(&mut self, h: f64) {
         let [x0, x1] = [&self.before[0], &self.after[0]];
         if self.at_once {
-            // If contact forces are not yet those of the balance, the free motion alone could lead bodies anywhere.
+            // As long as the contact forces are not those of the equilibrium, the free motion alone could take bodies anywhere.
             self.reach.begin(&self.surface.body, [x0, x0], self.thickest[0] + self.margin, self.margin, 0.0);
         } else {
             self.reach.begin(&self.surface.body, [x0, x1], h * self.laws.recovery_speed, self.margin, STEPS);
@@ -37,7 +37,7 @@ impl<const D: usize> Touching<D> {
                 clearance.take(surface, candidates, *margin);
                 return Ok(());
             }
-            // If the pairs of later steps are too many, only those of this step.
+            // If there are too many pairs for later steps, only those of this step are searched for.
             reach.look_at_all();
             clearance.forget_own();
         }
@@ -45,7 +45,7 @@ impl<const D: usize> Touching<D> {
         Err(Trouble::TooMany { found: self.candidates.len() })
     }
 
-    /// Extends the boxes of points to their ends; returns whether any had to be extended.
+    /// Extends the boxes of points to their end positions; returns whether any box had to be extended.
     pub(crate) fn grow(&mut self) -> bool {
         let Touching { surface, reach, touched, after: [free, _], before: [from, _], end, margin, at_once, .. } = self;
         if *at_once {
@@ -56,6 +56,6 @@ impl<const D: usize> Touching<D> {
     }
 }
 
-/// The number of steps for which candidates of fast points are searched at once. A search costs about as much as the gaps of
+/// The number of later steps that a search for candidates of fast points covers. A search costs about as much as the gaps of
 /// eight steps.
 const STEPS: f64 = 8.0;

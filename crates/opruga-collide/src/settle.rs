@@ -5,8 +5,8 @@ use crate::touching::{Touching, acting};
 use crate::vector::{dot, subtract};
 use opruga_math::Lane;
 
-/// The fraction of the thickness by which pairs may be too close before they are separated: the surfaces themselves do not
-/// overlap then, and the remainder of the sweeps is no reason to move anything.
+/// The fraction of the thickness by which pairs may be too close before they are separated. Within this fraction the surfaces
+/// themselves do not overlap, and errors that the sweeps leave do not move anything.
 pub(crate) const OVERLAP: f64 = 0.01;
 
 impl<const D: usize> Touching<D> {
@@ -38,7 +38,7 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Enters the energies that contact took and gave, and moves the points.
+    /// Records the energies that contact took and gave, and moves the points.
     pub(crate) fn book(&mut self, h: f64) {
         let touched = &self.touched;
         let is_node = |p: &u32| self.surface.carrier_of(*p).is_none();
@@ -57,8 +57,8 @@ impl<const D: usize> Touching<D> {
                     continue;
                 }
                 let (v0, v1) = (&self.before[1][p as usize], &self.v[p as usize]);
-                // The velocity of coupled points is already the mean one. A point that responds by itself after a step that was
-                // solved for gets its impulse at the end of that step.
+                // The velocity of a coupled point is already the mean velocity of the step. If a point of a coupled body
+                // responds by itself in this step, it gets its impulse at the end of the step.
                 let v0 = match (self.coupled.body_of(p), self.coupled.has(p)) {
                     (Some(_), _) => v1,
                     (None, true) => &self.after[1][p as usize],
@@ -109,7 +109,7 @@ impl<const D: usize> Touching<D> {
         for row in &self.rows {
             row.on(&self.spread).0.iter().for_each(|p| self.moved[*p as usize] = [0.0; D]);
         }
-        // Separately for rows that share no point, so that nothing moves because of overlaps elsewhere.
+        // Rows that no point connects are processed separately, so that nothing moves because of overlaps elsewhere.
         for ends in self.turns.starts().windows(2) {
             let rows = &self.rows[ends[0] as usize..ends[1] as usize];
             self.wanted.clear();
@@ -117,7 +117,7 @@ impl<const D: usize> Touching<D> {
             for row in rows {
                 let u = subtract(&row.mean(&self.spread, &self.v), &row.carry);
                 let end = row.gap + h * dot(&u, &row.normal);
-                // Sweeps that end early leave less than this.
+                // Sweeps that end early leave smaller overlaps than this.
                 overlap |= end < -OVERLAP * self.thickest[0];
                 self.wanted.push(if row.of_obstacle { -end } else { (-end).smaller(most) });
             }

@@ -1,4 +1,4 @@
-//! Shapes whose signed distance is a formula, with one source for a number and for eight of them.
+//! Shapes whose signed distance is a formula. The same source text serves for one number and for eight of them.
 
 use crate::motion::Pose;
 use crate::vector::{add, choose, dot, length, scaled, splat, subtract, turned};
@@ -47,7 +47,7 @@ impl<const D: usize> Met<D> {
             met.faces += 1;
             met.entered += usize::from(along < 0.0);
         };
-        // If there is a margin, it rounds the edges, so there are none.
+        // Only a shape without a margin has edges: a margin rounds them.
         if margin <= close {
             shape.visit_faces(x, 2.0 * close, &mut add);
         }
@@ -174,7 +174,7 @@ impl<const D: usize> Capsule<D> {
             ..*self
         }
     }
-    /// From the nearest point of the segment to `x`.
+    /// The vector from the nearest point of the segment to `x`.
     #[inline(always)]
     fn away<S: Lane>(&self, x: &[S; D]) -> [S; D] {
         let (arm, along) = (subtract(x, &splat(&self.start)), splat::<S, D>(&self.along));
@@ -291,9 +291,9 @@ pub(crate) fn is_on_edge<T: Shape<D>, const D: usize>(shape: &T, margin: f64, x:
     Met::of(shape, margin, x, &[0.0; D], close_to(shape, margin)).faces > 1
 }
 
-/// The contact on its path to `b` of a node that was on a surface at `a`, to within `small` [m]: the distance of `b` behind the
-/// tangent plane (negative) and the normal. None if the node was not on the surface or does not enter. Also none on an edge, if
-/// more than one face is in its way, or if another contact that is already `active` moves it along one of the faces.
+/// Returns the contact of a node that was on a surface at `a`, to within `small` [m], and moves to `b`: the distance of `b`
+/// behind the tangent plane (negative) and the normal. None if the node was not on the surface or does not enter. Also none on
+/// an edge if more than one face is in its way, or if another contact that is already `active` moves it along one of the faces.
 #[inline(never)]
 pub(crate) fn support<T: Shape<D>, const D: usize>(
     shape: &T,
@@ -314,8 +314,8 @@ pub(crate) fn support<T: Shape<D>, const D: usize>(
     None
 }
 
-/// The point at which a node that moved from `a` to `b` entered a convex solid: the distance of `b` behind the tangent plane
-/// there (negative) and the normal. None if it did not enter from outside.
+/// Finds where a node that moved from `a` to `b` entered a convex solid. Returns the distance of `b` behind the tangent plane
+/// at that point (negative) and the normal; none if the node did not enter from outside.
 ///
 /// Sphere tracing: the signed distance is a safe step along the segment that does not reach the surface.
 #[inline(never)]

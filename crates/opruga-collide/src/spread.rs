@@ -1,4 +1,4 @@
-//! The nodes that take part in contacts because they carry points of these.
+//! The nodes that take part in contacts because they carry points of these contacts.
 
 use crate::surface::Surface;
 
@@ -24,7 +24,7 @@ impl Spread {
         self.weights.clear();
     }
 
-    /// Moves all entries of another one behind the present ones; returns the index of the first of them.
+    /// Moves all entries of another list behind the present ones; returns the index of the first moved entry.
     pub(crate) fn append(&mut self, other: &mut Spread) -> u32 {
         let first = self.points.len() as u32;
         self.points.append(&mut other.points);
@@ -32,7 +32,7 @@ impl Spread {
         first
     }
 
-    /// Lets a head refer to entries that were moved by this number.
+    /// Updates a head after the entries that it represents were moved by this number of indices.
     pub(crate) fn shift(head: &mut [u32; 4], by: u32) {
         if head[3] == ELSEWHERE {
             head[0] += by;
@@ -47,7 +47,7 @@ impl Spread {
         let first = self.points.len();
         for (point, weight) in points.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
             surface.visit_nodes(*point, |node, share| {
-                // A node may carry more than one of the points, and be one itself.
+                // A node may carry several of the points, and may itself be one of them.
                 match self.points[first..].iter().position(|p| *p == node) {
                     Some(at) => self.weights[first + at] += weight * share,
                     None => {
@@ -67,7 +67,7 @@ impl Spread {
         (&self.points[range.clone()], &self.weights[range])
     }
 
-    /// The head that represents the nodes of a contact outside of it.
+    /// The head that represents the nodes of a contact in other lists.
     pub(crate) fn head([first, count]: [u32; 2]) -> [u32; 4] {
         [first, count, 0, ELSEWHERE]
     }

@@ -15,8 +15,8 @@ use core::ops::Range;
 use opruga_core::dense::Dense;
 use opruga_math::{Lane, Simd, WIDTH, sum_in_fixed_order};
 
-/// The fraction of the velocities that conjugate gradients leave. With 1e-3, the errors of the rows `contact-patch-…` exceed
-/// 1e-6.
+/// The fraction of the remaining velocities at which conjugate gradients end. With 1e-3, the errors of the rows
+/// `contact-patch-…` exceed 1e-6.
 const LEFT: f64 = 1e-4;
 
 /// An active contact. Its unknowns are the changes of its impulse along its normal and, if it sticks, along the axes
@@ -26,7 +26,8 @@ struct Active {
     unknowns: Range<usize>,
 }
 
-/// The fractions of a change of the impulse up to which a contact presses and sticks; infinite if it does so for any fraction.
+/// The fractions of a change of the impulse up to which a contact presses, and up to which it sticks; infinite if there is no
+/// limit.
 fn reach<const D: usize>(row: &Row<D>, sticks: bool, change: &[f64; D]) -> (f64, f64) {
     let more = dot(change, &row.normal);
     let presses = if more < 0.0 { -row.normal_impulse / more } else { f64::INFINITY };
@@ -39,8 +40,8 @@ fn reach<const D: usize>(row: &Row<D>, sticks: bool, change: &[f64; D]) -> (f64,
     let a = dot(&slides, &slides) - squared * more * more;
     let half = dot(&own, &slides) - squared * row.normal_impulse * more;
     let c = dot(&own, &own) - squared * row.normal_impulse * row.normal_impulse;
-    // c < 0 inside the cone: the first root above zero ends it. If there is no root it is NaN, for which all comparisons are
-    // false.
+    // c < 0 inside the cone, which ends at the first root above zero. If there is no root it is NaN, for which all comparisons
+    // are false.
     let root = (half * half - a * c).sqrt();
     let sum = half + if half < 0.0 { -root } else { root };
     let roots = [-sum / a, -c / sum];
@@ -52,7 +53,7 @@ struct Subspace<const D: usize> {
     active: Vec<Active>,
     /// The direction of each unknown.
     axes: Vec<[f64; D]>,
-    /// W.
+    /// The matrix W.
     matrix: Dense,
     /// The remaining velocities [m/s].
     left: Vec<f64>,
@@ -173,8 +174,8 @@ impl<const D: usize> Subspace<D> {
         changes
     }
 
-    /// The fraction of the changes up to which all contacts press and stick; the first contact that does not is removed from the
-    /// equations, or slides from there on.
+    /// Returns the fraction of the changes up to which all contacts press and stick. Finds the first contact that ceases to do
+    /// so: one that pulls is removed from the equations, and one that slides loses its friction unknowns.
     fn leave(&mut self, rows: &[Row<D>], changes: &[[f64; D]]) -> f64 {
         let (mut part, mut first) = (1.0, None);
         for (active, change) in
@@ -209,7 +210,7 @@ fn sum(a: &[f64], b: &[f64]) -> f64 {
 pub(crate) mod tests {
     use super::*;
 
-    /// Contacts of a column of points along y on a pinned one, each with an impulse of 1 N s.
+    /// The contacts of a column of points along y, each with an impulse of 1 N s. The lowest point is pinned.
     pub(crate) fn column(points: usize, friction: f64) -> (Vec<Row<2>>, Vec<[f64; 2]>) {
         let mut inverse_mass = vec![[1.0; 2]; points];
         inverse_mass[0] = [0.0; 2];

@@ -22,7 +22,7 @@ pub struct Surface<const D: usize> {
     pub sides: Vec<[u32; 2]>,
     /// The start of the points, facets, edges and vertices of each body. Points before its vertices only carry others.
     starts: Vec<[u32; 4]>,
-    /// The points that are carried by others, ascending, and their carriers, which are points that move by themselves.
+    /// The points that are carried by others, ascending, and their carriers. Carriers refer to points that move by themselves.
     carried: Vec<u32>,
     carriers: Vec<Carrier>,
     /// Whether each body, in the order of addition, touches faces of obstacles with its vertices; otherwise obstacles hold its
@@ -133,7 +133,7 @@ impl<const D: usize> Surface<D> {
         self.obstacles.is_some_and(|[_, first]| point >= first)
     }
 
-    /// Finds the edges of the facets from one on, and the facets around every point.
+    /// Finds the edges of the facets from a given one on, and the facets around every point.
     fn join(&mut self, first_facet: usize, wires: Vec<[u32; 2]>, points: usize) {
         let mut edges: Vec<([u32; 2], u32)> = Vec::new();
         for (number, facet) in self.facets.iter().enumerate().skip(first_facet) {
@@ -220,7 +220,7 @@ impl<const D: usize> Surface<D> {
         }
     }
 
-    /// Whether features of one body share a point, or a node that takes part in a point of both.
+    /// Whether two features of one body share a point, or whether a node carries points of both.
     pub(crate) fn share(&self, a: &[u32], b: &[u32]) -> bool {
         if a.iter().any(|p| b.contains(p)) {
             return true;

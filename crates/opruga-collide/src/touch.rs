@@ -14,10 +14,10 @@ use opruga_math::Lane;
 pub(crate) struct NodePath<'a, const D: usize> {
     pub(crate) from: &'a [f64; D],
     pub(crate) to: &'a [f64; D],
-    /// Its end position if it is held by the surface on which it was. This determines the face through which it meets another
-    /// solid.
+    /// The end position of the node if the surface on which it was holds it. This position determines through which face the
+    /// node meets another solid.
     pub(crate) kept: [f64; D],
-    /// The faces of solids on which it would be. If two solids meet, these include opposite faces.
+    /// The faces of solids on which the node would be at that position. If two solids meet, these include opposite faces.
     pub(crate) faces: Faces<D>,
     pub(crate) time: f64,
     pub(crate) h: f64,
@@ -167,7 +167,7 @@ impl<const D: usize> NodePath<'_, D> {
 }
 
 impl<const D: usize> Seen<'_, D> {
-    /// Gap, gap before and normal of a solid, if it is in reach or was crossed.
+    /// The gap, the gap at the start of the step, and the normal of a solid, if the solid is in reach or was crossed.
     fn solid<T: Shape<D>>(&self, shape: &T) -> Option<(f64, f64, [f64; D])> {
         let (gap, normal) = shape.gap_and_normal(self.kept);
         let mut found = (gap - self.law.thickness, normal);
@@ -176,7 +176,7 @@ impl<const D: usize> Seen<'_, D> {
         // The face through which it entered, which need not be the nearest one.
         let small = rounding(self.law, self.kept);
         let margin = self.law.thickness;
-        // A node exactly at the junction of two solids is in both of them.
+        // A node exactly at the junction of two solids counts as inside both.
         let covered = T::FACES && found.0 <= small && self.faces.any_covered();
         if (covered || T::FACES && found.0 < -small || far < dot(&displacement, &displacement).sqrt())
             && let Some(entered) = entry(shape, margin, &self.carried, self.kept)
@@ -190,8 +190,8 @@ impl<const D: usize> Seen<'_, D> {
         (found.0 <= self.reach).then_some((found.0, before, found.1))
     }
 
-    /// If solids meet: considers the faces at a point that no other solid adjoins, and returns the height above the face that
-    /// the path opposes most, and its normal.
+    /// Considers those faces at a point that no other solid adjoins. Among them, selects the face that the path opposes most,
+    /// and returns the height of the point above it and its normal. Serves points at which solids meet.
     fn open_face<T: Shape<D>>(
         &self,
         shape: &T,

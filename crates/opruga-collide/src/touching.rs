@@ -35,22 +35,23 @@ pub struct Touching<const D: usize> {
     pub surface: Surface<D>,
     /// Their contact laws.
     pub laws: Laws,
-    /// The inverse mass of every point along every axis [1/kg]; 0 if it is pinned, and for points that nodes carry.
+    /// The inverse mass of every point along every axis [1/kg]; 0 for pinned points and for points that nodes carry.
     pub inverse_mass: Vec<[f64; D]>,
-    /// Coupled bodies. Their velocities after the motion are the mean ones of the step.
+    /// Bodies whose points respond together. Their velocities after the motion are the mean velocities of the step.
     pub coupled: Coupled<D>,
     /// Positions [m] and velocities [m/s] of the points at the start of the step.
     pub before: [Vec<[f64; D]>; 2],
-    /// The same after the free motion; for touching points, the result of contact.
+    /// Positions and velocities of the points after the free motion; those of touching points are replaced by the result of
+    /// contact.
     pub after: [Vec<[f64; D]>; 2],
     /// The points that got an impulse or were moved, ascending.
     pub changed: Vec<u32>,
-    /// The energies that contact and friction took from every changed point, that obstacles and pins gave by their motion, and
-    /// that moving the point gave [J].
+    /// For every changed point, four energies [J]: those that contact and friction took, the one that obstacles and pins gave
+    /// by their motion, and the one that moving the point gave.
     pub losses: Vec<[f64; 4]>,
     /// Whether overlaps are removed by impulses within the step and not by positions: for bodies at rest, which have no velocity.
     pub(crate) at_once: bool,
-    /// Whether coupled bodies have a budget: impulses are then found as roughly as those of uncoupled bodies.
+    /// Whether coupled bodies have a budget: impulses are then found only as accurately as those of uncoupled bodies.
     pub has_budget: bool,
     /// The largest displacement of points of bodies at rest [m]: impulses that exceed it are rejected.
     pub farthest: f64,
@@ -71,18 +72,18 @@ pub struct Touching<const D: usize> {
     /// The threads that may look for pairs; the bits of the results do not depend on them.
     pub threads: usize,
     pub(crate) found: Vec<Found<D>>,
-    /// The laws for which candidates were searched.
+    /// The laws that applied at the last search for candidates.
     found_for: Laws,
     /// The contacts that are solved for; after the solution, in the order of the solution.
     pub(crate) rows: Vec<Row<D>>,
-    /// The nodes on which they act if nodes carry their points.
+    /// The nodes on which contacts act if nodes carry their points.
     pub(crate) spread: Spread,
     /// Pairs that do not meet by themselves, and their points; pairs that were activated leave an empty entry.
     pub(crate) watched: Vec<Row<D>>,
     pub(crate) heads: Vec<[u32; 4]>,
     /// Pairs that meet by themselves, but are solved for only if the solution of the others leaves them too fast.
     pub(crate) inactive: Vec<Row<D>>,
-    /// Features and impulses of the last substep, ascending.
+    /// Features and impulses of the previous substep, ascending.
     pub(crate) last: Vec<(u64, f64, [f64; D])>,
     /// Whether the obstacles of a point are among the rows; and the points whose obstacles are requested.
     known: Vec<bool>,
@@ -95,7 +96,7 @@ pub struct Touching<const D: usize> {
     pub(crate) end: Vec<[f64; D]>,
     /// Pairs that would pass through one another, ascending, and the gap with which each is solved.
     pub(crate) passing: Vec<(u64, Gap<D>)>,
-    /// Those of them that the last check has found.
+    /// The passing pairs that the last check has found.
     pub(crate) fresh: Vec<u64>,
     /// The pairs of a vertex and a facet, and of two edges, that may meet in the step, and their distances at its start [m].
     pub(crate) close: [Vec<([u32; 2], f64)>; 2],
@@ -103,7 +104,7 @@ pub struct Touching<const D: usize> {
     /// Whether the frame has begun without a check of which points are inside other bodies; and these points, ascending.
     pub(crate) looks_inside: bool,
     pub(crate) began_inside: Vec<u32>,
-    /// The bodies of these points and the bodies that contain them, ascending.
+    /// Pairs of bodies, one of which has points inside the other; ascending.
     pub(crate) entangled: Vec<[u32; 2]>,
     /// The largest distance that surfaces keep in contact [m]: between bodies, and with obstacles.
     pub(crate) thickest: [f64; 2],
@@ -111,7 +112,7 @@ pub struct Touching<const D: usize> {
     pub(crate) masses: Vec<f64>,
     pub(crate) multipliers: Vec<f64>,
     pub(crate) touched: Vec<bool>,
-    /// The index of a point among those that changed.
+    /// The index of every changed point among the changed points.
     pub(crate) number: Vec<u32>,
     pub(crate) turns: Turns<D>,
     /// Counts since they were last taken.
@@ -127,7 +128,7 @@ pub struct Counts {
     pub searches: u64,
     /// Candidates, summed over the substeps.
     pub candidates: u64,
-    /// Pairs whose gap was taken.
+    /// Pairs whose gap was computed.
     pub pairs: u64,
     /// Pairs that were solved for.
     pub contacts: u64,
@@ -139,7 +140,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// The sums of these counts and others.
+    /// Returns the sums of these counts and other ones.
     pub fn and(&self, other: &Counts) -> Counts {
         Counts {
             steps: self.steps + other.steps,
@@ -166,7 +167,7 @@ pub enum Trouble {
         /// The bodies.
         bodies: [u32; 2],
     },
-    /// Pins and obstacles move two bodies, or one and itself, through one another.
+    /// Pins and obstacles move two bodies through one another, or a body through itself.
     LedThrough {
         /// The bodies.
         bodies: [u32; 2],
@@ -178,7 +179,7 @@ pub enum Trouble {
 pub type Obstacles<'a, const D: usize> = &'a dyn Fn(u32, &[f64; D], &[f64; D], f64, &mut dyn FnMut(Touch<D>));
 
 impl<const D: usize> Touching<D> {
-    /// Discards impulses and reports at the beginning of a frame; candidates too, if the laws have changed.
+    /// Discards impulses and reports at the beginning of a frame. Also discards candidates if the laws have changed.
     pub fn begin(&mut self) {
         self.last.clear();
         self.reports.clear();
@@ -195,12 +196,13 @@ impl<const D: usize> Touching<D> {
         self.candidates.simd = simd;
     }
 
-    /// Discards the impulses of the last step, if the state is no longer their result.
+    /// Discards the impulses of the previous step, for the case that the state is no longer their result.
     pub fn forget_impulses(&mut self) {
         self.rows.clear();
     }
 
-    /// Calls `visit` with the nodes, as points, and the impulses of the last step [N s], except those of obstacles on points.
+    /// Calls `visit` with the nodes (by their indices among the points) and the impulses of the previous step [N s], except
+    /// impulses of obstacles on points.
     pub fn visit_impulses(&self, mut visit: impl FnMut(usize, [f64; D])) {
         for row in self.rows.iter().filter(|row| row.normal_impulse > 0.0 && !row.of_obstacle) {
             let impulse = row.impulse();
@@ -210,7 +212,7 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Calls `visit` with the bodies of every pressing contact of the last step, except those with obstacles.
+    /// Calls `visit` with the two bodies of every pressing contact of the previous step, except contacts with obstacles.
     pub fn visit_pairs(&self, mut visit: impl FnMut(u32, u32)) {
         for row in self.rows.iter().filter(|row| row.normal_impulse > 0.0 && !row.of_obstacle) {
             let [a, b] = [1.0, -1.0].map(|sign| {
@@ -250,10 +252,11 @@ impl<const D: usize> Touching<D> {
     }
 
     /// Finds the impulses of a substep of h [s] and the resulting motion; coupled bodies respond through `respond`. Returns
-    /// whether that motion is valid: it is not if they do not respond, or if their points would have to move in another way.
+    /// whether that motion is valid. It is invalid if coupled bodies do not respond, or if their points would have to move in
+    /// another way.
     ///
     /// # Errors
-    /// [`Trouble`] as of [`Touching::step`].
+    /// [`Trouble`] as for [`Touching::step`].
     pub fn find_impulses(
         &mut self,
         h: f64,
@@ -323,7 +326,7 @@ impl<const D: usize> Touching<D> {
         (0..self.coupled.count()).all(|body| self.coupled.points_of(body).all(within))
     }
 
-    /// Ends a substep: enters the effects of contact, and moves the points.
+    /// Ends a substep: records the effects of contact, and moves the points.
     pub fn end_step(&mut self, h: f64) {
         if self.report {
             reports::add(&mut self.reports, &self.rows, &self.surface, &self.end);
@@ -340,7 +343,8 @@ impl<const D: usize> Touching<D> {
         self.last.clear();
     }
 
-    /// The largest distance between the ends of the points of a body and the ends that the impulses should have given [m].
+    /// The largest distance between the end positions of the points of a body and those that the impulses should have given
+    /// [m].
     pub fn missed_by(&self, body: usize, actual: impl Iterator<Item = [f64; D]>) -> f64 {
         let points = self.coupled.points_of(body);
         let mut most: f64 = 0.0;
@@ -361,8 +365,8 @@ impl<const D: usize> Touching<D> {
         self.coupled.body_of(point).is_some()
     }
 
-    /// Checks whether pairs pass through one another when bodies that solve for the end of a step move to their present
-    /// positions; those pairs are solved for next.
+    /// Checks whether pairs pass through one another when bodies with implicit integrators move to their present positions.
+    /// Passing pairs are solved for next.
     pub fn passes(&mut self, h: f64) -> bool {
         for p in (0..self.coupled.count()).flat_map(|body| self.coupled.points_of(body)) {
             self.end[p] = self.after[0][p];
@@ -371,12 +375,12 @@ impl<const D: usize> Touching<D> {
         self.find_passages(h)
     }
 
-    /// The displacement of a point of a coupled body for removing overlaps [m].
+    /// The displacement of a point of a coupled body that removes overlaps [m].
     pub fn moved_of(&self, point: usize) -> [f64; D] {
         if self.coupled.body_of(point as u32).is_some() { self.moved[point] } else { [0.0; D] }
     }
 
-    /// Nothing touches: all points keep their free motion.
+    /// Gives all points their free motion, because nothing touches.
     fn rest(&mut self) {
         self.touched.clear();
         self.touched.resize(self.surface.points(), false);
@@ -437,7 +441,8 @@ impl<const D: usize> Touching<D> {
         true
     }
 
-    /// Computes the masses of rows from a number on if their points are coupled; returns whether these respond.
+    /// Computes the masses of those rows, from an index on, whose points are coupled; returns whether all of these points
+    /// respond.
     fn weigh_coupled(&mut self, first: usize, respond: &mut Option<&mut dyn Respond<D>>) -> bool {
         if self.coupled.count() == 0 || self.coupled.apart {
             return true;
@@ -495,14 +500,15 @@ impl<const D: usize> Touching<D> {
         self.last.retain(|(_, along, _)| *along > 0.0);
     }
 
-    /// Adds the contacts of obstacles with the points of all contacts: bodies must not push these points through obstacles.
+    /// Adds the contacts between obstacles and the points of all present contacts: bodies must not push these points through
+    /// obstacles.
     fn hold_points(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) {
         let Some(obstacles) = obstacles else { return };
         self.asked.clear();
         let surface = &self.surface;
         for row in &self.rows {
             let coupled = &self.coupled;
-            // Coupled bodies find their end between the obstacles themselves.
+            // Coupled bodies account for obstacles themselves when they solve for their end positions.
             let asks = |p: u32| !surface.is_of_obstacle(p) && coupled.body_of(p).is_none();
             for (p, _) in acting(&self.spread, row).filter(|(p, _)| asks(*p)) {
                 let known = &mut self.known[p as usize];
@@ -533,7 +539,7 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Starts from the impulses of the last substep.
+    /// Starts from the impulses of the previous substep.
     fn start_warm(&mut self) {
         let mut k = 0;
         for row in &mut self.rows {

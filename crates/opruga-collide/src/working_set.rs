@@ -1,8 +1,8 @@
 //! Impulses of contacts of coupled bodies, when far more pairs are examined than press.
 //!
-//! Most pairs of a step are only near and have no impulse in the end. So the laws are solved for some contacts only, the working
-//! set. Contacts that approach too fast then join it, the fastest first, until none does. Each solution satisfies the laws of all
-//! contacts of the set, so the last one satisfies those of all contacts.
+//! Most pairs of a step are only near one another and have no impulse in the end. So the laws are solved for some contacts only,
+//! the working set. Contacts that approach too fast then join the set, the fastest first, until none is left. Each solution
+//! satisfies the laws of all contacts of the set, so the last solution satisfies those of all contacts.
 
 use crate::coupled::Coupled;
 use crate::newton::{self, Aim};
@@ -10,12 +10,13 @@ use crate::row::Row;
 use crate::spread::Spread;
 use crate::vector::{dot, subtract};
 
-/// The largest number of solutions. Two to five are enough in most steps; contacts that alternately leave and join never end.
+/// The largest number of solutions. Two to five are enough in most steps. Without a limit, contacts could leave and join
+/// alternately without end.
 const MOST_SOLUTIONS: usize = 40;
 
-/// Finds the impulses with which all contacts obey their laws, to the required accuracy. Returns the number of turns; none if
-/// more contacts press than can be solved at once, or if the set does not settle: impulses and velocities are then consistent,
-/// and sweeps continue from there.
+/// Finds the impulses with which all contacts obey their laws, to the required accuracy. Returns the number of turns. Returns
+/// none if more contacts press than can be solved for at once, or if the set does not settle. Impulses and velocities are then
+/// consistent, and sweeps can continue from there.
 pub(crate) fn solve<const D: usize>(
     rows: &mut [Row<D>],
     spread: &Spread,
@@ -41,7 +42,7 @@ pub(crate) fn solve<const D: usize>(
             rows.iter().zip(belongs).filter(|(_, own)| **own).map(|(row, _)| newton::count_of(row)).sum()
         };
         let mut size = unknowns(&belongs);
-        // Contacts that do not press make space for those that approach.
+        // Contacts that do not press leave the set to make space for those that approach.
         let fits = |size: usize, k: usize| size + newton::count_of(&rows[k]) <= newton::MOST_UNKNOWNS;
         if size > newton::MOST_UNKNOWNS || joining.first().is_some_and(|(_, k)| !fits(size, *k)) {
             belongs.iter_mut().zip(rows.iter()).for_each(|(own, row)| *own = row.normal_impulse > 0.0);
@@ -70,8 +71,8 @@ mod tests {
     use super::*;
     use crate::subspace::tests::column;
 
-    /// Forty points fall onto a pinned one, and two thousand pairs of them could approach one another at a kilometre per second
-    /// before they touch.
+    /// Forty points fall onto a pinned one. Two thousand further pairs of these points could approach at a kilometre per second
+    /// without touching.
     #[test]
     fn pairs_that_only_might_touch_are_no_unknowns() {
         let (mut rows, inverse_mass) = column(41, 0.5);
@@ -88,7 +89,7 @@ mod tests {
         let turns = solve(&mut rows, &spread, &inverse_mass, &mut Coupled::default(), &mut v, aim);
         assert!(turns.is_some() && v.iter().flatten().all(|v| v.abs() < 1e-6), "{turns:?} {v:?}");
         assert!(rows[pressing..].iter().all(|row| row.normal_impulse == 0.0));
-        // Each carries those above it, in addition to its previous impulse.
+        // Each contact carries the points above it, in addition to its previous impulse.
         let carried = rows[..pressing].iter().zip((1..=40).rev());
         carried.for_each(|(row, above)| assert!((row.normal_impulse - 1.0 - f64::from(above)).abs() < 1e-3, "{row:?}"));
     }

@@ -6,7 +6,7 @@ use opruga_math::symmetric;
 /// Differences of speeds, relative to 1 m/s or to the speeds, that count as rounding.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
-/// The points of a pair, at most four nodes for each of its four points, and their number.
+/// The points of a pair, and their number: at most four points with at most four nodes each.
 pub(crate) type PointsOfPair = ([u32; 16], usize);
 
 /// The zones of a step, and the previous motion of their points.
@@ -14,7 +14,7 @@ pub(crate) type PointsOfPair = ([u32; 16], usize);
 pub(crate) struct Zones<const D: usize> {
     /// Another point of the zone, or the point itself; empty if there is no zone.
     parent: Vec<u32>,
-    /// Points in zones, ascending, with their solved velocity [m/s], and the velocities along prescribed axes.
+    /// Points in zones, ascending, with the velocities that were solved for [m/s] and the velocities along prescribed axes.
     points: Vec<(u32, [f64; D], Led<D>)>,
 }
 
@@ -182,7 +182,7 @@ impl<const D: usize> Zones<D> {
         }
     }
 
-    /// Enters the energies that the rigid motion took from the points, and that pins and obstacles gave [J].
+    /// Records the energies that the rigid motion took from the points, and that pins and obstacles gave [J].
     pub(crate) fn book(
         &self,
         before: &[[f64; D]],

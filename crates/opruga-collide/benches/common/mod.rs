@@ -1,4 +1,4 @@
-//! Common code of the benchmarks of contact between bodies: walls, and a line for ten frames.
+//! Common code of the benchmarks of contact between bodies: walls, and the printing of results.
 
 use opruga_collide::{Counts, Touching};
 use opruga_core::contacts::Touch;
@@ -65,8 +65,8 @@ pub(crate) fn report<const D: usize>(
     );
 }
 
-/// Prints the memory of contact, by vertices, and by candidates beyond 400 bytes per vertex, with the mean number of candidates
-/// of the last frames.
+/// Prints the memory of contact per vertex. Also divides the memory that exceeds 400 bytes per vertex by the mean number of
+/// candidates of the last frames.
 pub(crate) fn report_memory<const D: usize>(touching: &Touching<D>, vertices: usize) {
     let bytes = touching.heap_bytes() as f64;
     let candidates = touching.counts.candidates as f64 / touching.counts.steps as f64;

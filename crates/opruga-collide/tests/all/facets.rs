@@ -134,7 +134,7 @@ fn nodes_that_begin_on_a_thin_surface_are_held_on_the_side_of_its_normal() {
         .map(|(a, b)| [0, 1, 2].map(|d| a * corners[0][d] + b * corners[1][d] + (1.0 - a - b) * corners[2][d]))
         .collect();
     for triangle in [vec![0, 1, 2], vec![0, 2, 1]] {
-        // Gravity pulls to the other side of the normal.
+        // Gravity pulls against the normal.
         let up = if triangle == [0, 1, 2] { 1.0 } else { -1.0 };
         let mesh = values::<3>(
             "triangle_mesh",
@@ -152,8 +152,8 @@ fn nodes_that_begin_on_a_thin_surface_are_held_on_the_side_of_its_normal() {
     }
 }
 
-/// The margin of a thin surface grows with its distance from the origin: a node that begins exactly on it is not inside, near or
-/// far, while one beyond the margin that the scene requires is.
+/// The margin of a thin surface grows with its distance from the origin, so a node that begins exactly on it is not inside, near
+/// the origin or far from it. A node is inside if it is closer than a thickness that the scene requires.
 #[test]
 fn nodes_that_begin_on_a_thin_surface_are_not_buried_in_it() {
     for far in [0.0, 3.0, 1e3, 1e6, 1e7] {

@@ -131,7 +131,7 @@ fn heights_fall_by_the_square_of_the_restitution() {
 }
 
 /// The floor returns e² of ½ m s², with s² = u² + 2 a g from the speed u and the gap g before the step: a force that acts in the
-/// rest of the step creates no energy. An integrator whose position lags, such as symplectic Euler, arrives with less.
+/// rest of the step creates no energy. A node whose position lags, as with symplectic Euler, arrives with less energy.
 #[test]
 fn an_impact_gives_back_no_more_than_came_in_while_a_force_pushes() {
     let (h, mass) = (0.01, 3.0);

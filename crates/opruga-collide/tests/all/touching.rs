@@ -40,7 +40,7 @@ impl<const D: usize> Toy<D> {
             touching.before.iter_mut().chain(&mut touching.after).for_each(|vectors| vectors.resize(points, [0.0; D]));
             let mut pairs: Vec<[u32; 2]> = mesh.wires.clone();
             pairs.extend(mesh.facets.iter().filter(|_| D == 2).map(|f| [f[0], f[1]]));
-            // Every two nodes of a cell.
+            // Every pair of nodes of a cell.
             for (_, _, cell) in mesh.cells.iter() {
                 pairs.extend(cell.iter().enumerate().flat_map(|(k, a)| cell[k + 1..].iter().map(move |b| [*a, *b])));
             }
@@ -80,7 +80,7 @@ impl<const D: usize> Toy<D> {
         }
     }
 
-    /// Only the free step.
+    /// Makes only the free step.
     fn free(&mut self, h: f64) {
         std::mem::swap(&mut self.touching.before, &mut self.touching.after);
         let [x, v] = &self.touching.before;
@@ -199,7 +199,7 @@ impl Toy<2> {
 }
 
 impl Toy<3> {
-    /// About the three axes.
+    /// The angular momentum about the three axes.
     fn angular_momentum(&self) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (x, v) in self.nodes() {
@@ -352,14 +352,14 @@ fn cubes_stack() {
     assert!((low(1) - 0.5).abs() < 0.03 && (low(2) - 1.0).abs() < 0.06, "{} {}", low(1), low(2));
 }
 
-/// The stored bounds of pairs save checks in later steps and change no bit: bodies without information from previous steps give
-/// the same result.
+/// The stored bounds of pairs save checks in later steps and change no bit: bodies without bounds from previous steps give the
+/// same result.
 #[test]
 fn what_is_known_of_distances_changes_no_bits() {
     fn compare<const D: usize>(make: impl Fn() -> Toy<D>, h: f64, steps: usize) {
         let [mut knowing, mut ignorant] = [make(), make()];
         for step in 0..steps {
-            // Neither starts with impulses of the previous step, which the other one would not have.
+            // Neither of the two starts with impulses of the previous step, because the other one would not have them.
             knowing.touching.begin();
             let old = std::mem::take(&mut ignorant.touching);
             let fresh = &mut ignorant.touching;
@@ -407,7 +407,7 @@ fn candidates_of_a_flight_are_dropped_at_rest() {
     assert!(resting < flying / 2, "{flying} in flight, {resting} at rest");
 }
 
-/// Points that nodes carry pass impulses on to these: momentum and angular momentum are conserved, and nothing crosses.
+/// Points that nodes carry pass impulses on to these nodes: momentum and angular momentum are conserved, and nothing crosses.
 #[test]
 fn carried_points_meet() {
     let ball = || Mesh::<3>::icosphere(0.5, 2).expect("a ball").lattice_filling(0.25).expect("a lattice");
@@ -445,7 +445,7 @@ fn carried_points_meet() {
     }
 }
 
-/// Of many rings that fill a box, each part of the candidates goes to a thread of its own.
+/// The candidates of many rings that fill a box are divided among threads.
 #[test]
 fn threads_change_no_bit_of_many_rings() {
     let run = |threads: usize| {
