@@ -12,8 +12,8 @@ use opruga_math::{Pack, Strip, StripMut, WIDTH, Work};
 impl<const D: usize> System<D> {
     /// Evaluates forces in one stage and moves every node by an update: gradient → update → collide, tile by tile.
     ///
-    /// `weight` [s] is the share of this evaluation in the step's work integrals. `step` is the substep if the update ends it,
-    /// in which case obstacles act.
+    /// `weight` [s] is the share of this evaluation in the step's work integrals. If the update ends the substep, `step` is its
+    /// length, and obstacles act.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the state.
@@ -133,7 +133,7 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Stores the positions of the nodes of a tile: obstacles use the path from there.
+    /// Stores the positions of the nodes of a tile, because obstacles use the paths from these positions.
     #[inline]
     fn keep_positions(&mut self, tile: usize) {
         if self.contacts.is_some() {
@@ -153,7 +153,7 @@ impl<const D: usize> System<D> {
         self.simd.run(Move { update, range, force, inverse_mass: &self.inverse_mass, state: &mut self.state });
     }
 
-    /// Replaces the last force by the mean force of the step of `h`, m Δv/h, which obstacles use.
+    /// Replaces the last force by the mean force of the step of length `h`, m Δv/h, which obstacles use.
     fn take_mean_force(&mut self, tile: usize, h: f64) {
         let range = self.plan.range(tile);
         let buffer = self.plan.buffer(tile);
@@ -259,7 +259,7 @@ impl<const D: usize> Work for MeanForce<'_, D> {
     }
 }
 
-/// Whether an index holds a node of a body; the others fill up packs.
+/// Whether an index holds a node of a body. All other indices only fill up packs.
 fn is_node(layout: Layout, nodes: usize, bodies: usize, index: usize) -> bool {
     match layout {
         Layout::Single => index < nodes,

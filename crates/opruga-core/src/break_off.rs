@@ -2,15 +2,15 @@
 
 use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Whether a long step shall end, because this was requested or because it has exceeded a time limit. It is checked within
-/// steps and within preparations that take seconds, and is shared by those who compute and those who wait.
+/// A shared request to end a long step, made explicitly or by a time limit. It is checked within steps and within preparations
+/// that take seconds. The threads that compute share it with those that wait.
 #[derive(Debug)]
 pub struct BreakOff {
     asked: AtomicBool,
-    /// The bits of the time limit on the clock [s].
+    /// The time on the clock at which the limit is reached [s], as the bits of an `f64`.
     latest: AtomicU64,
     clock: fn() -> f64,
-    /// The bits of the fraction of a preparation that is done; NaN if there is none.
+    /// The fraction of a preparation that is done, as the bits of an `f64`; NaN if there is no preparation.
     prepared: AtomicU64,
 }
 
@@ -21,7 +21,7 @@ impl Default for BreakOff {
 }
 
 impl BreakOff {
-    /// Makes one that can also have a time limit; `clock` returns the time [s].
+    /// Makes a request that can also have a time limit; `clock` returns the time [s].
     pub fn with_clock(clock: fn() -> f64) -> BreakOff {
         let (latest, prepared) = (f64::INFINITY.to_bits(), f64::NAN.to_bits());
         BreakOff {

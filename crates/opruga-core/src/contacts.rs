@@ -14,9 +14,9 @@ pub struct Moved<'a, const D: usize> {
     pub padding_start: usize,
     /// Positions before the step: `before[d][p - range.start]` [m].
     pub before: [&'a [f64]; D],
-    /// Positions after it [m]; by index.
+    /// Positions after the free motion [m], by index.
     pub x: &'a mut Columns<D>,
-    /// Velocities after it [m/s]; by index.
+    /// Velocities after the free motion [m/s], by index.
     pub v: &'a mut Columns<D>,
     /// Mean force of the step on each node, m Δv/h: `force[d][p - range.start]` [N].
     pub force: [&'a [f64]; D],
@@ -28,9 +28,9 @@ pub struct Moved<'a, const D: usize> {
     pub time: f64,
     /// The substep [s].
     pub h: f64,
-    /// Energy taken out along the normal [J], eight partial sums.
+    /// Energy that contact took along the normal [J], eight partial sums.
     pub loss_contact: &'a mut [f64; WIDTH],
-    /// Energy taken out by friction [J], eight partial sums.
+    /// Energy that friction took [J], eight partial sums.
     pub loss_friction: &'a mut [f64; WIDTH],
     /// Work done on the body by obstacles that move [J], eight partial sums.
     pub work_colliders: &'a mut [f64; WIDTH],
@@ -66,11 +66,11 @@ pub struct Touch<const D: usize> {
 
 /// The obstacles that a block of bodies may meet within a frame.
 pub trait Contacts<const D: usize>: Send + Sync + Debug {
-    /// Applies non-penetration, restitution and friction to the nodes of a tile. Returns the lanes in which it acted on any, one
-    /// bit each: lane l contains the indices that are l modulo eight.
+    /// Applies non-penetration, restitution and friction to the nodes of a tile. Returns the lanes that contain a node on which
+    /// it acted, one bit each: lane l contains the indices that are l modulo eight.
     fn resolve(&self, simd: Simd, moved: &mut Moved<D>) -> u8;
-    /// Calls back with every surface that a node reaches when it moves from `from` to `to` [m] in the step of `h` that ends at
-    /// `time` [s]: those whose gap at the end is at most `reach` [m], and those that it has crossed.
+    /// Calls back with every surface that a node reaches when it moves from `from` to `to` [m] in the step of length `h` that
+    /// ends at `time` [s]: those whose gap at the end is at most `reach` [m], and those that it has crossed.
     ///
     /// For implicit integrators, which constrain nodes while they solve for the end of the step.
     fn touch(

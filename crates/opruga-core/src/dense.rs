@@ -61,7 +61,7 @@ impl Dense {
         self.numbers.heap_bytes()
     }
     /// y = A x for consecutive vectors of [`Dense::padded`] numbers each. Every number of the matrix is read from memory once for
-    /// eight of them.
+    /// eight vectors.
     pub fn multiply(&self, simd: Simd, x: &[f64], y: &mut [f64]) {
         let length = self.padded();
         if length == 0 {
@@ -152,7 +152,7 @@ fn packs_of<P: Pack>(row: &[f64]) -> [P; PACKS] {
     out
 }
 
-/// Adds T x to sums that are still distributed over lanes.
+/// Adds T x, for a tile T, to sums that are still distributed over lanes.
 #[inline(always)]
 fn along_rows<P: Pack, const N: usize>(tile: &[f64], x: [&[f64]; N], sums: &mut [[P; N]; SIDE]) {
     let mut packs = [[P::zero(); PACKS]; N];
@@ -171,7 +171,7 @@ fn along_rows<P: Pack, const N: usize>(tile: &[f64], x: [&[f64]; N], sums: &mut 
     }
 }
 
-/// Tᵀ x.
+/// Returns Tᵀ x for a tile T.
 #[inline(always)]
 fn along_columns<P: Pack, const N: usize>(tile: &[f64], x: [&[f64]; N]) -> [[P; PACKS]; N] {
     let mut packs = [[P::zero(); PACKS]; N];

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 /// A dense symmetric matrix that rotates with its body: c 𝓡 A 𝓡ᵀ on a list of nodes, where 𝓡 rotates every node by R.
 ///
-/// A is K or, if the frame follows displacements, Tᵀ K T + J Qᵀ + Q Jᵀ with T = 1 − V Jᵀ ([`Following`]).
+/// A is the matrix K or, if the frame follows displacements, Tᵀ K T + J Qᵀ + Q Jᵀ with T = 1 − V Jᵀ. [`Following`] describes J,
+/// V and Q.
 #[derive(Clone, Copy, Debug)]
 pub struct DensePart<'a, const D: usize> {
     /// The factor c.
@@ -24,30 +25,31 @@ pub struct DensePart<'a, const D: usize> {
 /// A rank-one term c u uᵀ: c, and the entries of u by the indices of nodes.
 pub type RankOnePart<const D: usize> = (f64, Vec<(usize, [f64; D])>);
 
-/// How a frame follows displacements d, in the coordinates of the frame: it rotates by the spin θ = Jᵀ d about each axis, which
-/// displaces nodes by V θ. The remainder, d − V θ, strains the body. Vectors have [`Dense::padded`] numbers each and are
-/// consecutive, one for each axis.
+/// How a frame follows displacements d, in the coordinates of the frame. It rotates about each axis by the spin θ = Jᵀ d, which
+/// displaces nodes by V θ. The remainder, d − V θ, strains the body. J, V and Q have one column for each axis. Columns are
+/// stored one after the other, with [`Dense::padded`] numbers each.
 #[derive(Clone, Debug, Default)]
 pub struct Following {
-    /// The part of J that does not change with the state: the k-th column of J is Σ `mix[k][l]` times the l-th of these. It stays
-    /// at one address.
+    /// The part of J that does not change with the state: the k-th column of J is Σ `mix[k][l]` times the l-th vector of `base`.
+    /// Its address does not change.
     pub base: Arc<Vec<f64>>,
-    /// The part that changes with the state, by rows.
+    /// The part of J that changes with the state, by rows.
     pub mix: [[f64; 3]; 3],
-    /// V.
+    /// The matrix V: the displacements due to a unit spin about each axis.
     pub spins: Vec<f64>,
-    /// Q, over the factor of the matrix: the terms from forces that rotate.
+    /// The matrix Q, divided by the factor of the dense part: the terms due to forces that rotate with the frame.
     pub forces: Vec<f64>,
 }
 
 impl Following {
-    /// J.
+    /// Returns the matrix J, with columns of a given length.
     pub fn follows(&self, length: usize) -> Vec<f64> {
         mixed(&self.mix, &self.base, length)
     }
 }
 
-/// Linear combinations of consecutive vectors of a given length: the k-th is Σ `mix[k][l]` times the l-th of `base`.
+/// Returns linear combinations of consecutive vectors of a given length: the k-th is Σ `mix[k][l]` times the l-th vector of
+/// `base`.
 pub fn mixed(mix: &[[f64; 3]; 3], base: &[f64], length: usize) -> Vec<f64> {
     let mut out = vec![0.0; base.len()];
     for (row, out) in mix.iter().zip(out.chunks_exact_mut(length)) {
@@ -67,7 +69,7 @@ fn add(out: &mut [f64], factor: f64, x: &[f64]) {
 }
 
 impl<const D: usize> DensePart<'_, D> {
-    /// A x at the indices of this part, node by node, given x as a function of the index.
+    /// Returns the product of this part with a vector x at its indices, node by node. x is given as a function of the index.
     pub fn product(&self, x: impl Fn(usize) -> [f64; D]) -> Vec<[f64; D]> {
         let length = self.matrix.padded();
         let mut turned = vec![0.0; 2 * length];
@@ -81,7 +83,7 @@ impl<const D: usize> DensePart<'_, D> {
         self.product_in_frame(own, out);
         out.chunks_exact(D).take(self.indices.len()).map(|g| self.turned_back(g)).collect()
     }
-    /// A x / c in the frame; x is replaced by the strain.
+    /// Computes A x in the coordinates of the frame. Replaces x by the displacements that strain the body.
     fn product_in_frame(&self, x: &mut [f64], out: &mut [f64]) {
         let simd = Simd::best();
         let Some(following) = self.following else { return self.matrix.multiply(simd, x, out) };
@@ -100,11 +102,12 @@ impl<const D: usize> DensePart<'_, D> {
             add(out, spin[k], q);
         }
     }
-    /// c R g.
+    /// Returns c R g for the vector g of a node.
     fn turned_back(&self, g: &[f64]) -> [f64; D] {
         core::array::from_fn(|i| self.factor * (0..D).map(|j| self.frame[i][j] * g[j]).sum::<f64>())
     }
-    /// The block of two of its nodes, by their numbers in the list, without the terms that a following frame adds.
+    /// The block of two of its nodes, which are given by their numbers in the list, without the terms that a following frame
+    /// adds.
     pub fn block(&self, a: usize, b: usize) -> [[f64; D]; D] {
         let mut half = [[0.0; D]; D];
         let mut out = [[0.0; D]; D];

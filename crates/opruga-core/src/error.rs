@@ -58,7 +58,7 @@ pub fn what_was_left(range: Option<f64>) -> String {
     }
 }
 
-/// Says up to which load an equilibrium was found, and how many cells were degenerate at the start of the step.
+/// Describes up to which load an equilibrium was found, and how many cells were degenerate at the start of the step.
 fn circumstances(beyond: Option<f64>, inverted: u32, cells: u32) -> String {
     match (beyond, inverted) {
         (Some(load), _) => format!(", beyond {} of the load", number(load)),
@@ -75,7 +75,7 @@ messages! {
         Preparation {},
     }
 
-    /// The thing that refuses, and why: a [`BuildError`] as a part of a text.
+    /// A [`BuildError`] as a part of a text: what refuses, and why.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Source {
         "part.source" #[error("{kind}: {about}")]
@@ -88,7 +88,7 @@ messages! {
     pub enum StepError {
         /// A position or velocity is no longer finite, or a position is so far from the origin that rounding dominates. The
         /// fields are the index of the body in the island, the node, the time at the start of the substep \[s\], and, if the node
-        /// went beyond it, the distance from the origin along an axis up to which positions keep their digits \[m\].
+        /// is too far from the origin, the limit: the distance along an axis up to which positions keep their digits \[m\].
         "part.step" #[error("node {node} of body {body} left {} at t = {} s", what_was_left(*range), number(*time))]
         Diverged { body: usize, node: u32, time: f64, range: Option<f64> },
         /// An implicit integrator has not found the end of the step. The fields are the number of Newton iterations, the largest
@@ -113,7 +113,7 @@ messages! {
         /// The step was stopped from outside.
         "part.step" #[error("the step was interrupted")]
         BrokenOff {},
-        /// A model has no value in this state; with a hint from the settings of the integrator if the model gives none.
+        /// A model has no value in this state. If the model gives no hint, the settings of the integrator may give one.
         "part.step" #[error("{model}: {about}")]
         #[allowed("{}", about.allowed().unwrap_or_default())]
         #[hint("{}", about.hint().or_else(|| helps.as_ref().map(ToString::to_string)).unwrap_or_default())]

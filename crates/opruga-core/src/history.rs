@@ -166,7 +166,7 @@ impl<const D: usize> History<D> {
     pub fn channels_mut(&mut self) -> impl ExactSizeIterator<Item = (Channel, &mut Content<D>)> {
         self.channels.iter_mut().map(|(channel, content)| (*channel, content))
     }
-    /// Whether this owner has declared these channels; others may have been added after them.
+    /// Whether this owner has declared these channels as the first ones. Others may have been added after them.
     pub fn is_of(&self, owner: &str, channels: &[Channel]) -> bool {
         let declared = self.channels.iter().map(|(channel, _)| channel);
         self.owner == owner && self.channels.len() >= channels.len() && declared.zip(channels).all(|(a, b)| a == b)
@@ -202,7 +202,7 @@ impl<const D: usize> History<D> {
         }
     }
 
-    /// Resets all channels: their contents do not fit a state that was changed from outside.
+    /// Resets all channels, because their contents do not fit a state that was changed from outside.
     pub fn reset(&mut self) {
         for (channel, content) in &mut self.channels {
             match content {

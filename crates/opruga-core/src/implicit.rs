@@ -28,7 +28,7 @@ impl<const D: usize> System<D> {
         self.gather_forces(stage, time, weight, out);
     }
 
-    /// Prepares only some models, by their numbers, in a state, whereas [`System::evaluate`] prepares all of them.
+    /// Prepares only some models, given by their numbers, in a state. [`System::evaluate`] prepares all of them.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the state.
@@ -66,7 +66,7 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Whether second derivatives depend only on positions, neither on the time nor on the memory of models.
+    /// Whether second derivatives depend only on positions, and neither on the time nor on the memory of models.
     pub fn hessian_is_of_positions(&self) -> bool {
         self.members.iter().all(|m| m.memory.is_empty() && m.potential.properties().account == Account::Elastic)
     }
@@ -161,7 +161,7 @@ impl<const D: usize> System<D> {
         self.add_pushes(out);
     }
 
-    /// Delivers the second derivatives of external members, after [`System::evaluate`] in the same state.
+    /// Delivers the second derivatives of models of external forces, after [`System::evaluate`] in the same state.
     pub fn outer_hessian(&self, stage: Stage, time: f64, keep: Definiteness, sink: &mut dyn Sink<D>) {
         let view = self.view(stage, self.time + time);
         for member in self.members.iter().filter(|member| member.potential.properties().account == Account::User) {
@@ -214,8 +214,8 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Ends an implicit step of `h` whose end is in the current state: moves pinned nodes to their positions, limits speeds,
-    /// updates the memory of models and the time.
+    /// Ends an implicit step of length `h` whose end is in the current state: moves pinned nodes to their positions, limits
+    /// speeds, updates the memory of models and the time.
     pub fn end_implicit(&mut self, h: f64) {
         self.hold(Stage::Current, h);
         self.limit_velocities();

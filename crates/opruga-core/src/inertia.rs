@@ -1,7 +1,7 @@
 //! The difference between a consistent mass matrix and lumped masses.
 //!
 //! M = diag(m) + D. A pair of nodes has the same entry for all axes. All entries of D sum to zero, so the mass of a body is the
-//! sum of the masses of its nodes; the weight of a node is that of the sum of its row.
+//! sum of the masses of its nodes; the weight of a node follows from the sum of its row of M.
 
 use opruga_math::{WIDTH, sum_in_fixed_order};
 
@@ -15,7 +15,7 @@ pub struct Inertia {
 }
 
 impl Inertia {
-    /// The matrix for `nodes` nodes, from entries (row, column, mass) that are added in their order.
+    /// Makes the matrix for `nodes` nodes from entries (row, column, mass), which are added in their order.
     pub fn new(nodes: usize, mut entries: Vec<(u32, u32, f64)>) -> Inertia {
         entries.sort_by_key(|(row, column, _)| (*row, *column));
         let mut out = Inertia { start: vec![0; nodes + 1], ..Inertia::default() };
@@ -50,7 +50,7 @@ impl Inertia {
         self.start.len().saturating_sub(1)
     }
 
-    /// (D x)ₐ for a vector that holds the coordinates of one node after the other.
+    /// The vector (D x)ₐ of a node a, for a vector x that holds the coordinates of one node after the other.
     #[inline]
     pub fn product<const D: usize>(&self, node: usize, x: &[f64]) -> [f64; D] {
         let mut out = [0.0; D];
@@ -62,7 +62,7 @@ impl Inertia {
         out
     }
 
-    /// x·D x.
+    /// Returns x·D x.
     pub fn square<const D: usize>(&self, x: &[f64]) -> f64 {
         let mut parts = [0.0; WIDTH];
         for node in 0..self.nodes() {

@@ -1,4 +1,4 @@
-//! The interface of integrators: an integrator moves a system on by one substep, and describes its own stability.
+//! The interface of integrators: an integrator advances a system by one substep, and describes its own stability.
 
 use crate::error::{BuildError, StepError};
 use crate::history::{Channel, History};
@@ -32,7 +32,7 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     ///
     /// Its spectral radius is at most 1 if the step h is stable. The state is scaled as (x, v), not (ωx, v).
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification;
-    /// Refuses a system that it cannot step, such as a free body in statics; `obstacles` says whether there are obstacles that
+    /// Refuses a system that it cannot step, such as a free body in statics; `obstacles` is true if there are obstacles that
     /// may hold the body.
     ///
     /// # Errors
@@ -48,7 +48,7 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn part_of_load(&self, _system: &System<D>) -> Option<f64> {
         None
     }
-    /// Whether it gives the same bits on every processor, and not only on those of one class.
+    /// Whether it gives the same bits on processors of all classes, and not only on those of one class.
     fn same_bits_everywhere(&self, _system: &System<D>) -> bool {
         true
     }
@@ -56,8 +56,8 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn is_static(&self) -> bool {
         false
     }
-    /// Whether it enters its own dissipation into [`crate::system::Work8::numerical`], from its own formula. Dissipation that is
-    /// not entered there remains unexplained.
+    /// Whether it records its own dissipation in [`crate::system::Work8::numerical`], from its own formula. Dissipation that is
+    /// not recorded there remains unexplained energy.
     fn measures_its_damping(&self) -> bool {
         false
     }
@@ -92,7 +92,7 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
         false
     }
     /// Computes, after a step, how its end responds to forces of other bodies, for [`Integrator::answer`]. Returns the number of
-    /// the matrix that it uses: the same number means the same responses. `None` if it could not.
+    /// the matrix that it uses: the same number means the same responses. `None` if it cannot compute the responses.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses.
@@ -101,7 +101,7 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     }
     /// Replaces forces on the nodes, which act throughout the step [N], by the displacements that they cause at its end, to
     /// first order [m]. `_vectors` holds `_count` consecutive vectors, each with the coordinates of one node after the other.
-    /// Returns whether it could.
+    /// Returns whether this was possible.
     fn answer(&self, _system: &mut System<D>, _vectors: &mut [f64], _count: usize) -> bool {
         false
     }
@@ -126,7 +126,7 @@ impl<const D: usize> System<D> {
     }
 }
 
-/// A number that no matrix has had before in this process, for [`Integrator::prepare_answer`].
+/// Returns a number that no matrix has had before in this process, for [`Integrator::prepare_answer`].
 pub fn next_matrix_number() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     NEXT.fetch_add(1, Ordering::Relaxed)
@@ -140,7 +140,7 @@ pub trait IntegratorKind<const D: usize>: Send + Sync {
     fn batches(&self) -> bool {
         true
     }
-    /// Builds it.
+    /// Builds the integrator.
     ///
     /// # Errors
     /// [`BuildError`] if a combination of parameters has no meaning.
@@ -158,7 +158,7 @@ pub struct Amplification {
 }
 
 impl Amplification {
-    /// From the rows of the matrix.
+    /// Makes an amplification matrix from its rows.
     pub fn new<const N: usize>(matrix: [[f64; N]; N]) -> Amplification {
         const { assert!(N >= 2 && N <= MOST_CARRIED, "x and v, and room for what is remembered") }
         let mut rows = [[0.0; MOST_CARRIED]; MOST_CARRIED];
@@ -278,7 +278,7 @@ mod tests {
         // (λ − 0.9)(λ − 0.5)(λ + 0.2)
         let three = Amplification::new([[1.2, -0.17, -0.09], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
         assert!((three.spectral_radius() - 0.9).abs() < 1e-14, "{}", three.spectral_radius());
-        // A rotation by 0.3 and one by 2 times 0.5.
+        // A rotation by 0.3, and 0.5 times a rotation by 2.
         let (c, s) = (0.955_336_489_125_606, 0.295_520_206_661_339_6);
         let four =
             Amplification::new([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, -0.2, -0.4], [0.0, 0.0, 0.4, -0.2]]);

@@ -15,11 +15,11 @@ pub struct Work8 {
     pub friction: [f64; WIDTH],
     /// Energy dissipated by impacts.
     pub contact: [f64; WIDTH],
-    /// Energy from obstacles that move nodes back to their surface.
+    /// Energy that obstacles give by moving nodes back to the surface of the obstacle.
     pub correction: [f64; WIDTH],
-    /// The dissipation by the integrator itself, without the change of the potential energy U: the entered work of loads, minus
-    /// the entered damping, minus the work of the impulses of the integrator. Together with U₀ − U₁ over the same steps, the
-    /// energy given to the gas and the corrections of obstacles, it is the energy that the integrator dissipates
+    /// The dissipation by the integrator itself, without the change of the potential energy U: the recorded work of loads,
+    /// minus the recorded damping, minus the work of the impulses of the integrator. Together with U₀ − U₁ over the same steps,
+    /// the energy given to the gas and the corrections of obstacles, it is the energy that the integrator dissipates
     /// ([`crate::integrator::Integrator::measures_its_damping`]). U cancels in the sum over steps, so it is not needed between
     /// them.
     pub numerical: [f64; WIDTH],
@@ -82,15 +82,15 @@ pub struct SolverWork {
     /// The largest number of halvings of one step: its shortest part is 2⁻ⁿ of it.
     pub deepest: u64,
     /// The number of steps of the real-time setting whose error may be larger than promised, because the budget was spent, or
-    /// because the solver converged so slowly that the residual says little.
+    /// because the solver converged so slowly that the residual is a poor measure of the error.
     pub cut_off: u64,
-    /// The largest residual at the end of such a step, as the distance by which it would move a node if only that node could
-    /// move [m].
+    /// The largest residual at the end of a step counted in `cut_off`, as the distance by which it would move a node if only
+    /// that node could move [m].
     pub left: f64,
     /// The number of steps that ended because forces balance within their rounding errors, although the residual would still
     /// move nodes visibly.
     pub estimated: u64,
-    /// The largest such displacement [m].
+    /// The largest displacement that the residual of such a step would cause [m].
     pub error_estimate: f64,
     /// The number of steps in which forces due to rounding of positions exceeded the loads.
     pub conditioned: u64,
@@ -98,7 +98,7 @@ pub struct SolverWork {
     pub conditioning: f64,
     /// How often a body that rested in a degenerate shape was displaced at random.
     pub disturbed: u64,
-    /// How often that did not help.
+    /// How often such a body was still degenerate afterwards.
     pub stayed_degenerate: u64,
 }
 

@@ -5,14 +5,14 @@ use crate::workspace::Workspace;
 use opruga_math::WIDTH;
 
 impl<const D: usize> Workspace<D> {
-    /// Grows to the size that the steps of a system need.
+    /// Enlarges the workspace to the size that the steps of a system need.
     pub fn fit(&mut self, system: &System<D>) {
         self.grow(system.plan.buffer_length(), system.stages, system.index_count());
     }
 }
 
 impl<const D: usize> System<D> {
-    /// Swaps its memory with that of a workspace, to borrow it or to give it back.
+    /// Swaps the memory of the system with that of a workspace, to borrow memory or to give it back.
     pub fn exchange(&mut self, workspace: &mut Workspace<D>) {
         std::mem::swap(&mut self.forces, &mut workspace.forces);
         std::mem::swap(&mut self.before, &mut workspace.before);

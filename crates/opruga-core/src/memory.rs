@@ -1,7 +1,7 @@
 //! The memory that a body will need, estimated from the counts of its mesh before anything is built.
 //!
-//! The numbers of bytes come from measured runs (docs/performance.md, "Memory"); a test compares estimates with the memory of
-//! runs.
+//! The numbers of bytes come from measured runs (docs/performance.md, "Memory"). A test compares the estimates with the memory
+//! of runs.
 
 use opruga_mesh::Mesh;
 

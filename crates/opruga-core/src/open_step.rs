@@ -3,21 +3,21 @@
 use crate::error::StepError;
 use crate::system::System;
 
-/// A step of an implicit integrator that has begun: forces balance where the sum of the incremental potential Φ(u) of the body
-/// and the interactions between bodies is minimal. u [m] are displacements from the start of the step, with the coordinates of
-/// one node after the other.
+/// A step of an implicit integrator whose end is still to be found. Forces balance where the sum of the incremental potential
+/// Φ(u) of the body and the energy of the interactions between bodies is minimal. The displacements u [m] from the start of the
+/// step hold the coordinates of one node after the other.
 ///
 /// ```text
 /// Φ = σ/2 |u − y|²_M + U(x₀ + u),   r = ∂Φ/∂u,   A ≈ ∂²Φ/∂u² without negative eigenvalues
 /// ```
 ///
-/// Obstacles hold nodes, and pins move nodes. `prescribed` is how far nodes still have to move; A is solved in the free
-/// directions.
+/// Obstacles hold nodes, and pins move nodes. `prescribed` is how far nodes still have to move. Equations with the matrix A are
+/// solved in the free directions.
 pub trait OpenStep<const D: usize>: Send {
-    /// Ties a body of statics to its present position by a part of its mass, y = u and σ [1/s²], from the next evaluation on.
-    /// Bodies that move have their own inertia and ignore this.
+    /// Ties a body without inertia (statics) to its present position by a term of its masses with y = u and the given σ [1/s²],
+    /// from the next evaluation on. Bodies with inertia ignore this.
     fn stay(&mut self, _sigma: f64) {}
-    /// u.
+    /// The displacements u [m].
     fn displacements(&self) -> &[f64];
     /// The correction of u [m], which the search writes.
     fn correction(&mut self) -> &mut [f64];
@@ -33,11 +33,11 @@ pub trait OpenStep<const D: usize>: Send {
     /// The part of r that is due to rounding of positions, in the free directions and with the last derivatives: the root of the
     /// sum of squares [N].
     fn rounding_of_forces(&self, system: &System<D>) -> f64;
-    /// r in the last evaluated state [N].
+    /// The residual r in the last evaluated state [N].
     fn residual(&self) -> &[f64];
     /// Adds a fraction of the correction to u.
     fn advance(&mut self, part: f64);
-    /// Searches for nodes that obstacles hold; returns whether they have changed.
+    /// Searches for the nodes that obstacles hold; returns whether the set of these nodes has changed.
     fn look(&mut self, system: &System<D>) -> bool;
     /// Assembles the derivatives in the last evaluated state, the exact ones if `exact` is set and they are positive definite,
     /// and factors them in the free directions; returns whether that was possible.
@@ -49,14 +49,14 @@ pub trait OpenStep<const D: usize>: Send {
     /// Writes the right-hand side for the correction without the prescribed displacements, −(r + forces − friction) − A
     /// `prescribed`, in the free directions [N].
     fn right_side(&mut self, system: &System<D>, forces: &[f64], out: &mut [f64]);
-    /// y = A x.
+    /// Computes y = A x.
     fn multiply(&self, system: &System<D>, x: &[f64], y: &mut [f64]);
     /// Projects a vector onto the free directions.
     fn filter(&self, x: &mut [f64]);
-    /// x = A⁻¹ x in the free directions.
+    /// Replaces x by A⁻¹ x in the free directions.
     fn solve(&self, x: &mut [f64]);
     /// Adapts the friction of obstacles to the forces that hold nodes, A correction + r + forces. Writes the change of the force
-    /// on the nodes [N], or nothing if it has settled to the fraction `tolerance`.
+    /// on the nodes [N], or nothing if this force has settled to within the fraction `tolerance`.
     fn follow(&mut self, system: &System<D>, forces: &[f64], tolerance: f64, out: &mut [f64]) -> bool;
     /// The work that friction on obstacles and the forces that hold nodes do along the correction [J].
     fn given(&mut self) -> f64;
@@ -68,8 +68,8 @@ pub trait OpenStep<const D: usize>: Send {
     fn most_iterations(&self) -> (u32, bool);
     /// The largest number of halvings of a step whose search does not end.
     fn most_halvings(&self) -> u32;
-    /// Ends the step with the forces of other bodies in `system.pushes`, which belong to u. Records the iterations of the search,
-    /// and whether the step was accepted without convergence.
+    /// Ends the step at u. The forces of other bodies in `system.pushes` belong to this state. Records the iterations of the
+    /// search, and whether the step was accepted without convergence.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the end.

@@ -1,11 +1,11 @@
-//! The effect of pins on a system: they move nodes to prescribed positions, and their work is entered in the ledger.
+//! The effect of pins on a system: they move nodes to prescribed positions, and their work is recorded in the ledger.
 
 use crate::system::{Stage, System};
 use core::ops::Range;
 use opruga_math::WIDTH;
 
 impl<const D: usize> System<D> {
-    /// Records how far pins move in the coming step of `h`.
+    /// Records how far pins move in the coming step of length `h`.
     pub fn lead_pins(&mut self, h: f64) {
         self.pinned_nodes.learn(&self.pins, self.time, h);
     }
@@ -13,7 +13,7 @@ impl<const D: usize> System<D> {
     /// Gives pinned nodes the velocity of their path at the start of a frame if they have another one: at the start of a run, or
     /// if a command has just pinned them. Otherwise dampers between them and their neighbours would act for one step with a
     /// velocity that no longer exists, which reduces the order of every integrator. The change of kinetic energy is work of the
-    /// pins. If a mass matrix couples nodes, this is an impulse on other nodes too, and is left to the integrator.
+    /// pins. If a mass matrix couples nodes, the change would be an impulse on other nodes too, and is left to the integrator.
     pub fn take_hold(&mut self) {
         if self.inertia.is_some() {
             return;

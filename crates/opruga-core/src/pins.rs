@@ -12,7 +12,7 @@ pub struct Pin<const D: usize> {
     pub axes: [bool; D],
     /// The position at which it is pinned [m].
     pub anchor: [f64; D],
-    /// Displacement from there over time, rows `[t, dx, dy(, dz)]`; empty if there is none.
+    /// Displacement from this position over time, rows `[t, dx, dy(, dz)]`; empty if there is none.
     pub motion: std::sync::Arc<Vec<Vec<f64>>>,
 }
 
@@ -22,8 +22,8 @@ impl<const D: usize> Pin<D> {
         let (offset, rate) = along_path::<D>(&self.motion, time);
         (core::array::from_fn(|d| self.anchor[d] + offset[d]), rate)
     }
-    /// The acceleration of the path around a time [m/s²], from the mean velocities over the `span` before and the `span` after
-    /// it. At a corner of the path, this is the change of velocity divided by `span`.
+    /// The acceleration of the path around a time [m/s²], from the mean velocities over a `span` before and a `span` after this
+    /// time. At a corner of the path, this is the change of velocity divided by `span`.
     pub fn acceleration(&self, time: f64, span: f64) -> [f64; D] {
         if self.motion.is_empty() {
             return [0.0; D];

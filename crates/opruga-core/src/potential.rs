@@ -36,7 +36,7 @@ impl Views {
     }
 }
 
-/// The account of the ledger in which the energy and the power of a model are entered.
+/// The account of the ledger in which the energy and the power of a model are recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Account {
     /// Elastic energy; power is dissipated by damping.
@@ -47,7 +47,7 @@ pub enum Account {
     User,
 }
 
-/// Whether a Hessian is taken as it is, or with the block of each stencil without its negative eigenvalues.
+/// Whether a Hessian is delivered as it is, or without the negative eigenvalues of the block of each stencil.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Definiteness {
     /// The second derivatives.
@@ -119,7 +119,7 @@ pub trait StencilPacks<const D: usize>: Sync {
 pub trait Sink<const D: usize> {
     /// Adds the block ∂²U/∂xₐ∂x_b for two indices of the same body.
     fn block(&mut self, a: usize, b: usize, value: [[f64; D]; D]);
-    /// Adds c·u uᵀ, where u is given by its entries at some indices; it is never expanded to a dense matrix.
+    /// Adds c·u uᵀ, where u is given by its entries at some indices. The product is never expanded to a dense matrix.
     fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]);
     /// Adds a dense matrix that rotates with its body. A sink with a sparse matrix stores this part separately, as it is; a sink
     /// that processes only entries receives them block by block.
@@ -157,7 +157,7 @@ pub struct Properties {
     pub name: &'static str,
     /// The quantities that it provides.
     pub views: Views,
-    /// The account in which energy and power are entered.
+    /// The account in which energy and power are recorded.
     pub account: Account,
     /// The smallest rate λ [1/s] at which it damps every node of its bodies in every motion, f = −λ m v.
     pub uniform_damping: f64,
@@ -169,10 +169,12 @@ pub struct Properties {
     pub begins_tiles: bool,
     /// Whether `prepare` reads everything on which forces depend, so that nodes of one stencil may move one after the other.
     pub forces_in_prepare: bool,
-    /// Whether forces act only between nodes: they have no sum and no moment about any point, and rotate with the body. The
-    /// conformance suite checks the sums. `None` if a model does not declare it; integrators then measure it in every step.
+    /// Whether forces act only between nodes: their sum and their moment about any point are zero, and they rotate with the
+    /// body. The conformance suite checks the sums. `None` if a model does not declare it; integrators then measure it in every
+    /// step.
     pub acts_between_nodes: Option<bool>,
-    /// Whether the world uses the energy of this model to check if a body rests in an equilibrium other than its own shape.
+    /// Whether the world uses the energy of this model to check whether a body rests in an equilibrium other than its own
+    /// shape.
     pub judges_balance: bool,
 }
 
@@ -224,8 +226,8 @@ pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
     }
     /// Adds the whole force of the model, −∂U/∂x and damping [N], to every node of the tile.
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>);
-    /// Updates the memory after a substep; returns the energy that this gives to each body [J]. The scratch is that of the last
-    /// `prepare` and may be overwritten.
+    /// Updates the memory after a substep; returns the energy that this gives to each body [J]. The scratch is that of the
+    /// latest call of `prepare` and may be overwritten.
     fn remember(
         &self,
         _simd: Simd,
@@ -241,8 +243,8 @@ pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
     fn energy(&self, _simd: Simd, _view: &View<D>, _scratch: &[f64]) -> [f64; WIDTH] {
         [0.0; WIDTH]
     }
-    /// The size of the terms whose difference U is at rest, for all bodies together [J]: their rounding errors are not energy.
-    /// Zero if U is a sum of squares.
+    /// The size of the terms whose difference is U at rest, for all bodies together [J]. The rounding errors of these terms
+    /// must not be taken for energy. Zero if U is a sum of squares.
     fn energy_parts(&self) -> f64 {
         0.0
     }
@@ -259,7 +261,7 @@ pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
 
 /// Data of a model for people and programs; integrators do not use it.
 pub trait Observe<const D: usize> {
-    /// Why it has no energy, or no symmetric second derivatives, for refusals; `None` if it has both.
+    /// The reason why it has no energy or no symmetric second derivatives, for messages of refusal; `None` if it has both.
     fn lacks(&self) -> Option<AnyMessage> {
         None
     }
@@ -309,7 +311,7 @@ pub struct CellState {
     pub cell: u32,
     /// Its mean Cauchy stress σ [Pa], row by row; in the plane including the stress across it.
     pub stress: [[f64; 3]; 3],
-    /// Its volume over that at rest, J.
+    /// Its volume ratio J: its volume divided by its volume at rest.
     pub volume_ratio: f64,
     /// The smallest J at its integration points, both of its shape and of the gradient with which its law is evaluated. A cell
     /// of positive volume may be degenerate or inverted at some of them.
@@ -420,7 +422,7 @@ pub trait Model<const D: usize>: Send + Sync {
     fn need(&self, _counts: &Counts) -> Need {
         Need::default()
     }
-    /// Builds it for one body, or for eight identical ones.
+    /// Builds a potential for one body, or for eight identical ones.
     ///
     /// # Errors
     /// [`BuildError`] if the body cannot carry the model or a combination of parameters has no meaning.

@@ -14,7 +14,7 @@ pub use names::{close_matches, nearest};
 
 use crate::error::BuildError;
 
-/// The complete description of a kind of thing that a scene can name.
+/// The complete description of a kind of model, integrator, shape or collider that a scene can name.
 #[derive(Clone, Copy, Debug)]
 pub struct Spec {
     /// The name in the scene file.
@@ -27,11 +27,11 @@ pub struct Spec {
     pub dimensions: &'static [usize],
     /// The parameters, in the order of the documentation.
     pub fields: &'static [Field],
-    /// The roles that the layers above use; most kinds have none.
+    /// The roles that higher layers of the program use; most kinds have none.
     pub roles: &'static [Role],
 }
 
-/// What a kind does, for the layers above, so that none of them depends on the name of a kind.
+/// What a kind does. Higher layers of the program use its role, so that none of them depends on the name of a kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// A model that owns cells of the mesh and provides their stress and volume ratio J. Two models that own the same cell are
@@ -43,13 +43,13 @@ pub enum Role {
     Gas,
     /// A model whose forces act along the edges of the mesh; pictures draw them as lines.
     Edges,
-    /// The model that a world adds to every body if it has a drag (`world.drag`). Its first parameter is the rate [1/s].
+    /// The model that a world with a drag (`world.drag`) adds to every body. Its first parameter is the rate [1/s].
     WorldDrag,
     /// A model whose readings have the units of the published program: pixels instead of metres.
     Published,
-    /// An obstacle that fills the space on one side of a plane. Its vector `normal` points out of it.
+    /// An obstacle that fills the space on one side of a plane. Its vector `normal` points out of the obstacle.
     HalfSpace,
-    /// A shape that takes cells, and values of nodes, from a mesh file.
+    /// A shape that reads cells, and values of nodes, from a mesh file.
     CellsFromFile,
     /// An integrator whose steps end in an equilibrium.
     Statics,
@@ -163,7 +163,7 @@ pub enum Allowed {
 /// One end of an interval of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
-    /// No bound (but finite).
+    /// No bound, although numbers must be finite.
     None,
     /// The number itself is allowed.
     Closed(f64),

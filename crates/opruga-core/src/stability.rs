@@ -1,7 +1,7 @@
 //! The largest stable step, from the spectra of stiffness and damping and from the integrator.
 //!
-//! Near any state a system moves according to M x″ = −K x − C x′. Its fastest oscillation is ω = √λ(M⁻¹K), its strongest damping
-//! c = λ(M⁻¹C). Both are found before a run from the forces themselves:
+//! Near any state a system moves according to M x″ = −K x − C x′. Its fastest oscillation is ω = √λ(M⁻¹K) and its strongest
+//! damping is c = λ(M⁻¹C), where λ is the largest eigenvalue. Both are found before a run from the forces themselves:
 //!
 //! K d ≈ (F(x − εd) − F(x + εd)) / 2ε,  C d = F(x, 0) − F(x, d),
 //!
@@ -59,7 +59,7 @@ const DISPLACEMENT: f64 = 1e-7;
 /// proportional.
 const PROPORTIONAL: f64 = 1e-7;
 
-/// An integrator that is stable up to this angle ωh per step has no limit, as implicit ones.
+/// An integrator that is stable up to this angle ωh per step counts as one without a limit, as implicit integrators are.
 const LARGEST_PHASE: f64 = 1e6;
 
 /// The ranges of the frequencies and damping of all modes of a system.
@@ -79,7 +79,7 @@ pub struct Spectrum {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stability {
     /// The spectra, with each residual added on the safe side. If the smallest damping is below 1 % of the strongest, it is
-    /// replaced by that of the drag on every node, which is known.
+    /// replaced by the damping due to the drag on every node, which is known.
     pub spectrum: Spectrum,
     /// The largest step for which no mode grows, reduced by 2 % [s]; infinite for a free body and for integrators without a
     /// limit; `None` if a mode grows at every step.
@@ -120,8 +120,8 @@ impl Spectrum {
         probe.start_damping()?;
         let [weakest, strongest] = extremes(&weights, true, 0.0, |d, out| probe.add_damping(d, out))?;
         let damping = strongest.larger(0.0);
-        // A drag that is weak compared with strong springs is lost in the residual of the recurrence; the damping that every node
-        // has is known.
+        // A drag that is weak compared with strong springs is lost in the residual of the recurrence, but the damping that every
+        // node has is known.
         let uniform: f64 = system.members.iter().map(|m| m.potential.properties().uniform_damping).sum();
         let found = if weakest > 0.01 * damping { weakest } else { 0.0 };
         let least_damping = found.larger(uniform).smaller(damping);
@@ -149,7 +149,7 @@ impl Spectrum {
         }
         let modes = self.corners();
         let stable = |h: f64| worst(integrator, &modes, h) <= 1.0 + 1e-9;
-        // A stable step below an unstable one.
+        // Find a stable step `low` below an unstable step `high`.
         let mut low = 1.0 / fastest;
         let mut high = 2.0 * low;
         if stable(low) {
@@ -177,7 +177,7 @@ impl Spectrum {
                 high = middle;
             }
         }
-        // Growth below the tolerance at the limit is still growth, so there must be none at half the step.
+        // At the limit, growth below the tolerance is still growth. So there must be none at half the step.
         (worst(integrator, &modes, 0.5 * low) <= 1.0 + SLOWEST).then_some(low)
     }
 
@@ -218,13 +218,13 @@ impl Spectrum {
 
 /// The growth per step above which half a step counts as unstable. Growth of 1e-9, the tolerance at the full step, still
 /// exceeds this at half the step if it falls with the sixth power of the step. Rounding in the amplification matrices of
-/// integrators with a large memory is smaller than this.
+/// integrators that carry many values is smaller than this.
 const SLOWEST: f64 = 1e-12;
 
 /// How far rounding may raise the spectral radius of a stable step above 1.
 const ROUNDING: f64 = 4e-15;
 
-/// The largest spectral radius at some points; NaN counts as infinite.
+/// The largest spectral radius of an integrator over some points (ω, c); NaN counts as infinite.
 fn worst<const D: usize>(integrator: &dyn Integrator<D>, points: &[(f64, f64)], h: f64) -> f64 {
     let mut worst = 0.0;
     for &(omega, c) in points {

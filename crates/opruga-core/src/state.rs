@@ -110,7 +110,7 @@ enum Numbers {
 struct Eight([f64; WIDTH]);
 
 impl Parameter {
-    /// Zero everywhere, for laws that read fewer numbers than the interface provides.
+    /// A parameter that is zero everywhere, for laws that read fewer numbers than the interface provides.
     pub const NONE: Parameter = Parameter(Numbers::Repeated(Eight([0.0; WIDTH])));
 
     /// The same number everywhere.
@@ -131,7 +131,7 @@ impl Parameter {
         column[..values.len()].copy_from_slice(&values);
         Parameter(Numbers::Each(column))
     }
-    /// From the number of every item (node, spring, …) and body, with the layout of the columns.
+    /// Makes a parameter from the number of every item (node, spring, …) and body, with the layout of the columns.
     pub fn from_items(layout: Layout, items: usize, mut number: impl FnMut(usize, usize) -> f64) -> Parameter {
         let mut values = vec![0.0; items * layout.stride()];
         for item in 0..items {

@@ -54,9 +54,9 @@ pub struct Stencils<L, const N: usize, const K: usize> {
 const SHARE_BITS: u32 = 28;
 
 impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
-    /// Lays out stencils; `parameters` gives those of an element (by its number in `elements`) of a body.
+    /// Lays out stencils; `parameters` returns the parameters of an element (given by its number in `elements`) of a body.
     ///
-    /// `damped` says whether [`Kernel::damping`] is evaluated.
+    /// [`Kernel::damping`] is evaluated only if `damped` is set.
     pub fn new(
         layout: Layout,
         nodes: usize,

@@ -77,8 +77,8 @@ pub struct System<const D: usize> {
     pub simd: Simd,
     /// Stops a long step, with [`crate::error::StepError::BrokenOff`].
     pub break_off: std::sync::Arc<crate::break_off::BreakOff>,
-    /// The number of threads over which the work on this system may be distributed; it then runs in a pool of them. They do not
-    /// change the bits.
+    /// The number of threads over which the work on this system may be distributed; it then runs in a pool of threads. Their
+    /// number does not change the bits.
     pub threads: usize,
     /// One body or eight.
     pub layout: Layout,
@@ -184,14 +184,14 @@ impl<const D: usize> System<D> {
     /// Checks whether a long step may continue.
     ///
     /// # Errors
-    /// [`StepError::BrokenOff`] if it shall end; its effects must be undone.
+    /// [`StepError::BrokenOff`] if the step must end; its effects must then be undone.
     pub fn go_on(&self) -> Result<(), StepError> {
         match self.break_off.is_wanted() {
             true => Err(StepError::BrokenOff {}),
             false => Ok(()),
         }
     }
-    /// The masses that determine the weight of the nodes [kg]: their own, or with a consistent mass matrix ∫ρNₐ.
+    /// The masses that determine the weight of the nodes [kg]: those of the nodes or, with a consistent mass matrix, ∫ρNₐ.
     pub fn weighing(&self) -> &Parameter {
         self.weighing.as_ref().unwrap_or(&self.mass)
     }

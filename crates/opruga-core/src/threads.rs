@@ -3,7 +3,7 @@
 //!
 //! This module is the only entry point. [`together`] calls the threads of the pool in which the caller runs (that of the
 //! world), and they stay awake until it returns. Work that is submitted to this module in the meantime is distributed to them.
-//! `threads` says whether work may be distributed.
+//! Work is distributed only if `threads` is more than one.
 
 use opruga_math::Team;
 use rayon::prelude::*;
@@ -26,7 +26,7 @@ impl Drop for Leading {
     }
 }
 
-/// Runs `work` while `threads` threads, including the caller's, are ready for its pieces.
+/// Runs `work` while `threads` threads, including that of the caller, are ready for its pieces.
 pub fn together<R>(threads: usize, work: impl FnOnce() -> R) -> R {
     if threads < 2 || team().is_some() {
         return work();
@@ -65,8 +65,8 @@ pub fn each<T: Send>(threads: usize, pieces: &mut [T], work: impl Fn(&mut T) + S
     }
 }
 
-/// Does the work on every piece on the threads of the pool in which the caller runs. Unlike a team, these threads sleep in between: for pieces that take
-/// tens of microseconds, between longer work on one thread.
+/// Does the work on every piece on the threads of the pool in which the caller runs. Unlike a team, these threads sleep between calls. Meant for
+/// pieces that take tens of microseconds, between longer work on one thread.
 pub fn each_in_pool<T: Send>(pieces: &mut [T], work: impl Fn(&mut T) + Sync + Send) {
     match pieces {
         [piece] => work(piece),
@@ -104,8 +104,8 @@ pub fn each_part<T: Send>(threads: usize, slice: &mut [T], starts: &[usize], wor
 /// The number of nodes in a block of vectors that one thread processes.
 const BLOCK: usize = 512;
 
-/// Does the work on blocks of vectors with several numbers per node; it receives the start of its block. All vectors end with the
-/// shortest one.
+/// Does the work on blocks of vectors with several numbers per node; `work` receives the start of its block. Entries beyond the
+/// end of the shortest vector are ignored.
 pub fn each_block<T: Send, const N: usize>(
     threads: usize,
     numbers: usize,

@@ -16,8 +16,8 @@ pub struct Tile<'a, const D: usize> {
     pub force: [&'a mut [f64]; D],
     /// Power that the model dissipates (damping) or gives to the bodies (loads) [W], eight partial sums.
     pub power: &'a mut [f64; WIDTH],
-    /// The weight m g with which the forces begin, as long as it has not been written. Only the first model receives it, and only
-    /// if it sets [`crate::potential::Potential::begins_tiles`]; it then has to call [`Tile::settle`] or do the same itself.
+    /// The weight m g with which the forces begin, if it has not been written yet. Only the first model receives it, and only if
+    /// it sets [`crate::potential::Properties::begins_tiles`]; it then has to call [`Tile::settle`] or do the same itself.
     pub weight: Option<Weight<'a, D>>,
     /// A buffer for the forces of stencils before they are summed at the nodes.
     pub slots: &'a mut Column,
@@ -71,8 +71,8 @@ impl<const D: usize> Work for Settle<'_, '_, D> {
 /// The order in which tiles are evaluated and moved.
 ///
 /// The forces of a tile read positions of its neighbours. A tile may move only when the forces of every tile that reads it have
-/// been computed. For a chain that is one tile later, so the forces stay in the cache; for a mesh with distant node numbers it is
-/// later, and more buffers are needed.
+/// been computed. For a chain of nodes, this happens one tile later, so the forces stay in the cache. For a mesh with distant
+/// node numbers it happens later, and more buffers are needed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TilePlan {
     tiles: Vec<Range<usize>>,

@@ -21,7 +21,7 @@ impl Cache {
 
 /// Memory that is used only within a step: forces, stages of an integrator, the motion before obstacles act.
 ///
-/// Systems that are stepped one after the other share one, so that it stays in the cache.
+/// Systems that are stepped one after the other share one workspace, so that it stays in the cache.
 #[derive(Debug)]
 pub struct Workspace<const D: usize> {
     pub(crate) forces: [Column; D],

@@ -37,7 +37,7 @@ impl<const D: usize> Suite<'_, D> {
             for cut in &cuts {
                 tiles += unequal_bits(&columns(&case.forces(best, cut, None)?.0), &whole);
             }
-            // The forces begin with the weight, added by the model or before it.
+            // The forces begin with the weight, whether the model adds it or it was added before.
             let mass = Parameter::from_items(case.layout, nodes, |n, l| self.bodies[l].mass[n]);
             if case.potential.properties().begins_tiles {
                 for cut in &cuts {

@@ -24,10 +24,11 @@ impl<const D: usize> Suite<'_, D> {
         let (force, _) = case.plain(best)?;
         let flat: Vec<f64> = force.iter().flatten().copied().collect();
         let energy = sum_in_fixed_order(&case.energy(best)?);
-        // Energies are compared with the work of a force over an edge if they are smaller than that.
+        // Differences of energies are relative to the work of the largest force along a mean edge, unless the energy itself is
+        // larger.
         let scale = largest(&flat) * mean_edge(self.mesh);
 
-        // Moved, and rotated about the first node together with the velocities.
+        // The body is displaced, and rotated about the first node together with its velocities.
         let shift: [f64; D] = random.vector::<D>().map(|c| c * extent);
         let turn = rotation::<D>(random);
         let center = body.x[0];

@@ -24,7 +24,7 @@
 //! | power | the power of damping that the model reports is −F·v of the damping force, and not negative |
 //! | coincident | all nodes in one point: energy and force are finite |
 //!
-//! Rows for properties that a model does not claim ([`Potential::views`], [`Options::rigid`]) are left out.
+//! Rows for properties that a model does not claim ([`Potential::views`], [`Options::rigid`]) are omitted.
 
 mod bits;
 mod case;

@@ -18,15 +18,15 @@ pub(super) struct Chain<'a, 'v, L, const D: usize> {
     /// The number of indices of all pairs.
     pub(super) length: usize,
     pub(super) layout: Layout,
-    /// The separate pair that comes next.
+    /// The separate pair that follows the run.
     pub(super) closing: Option<Lone>,
 }
 
 /// One case of the loop.
 struct Walk<'a, 'c, 'v, 't, L, const D: usize, const BATCH: bool, const FRESH: bool, const SAME: bool> {
     chain: &'a Chain<'c, 'v, L, D>,
-    // By reference: numbers next to pointers would be read together with them, and that read would wait until each has been
-    // written.
+    // This is a reference, because numbers stored next to pointers would be read together with them, and that read would wait
+    // until all of them have been written.
     weight: &'a Weight<'a, D>,
     tile: &'a mut Tile<'t, D>,
     power: &'a mut [f64; WIDTH],
@@ -64,7 +64,8 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
             tile.settle(simd);
             return simd.run(Walk::<_, _, BATCH, false, true> { chain: self, weight, tile, power });
         }
-        // If nothing has written the forces of the tile, and its nodes all belong to the run, the loop begins them.
+        // If the forces of the tile have not been written yet, and all of its nodes belong to the run, the loop writes the
+        // weight too.
         let [_, second, third] = self.law.parameters();
         // Padding follows the last node.
         let nodes = tile.range.end.min(self.view.nodes * self.layout.stride());
@@ -81,8 +82,8 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
         }
     }
 
-    /// The loop. Node p receives the force of its own pair and that of the previous pair, which is the pack of forces shifted by
-    /// one node.
+    /// The loop over the pairs. Node p receives the force of its own pair and that of the previous pair, which is in the pack of
+    /// forces shifted by one node.
     ///
     /// `FRESH`: there is a weight, equal for all nodes, and the forces of the tile are overwritten instead of added. `SAME`: all
     /// but the first parameter of the law are equal for all pairs, and are read once.
@@ -120,7 +121,7 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
             let (f, _) = law.force([p0.load(0), second, third], d, rate, law.ahead(d));
             previous = f;
             if lead < WIDTH {
-                // The pair before the first node is not the last one of the pack.
+                // In this case, the pair that ends at the first node is not the last one of the pack.
                 for i in 0..D {
                     let last = f[i].to_array()[lead - 1];
                     previous[i] = P::splat(last);
@@ -191,7 +192,7 @@ impl<P: Pack, L: PairLaw<D>, const D: usize> Walker<'_, P, L, D> {
         }
     }
 
-    /// Processes the pack of nodes from `k` on; returns the power of their pairs. `EDGE`: not all eight exist.
+    /// Processes the pack of nodes from `k` on; returns the power of their pairs. `EDGE`: not all eight nodes exist.
     #[inline(always)]
     fn step<const BATCH: bool, const FRESH: bool, const SAME: bool, const EDGE: bool>(
         &mut self,
@@ -209,7 +210,7 @@ impl<P: Pack, L: PairLaw<D>, const D: usize> Walker<'_, P, L, D> {
         if later < self.packed {
             self.look_ahead(lag::<P>() - 1, later);
         }
-        // Part by part: the data of a law fit into the registers of any processor.
+        // The pack is processed part by part, so that the data of a law fit into the registers of any processor.
         let mut f = [P::zero(); D];
         let mut dissipated = P::zero();
         for part in 0..P::PARTS {

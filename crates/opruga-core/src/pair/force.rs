@@ -16,7 +16,7 @@ impl PairTable {
         let stride = self.layout.stride();
         let (start, end) = (tile.range.start, tile.range.end);
         let mut power = [0.0; WIDTH];
-        // A tile of the plan knows its runs; any other range checks all of them.
+        // The runs that touch a tile of the plan are known. For any other range, all runs are checked.
         let numbered = start % TILE == 0 && end <= start + TILE;
         let mine = if numbered {
             &self.tile_runs[self.runs_from(start / TILE)..self.runs_from(start / TILE + 1)]
@@ -174,7 +174,7 @@ impl PairTable {
                 slots.store(0, i * column_length + WIDTH + k, force[i]);
             }
             if L::DAMPED {
-                // The power belongs to the tile of the first node.
+                // The power of a pair is counted in the tile of its first node.
                 if k >= low && k + WIDTH <= high {
                     *power += dissipated;
                 } else {
@@ -227,7 +227,7 @@ impl PairTable {
         }
     }
 
-    /// As [`Self::sum`], for a layout known at compile time, so that the partial sums stay in registers.
+    /// Computes the sum of [`Self::sum`] for a layout known at compile time, so that the partial sums stay in registers.
     #[inline(always)]
     fn sum_laid_out<P: Pack, T: PairTerm<P, D>, const D: usize, const BATCH: bool>(
         &self,
@@ -247,7 +247,7 @@ impl PairTable {
             let [p0, p1, p2] = term.parameters();
             let (p0, p1, p2) = (p0.strip(first, packed), p1.strip(first, packed), p2.strip(first, packed));
             for eight in (0..packed).step_by(if BATCH { WIDTH * WIDTH } else { WIDTH }) {
-                // Side by side, every pack has its own partial sum, one of eight.
+                // With bodies side by side, every pack has its own partial sum, one of eight.
                 for j in 0..if BATCH { WIDTH } else { 1 } {
                     let k = eight + j * WIDTH;
                     if BATCH && k >= packed {

@@ -2,7 +2,7 @@
 //!
 //! Pairs are sorted into *runs*, stretches in which both ends advance by one node: a whole outline, a row of a grid. A run is
 //! evaluated once per pair, eight at a time, without any index. Pairs outside of long runs are evaluated from both of their ends,
-//! node by node (*pull*). Both add forces in an order that depends neither on tiles nor on the layout.
+//! node by node (*pull*). Both methods add forces in an order that depends neither on tiles nor on the layout.
 //!
 //! ```text
 //! run of 5:   a   0 1 2 3 4        pull of node 7:   partners 2, 9, 12
@@ -33,7 +33,7 @@ pub trait PairLaw<const D: usize>: Copy {
     const AHEAD: bool;
     /// Three numbers per pair that the law reads.
     fn parameters(&self) -> [&Parameter; 3];
-    /// If the law is uniform, replaces the second and third of them: two numbers for each body.
+    /// If the law is uniform, returns two numbers for each body, which replace the second and third parameters.
     #[inline(always)]
     fn uniform<P: Pack>(&self) -> [P; 2] {
         [P::zero(); 2]
@@ -81,8 +81,8 @@ pub struct PairTable {
 const SHORTEST_RUN: u32 = 24;
 
 impl PairTable {
-    /// Sorts pairs of `nodes` nodes into runs. The shorter runs are pulled if `antisymmetric` says that the law changes sign with
-    /// its argument.
+    /// Sorts pairs of `nodes` nodes into runs. The shorter runs are pulled if `antisymmetric` is set, which means that the law
+    /// changes sign with its argument.
     pub fn new(layout: Layout, nodes: usize, pairs: &[[u32; 2]], antisymmetric: bool) -> PairTable {
         let mut runs: Vec<Run> = Vec::new();
         for (k, &[a, b]) in pairs.iter().enumerate() {

@@ -33,7 +33,7 @@ pub(super) struct Pull {
     pub(super) widths: Vec<u32>,
     /// `[node / 8][slot][node % 8]`: the partner, or the node itself if there is none.
     pub(super) partner: Vec<u32>,
-    /// The number of the pair, or that of the pair without effect.
+    /// The number of the pair, or the number of the pair without effect if there is no partner.
     pub(super) pair: Vec<u32>,
     /// `[node / 8][slot]`: whether the eight partners, and the eight pairs, are consecutive, so that they are read at once.
     pub(super) together: Vec<bool>,
@@ -104,7 +104,8 @@ impl PairTable {
             let width = pull.used(self.layout, index);
             for from in (0..width).step_by(AT_ONCE) {
                 let slots = from..(from + AT_ONCE).min(width);
-                // First the slow part for all partners; the rest of the first ones is computed meanwhile.
+                // The slow part begins for all partners first. The processor can then compute the rest of the first partners
+                // meanwhile.
                 let (mut d, mut ahead) = ([[P::zero(); D]; AT_ONCE], [P::zero(); AT_ONCE]);
                 for slot in slots.clone() {
                     let (partner, _) = pull.slot(self.layout, index, slot);

@@ -49,8 +49,8 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
 const MOST_OFFERED: usize = 4;
 
 /// All candidates that may be meant by a word, the closest first. They differ from it by a few letters, either as a whole or up
-/// to one of their parts, as `balloon-in-a-box` from `ballon`. Of equally close ones, the one with the longer common beginning
-/// comes first.
+/// to one of their parts, as `balloon-in-a-box` does from `ballon`. Of two equally close candidates, the one with the longer
+/// common beginning comes first.
 pub fn close_matches<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<String> {
     let candidates: Vec<&str> = candidates.collect();
     let limit = word.chars().count() / 3 + 1;

@@ -37,10 +37,10 @@ fn dot<const D: usize>(a: &Columns<D>, b: &Columns<D>) -> f64 {
     sum_in_fixed_order(&sums)
 }
 
-/// Bounds on the smallest and the largest eigenvalue of W A W, where W is diagonal and `product` adds A d to zeros.
+/// Bounds on the smallest and the largest eigenvalue of W A W, where W is diagonal. `product` adds A d to a vector of zeros.
 ///
-/// The Lanczos recurrence q ← (W A W − α) q − β q′ from a fixed start. It continues until the residuals of both ends, or only
-/// of the upper one, are small compared with the larger of these values and `reference`.
+/// Uses the Lanczos recurrence q ← (W A W − α) q − β q′ from a fixed start. The recurrence continues until the residuals of
+/// both ends, or only of the upper one, are small compared with the larger of these values and `reference`.
 pub(super) fn extremes<const D: usize>(
     weights: &Columns<D>,
     both: bool,
@@ -107,7 +107,7 @@ pub(super) fn extremes<const D: usize>(
     Ok([found[0].unwrap_or(0.0), found[1].unwrap_or(0.0)])
 }
 
-/// A unit vector with pseudo-random entries where the weights are not zero; always the same.
+/// The start vector: a unit vector with pseudo-random entries where the weights are not zero. It is always the same.
 fn start<const D: usize>(weights: &Columns<D>) -> Columns<D> {
     let mut out = weights.clone();
     let mut square = 0.0;
@@ -172,7 +172,8 @@ impl Tridiagonal {
         }
         count
     }
-    /// The largest distance of the eigenvalue from one of the whole matrix: next β times the last entry of its unit vector.
+    /// A bound on the distance of a Ritz value from an eigenvalue of the whole matrix: the next β times the last entry of its
+    /// unit vector.
     fn residual(&self, value: f64) -> f64 {
         let n = self.alpha.len();
         let (mut before, mut entry, mut square) = (0.0, 1.0, 1.0);

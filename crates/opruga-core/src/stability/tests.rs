@@ -143,7 +143,7 @@ fn limits_of_symplectic_euler() {
     assert!((limit(0.0, 10.0) - 0.2).abs() < 1e-9);
     assert!((limit(1e-6, 10.0) - 0.2).abs() < 1e-6);
     assert!((limit(10.0, 1e-7) - 0.2).abs() < 1e-6);
-    // The worst corner is that of the fastest oscillation and the strongest damping, whatever is between.
+    // The worst corner is that of the fastest oscillation and the strongest damping, whatever other modes there are.
     let proportional = Spectrum { omega: 80.0, damping: 160.0, least_damping: 0.0, offset: [0.0, 0.0] };
     assert!((proportional.largest_stable_step(&SYMPLECTIC).unwrap() - limit(80.0, 160.0)).abs() < 1e-12);
 }

@@ -1,4 +1,4 @@
-//! Numbers that carry a derivative: one formula gives value and slope, exactly.
+//! Numbers that carry a derivative: one formula gives the value and the exact slope.
 
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 use opruga_math::Lane;
