@@ -36,7 +36,8 @@ pub fn products_and_sums(simd: Simd, out: &mut [f64; WIDTH]) -> usize {
     2 * ROUNDS * CHAINS * WIDTH
 }
 
-/// a = b + c/2 over arrays of equal length, a multiple of the width; returns the number of bytes that are read and written.
+/// Computes a = b + c/2 for arrays of equal length, which must be a multiple of the width; returns the number of bytes that are
+/// read and written.
 #[inline(never)]
 pub fn triad(simd: Simd, a: &mut [f64], b: &[f64], c: &[f64]) -> usize {
     struct Triad<'a>(&'a mut [f64], &'a [f64], &'a [f64]);
@@ -54,8 +55,8 @@ pub fn triad(simd: Simd, a: &mut [f64], b: &[f64], c: &[f64]) -> usize {
     bytes
 }
 
-/// Replaces every number by the inverse of its square root, and returns the number of packs. The count of numbers is a multiple
-/// of the width.
+/// Replaces every number by the inverse of its square root, and returns the number of packs. The number of entries must be a
+/// multiple of the width.
 #[inline(never)]
 pub fn inverse_roots(simd: Simd, numbers: &mut [f64]) -> usize {
     struct Roots<'a>(&'a mut [f64]);

@@ -8,7 +8,8 @@ use core::ops::Range;
 const LINE: usize = 64;
 
 /// Asks the processor to bring a part of a list into its first-level cache, for lists that are read too seldom for the processor
-/// to predict it. The part beyond the end of the list is ignored; on processors without such an instruction nothing happens.
+/// to predict the reads. The part beyond the end of the list is ignored; on processors without such an instruction nothing
+/// happens.
 #[inline(always)]
 pub fn fetch_early<T>(list: &[T], part: Range<usize>) {
     #[cfg(target_arch = "x86_64")]

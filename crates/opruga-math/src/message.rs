@@ -277,7 +277,6 @@ impl IntoField for AnyMessage {
     }
 }
 
-/// A missing value is an empty text.
 impl<T: IntoField> IntoField for Box<T> {
     fn field(&self) -> Field {
         T::field(self)
@@ -287,6 +286,7 @@ impl<T: IntoField> IntoField for Box<T> {
     }
 }
 
+/// A missing value is an empty text.
 impl<T: IntoField> IntoField for Option<T> {
     fn field(&self) -> Field {
         self.as_ref().map_or_else(|| Field::Text(String::new()), IntoField::field)
@@ -306,8 +306,8 @@ pub fn if_any<T: fmt::Display>(part: &Option<T>) -> String {
 ///
 /// `#[value(…)]`, `#[parameters(…)]`, `#[allowed(…)]` and `#[hint(…)]` may follow, in this order: the text of the offending
 /// value, the names of the parameters of a scene to which the message refers, and the texts of the allowed values and of the
-/// hint. If one of the last two is empty, there is none. A message without parameters has those of its parts. A message is itself
-/// a field: the macro also implements [`IntoField`].
+/// hint. If one of the last two is empty, there are no allowed values or no hint. A message without parameters has the parameters
+/// of its parts. A message may be a field of another one, because the macro also implements [`IntoField`].
 ///
 /// ```
 /// use opruga_math::words::number;

@@ -1,12 +1,12 @@
 //! The rotation nearest to a matrix.
 //!
-//! In space, no singular values are needed. With the sum f = σ₁ + σ₂ + σ₃ (the last with the sign of det F) and the invariants
-//! I = tr C, J = det F of F, C = FᵀF, f is the largest root of
+//! In space, no singular values are needed. Let f = σ₁ + σ₂ + σ₃ be the sum of the singular values of F (the last with the sign
+//! of det F), and let C = FᵀF, I = tr C and J = det F. Then f is the largest root of
 //!
-//! f⁴ − 2 I f² − 8 J f + 2 tr C² − I² = 0,
+//! f⁴ − 2 I f² − 8 J f + 2 tr C² − I² = 0.
 //!
-//! and since R is the derivative of f by F, R = ((f² + I) F − 2 F C + 2 f cof F)/(f³ − I f − 2 J). The denominator is 2 (σ₁ +
-//! σ₂)(σ₂ + σ₃)(σ₃ + σ₁). It is small if the rotation is badly determined; then singular vectors are used.
+//! Since R is the derivative of f with respect to F, R = ((f² + I) F − 2 F C + 2 f cof F)/(f³ − I f − 2 J). The denominator is
+//! 2 (σ₁ + σ₂)(σ₂ + σ₃)(σ₃ + σ₁). It is small if the rotation is badly determined; singular vectors are used in this case.
 //!
 //! Source: Davenport 1968 for the quartic (of the quaternion of R); Lin, Chitalu, Komura, "Isotropic ARAP energy using
 //! Cauchy–Green invariants" (2022) for its derivative.
@@ -27,8 +27,8 @@ const MOST_ITERATIONS: usize = 12;
 
 /// The rotation nearest to a matrix: R of F = R S with det R = 1, S symmetric and the largest possible tr S.
 ///
-/// F may be degenerate or inverted. If R is not unique (S has two smallest stretches of opposite sign), it is that of the
-/// singular vectors; if F has no direction at all, it is the unit matrix.
+/// F may be degenerate or inverted. If R is not unique (S has two smallest stretches of opposite sign), the result is the
+/// rotation of the singular vectors. If F has no direction at all, it is the unit matrix.
 #[inline(always)]
 pub fn nearest_rotation<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Matrix<S, D> {
     const { assert!(D == 2 || D == 3) }

@@ -55,7 +55,7 @@ pub fn singular<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Singular<S, D> {
             break;
         }
     }
-    // The shortest column last.
+    // The shortest column is moved to the end.
     let mut squares = [S::zero(); D];
     for j in 0..D {
         for i in 0..D {

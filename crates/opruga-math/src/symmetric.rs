@@ -100,7 +100,7 @@ fn rotate<S: Lane, const N: usize>(a: &mut [[S; N]; N], vectors: &mut [[S; N]; N
         vectors[k][p] = c * x - s * y;
         vectors[k][q] = s * x + c * y;
     }
-    // Otherwise rounding errors would be rotated for ever.
+    // Set to exact zero, because rounding errors would otherwise be rotated for ever.
     a[p][q] = S::select(open, S::zero(), a[p][q]);
     a[q][p] = S::select(open, S::zero(), a[q][p]);
     true

@@ -4,7 +4,7 @@
 //! The thread that distributes pieces, the *leader*, works too. It waits for pieces that a member has taken, but never for
 //! members to arrive. If a member is late or never arrives, the others do more of the work.
 //!
-//! Each piece is assigned to a member, and others take it only if that member is late, so the same memory is used by the same
+//! Each piece is assigned to a member, and others take it only if that member is late. So the same memory is used by the same
 //! processor again.
 
 use core::cell::UnsafeCell;
@@ -48,8 +48,9 @@ impl core::fmt::Debug for Task {
     }
 }
 
-// SAFETY: only the leader writes it, while no piece is taken; others read it while they have a piece. Taking a piece happens
-// after the write, and completing it happens before the next one, by the orderings of the atomics in `take` and `hand_out`.
+// SAFETY: only the leader writes the task, while no piece is taken; others read it while they have a piece. Taking a piece
+// happens after the write, and completing it happens before the next one, by the orderings of the atomics in `take` and
+// `hand_out`.
 #[allow(unsafe_code)]
 unsafe impl Sync for Task {}
 // SAFETY: the work it refers to can be called from every thread.
@@ -137,8 +138,8 @@ impl Team {
         });
     }
 
-    /// Does the work on blocks of some slices, with `length` entries from the same index on in each; the last may have fewer. All
-    /// slices end with the shortest one. The work receives the start of its block.
+    /// Does the work on blocks of some slices, with `length` entries from the same index on in each; the last may have fewer.
+    /// Entries beyond the end of the shortest slice are ignored. The work receives the start of its block.
     pub fn each_block<T: Send, const N: usize>(
         &self,
         slices: [&mut [T]; N],

@@ -3,7 +3,7 @@
 use crate::lane::Lane;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// Two lanes of the same type; every number is computed as it would be alone.
+/// Two lanes of the same type. Every number is computed as it would be in a single lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Twin<S>(pub S, pub S);
 

@@ -1,6 +1,6 @@
 //! The registers of x86-64: two numbers with SSE2, four with AVX2, eight with AVX-512.
 //!
-//! Their operations are the basic ones of IEEE 754, so all give the same bits.
+//! Their operations are the basic ones of IEEE 754, so all of them give the same bits.
 //!
 //! # Safety
 //! The instructions of AVX2 and AVX-512 exist only on processors that have them. The types are private to this crate, and their
@@ -143,17 +143,18 @@ macro_rules! register {
     };
 }
 
-/// The bits of √½, rounded down to 32 bits, and their difference from those of 1: numbers are split there for the logarithm.
+/// The bits of √½, rounded down to 32 bits, and their difference from the bits of 1. The mantissas of the logarithm begin at
+/// √½.
 const ROOT_OF_HALF: i64 = 0x3fe6_a09e << 32;
 const SHIFT: i64 = (0x3ff0_0000 - 0x3fe6_a09e) << 32;
 /// The bits of the fraction.
 const FRACTION: i64 = (1 << 52) - 1;
-/// The bits of 2⁵², in whose last places a small whole number becomes a floating-point number; including the bias of the
-/// exponent.
+/// The bits of 2⁵²: a small whole number that is written to its last bits becomes a floating-point number. `BIAS` is then
+/// subtracted; it includes the bias of the exponent.
 const WHOLE: i64 = 0x4330_0000_0000_0000;
 const BIAS: f64 = 4_503_599_627_370_496.0 + 1023.0;
 
-/// Converts a count of eight at most: only small signed integers are converted by one instruction everywhere.
+/// Converts a count of at most eight, because only small signed integers are converted by one instruction everywhere.
 #[inline(always)]
 fn few(count: usize) -> f64 {
     f64::from(count.min(8) as i32)

@@ -1,4 +1,4 @@
-//! Dense parts next to a sparse matrix, as delivered, and their factors.
+//! Dense parts that models deliver next to a sparse matrix.
 
 use crate::blocks::{Block, times};
 use crate::rank_one::RankOne;
@@ -6,7 +6,7 @@ use opruga_core::dense::Dense;
 use opruga_core::potential::{DensePart, Following, RankOnePart};
 use std::sync::Arc;
 
-/// A dense part on some nodes, between projectors if directions are held.
+/// A dense part on some nodes, between projectors if directions of nodes are held.
 #[derive(Clone, Debug)]
 pub(crate) struct Beside<const D: usize> {
     pub(crate) factor: f64,
@@ -14,7 +14,7 @@ pub(crate) struct Beside<const D: usize> {
     pub(crate) indices: Vec<u32>,
     pub(crate) matrix: Arc<Dense>,
     pub(crate) following: Option<Following>,
-    /// The projectors, by the numbers of nodes in the list.
+    /// The projectors of nodes with held directions, and the numbers of these nodes in the list.
     pub(crate) pinned: Vec<(u32, Block<D>)>,
 }
 
@@ -70,8 +70,8 @@ impl<const D: usize> Beside<D> {
         };
         self.part().parts_of_rank_one().into_iter().map(part).collect()
     }
-    /// Holds the directions of nodes that are not free, by their projectors. If any is held, the frame follows through rank-one
-    /// terms, which are returned.
+    /// Holds the directions of nodes that are not free, by their projectors. If any direction is held, the frame no longer
+    /// follows its nodes; rank-one terms with the same effect are returned.
     pub(crate) fn constrain(&mut self, free: &[bool], projectors: &[Block<D>]) -> Vec<RankOne<D>> {
         self.pinned.clear();
         for (number, index) in self.indices.iter().enumerate().filter(|(_, index)| !free[**index as usize]) {

@@ -35,7 +35,7 @@ pub struct Pencil<'a> {
     pub mass: &'a [f64],
     /// The shift s, with which K + s M is positive definite [1/s²].
     pub shift: f64,
-    /// M-orthonormal shapes that are already known and are left out.
+    /// M-orthonormal shapes that are already known and are not searched for.
     pub known: &'a [Vec<f64>],
     /// Writes M x; M has no rows and columns of pinned coordinates.
     pub weigh: &'a dyn Fn(&[f64], &mut [f64]),
@@ -51,8 +51,8 @@ const BLOCK: usize = 6;
 /// A Ritz pair whose residual is below this fraction of θ is as accurate as rounding permits.
 const CONVERGED: f64 = 1e-12;
 
-/// The basis is first decomposed when it has twice as many vectors as the requested modes (fewer have never been enough), and
-/// again each time it has grown by this fraction of its size. Each decomposition costs the cube of the size.
+/// The basis is first decomposed when it has twice as many vectors as there are requested modes (fewer have never been enough).
+/// It is decomposed again each time it has grown by this fraction of its size. Each decomposition costs the cube of the size.
 const GROWTH: f64 = 0.1;
 
 /// Bodies with up to this many free coordinates are decomposed as a whole, because the dense matrix takes only milliseconds.
@@ -87,7 +87,7 @@ fn is_dense(count: f64, free: f64) -> bool {
 /// The lowest `count` modes, ascending; fewer if the body has fewer.
 ///
 /// # Errors
-/// [`Indefinite`] if the matrices have an entry that is not finite, and so no natural frequencies.
+/// [`Indefinite`] if the matrices have an entry that is not finite, because there are then no natural frequencies.
 pub fn lowest_modes(count: usize, pencil: &Pencil) -> Result<Vec<Mode>, Indefinite> {
     let free = pencil.mass.iter().filter(|m| **m > 0.0).count();
     let freedom = free.saturating_sub(pencil.known.len());
@@ -225,7 +225,7 @@ fn lanczos(count: usize, freedom: usize, pencil: &Pencil) -> Result<Vec<Vec<f64>
             }
         }
         let size = basis.len();
-        // Its images A q, their components in the basis, and the remainder for the next block.
+        // The images A q of the block, their components in the basis, and the remainder for the next block.
         block = Vectors::new(rows);
         for k in fresh..size {
             let mut image = vec![0.0; rows];

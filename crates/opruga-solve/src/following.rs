@@ -36,7 +36,7 @@ pub(crate) struct FollowingFrame {
     forces: Vec<f64>,
     solved_follows: Vec<f64>,
     solved_forces: Vec<f64>,
-    /// V.
+    /// The matrix V.
     spins: Vec<f64>,
     /// The inverse of the matrix of ν and θ, by rows.
     core: Vec<f64>,
@@ -110,11 +110,11 @@ impl FollowingFrame {
         }
         Ok(frame)
     }
-    /// Vᵀ r.
+    /// Returns Vᵀ r.
     pub(crate) fn along(&self, right: &[f64]) -> Vec<f64> {
         self.spins.chunks_exact(self.length).map(|v| dot(v, right)).collect()
     }
-    /// From S⁻¹ r and Vᵀ r to A⁻¹ r.
+    /// Replaces x = S⁻¹ r by A⁻¹ r, given `along` = Vᵀ r.
     pub(crate) fn correct(&self, along: &[f64], x: &mut [f64]) {
         let axes = along.len();
         let mut right: Vec<f64> = self.follows.chunks_exact(self.length).map(|j| -dot(j, x)).collect();
@@ -212,7 +212,7 @@ mod tests {
         let (mut matrix, mut cholesky) = (BlockMatrix::<3>::default(), Cholesky::default());
         let right: Vec<f64> = (0..SIZE).map(|k| number(3 * k)).collect();
         let one = Body::new(&base, 1);
-        // The inverse and the solutions for the base are kept from state to state, but not from body to body.
+        // The inverse and the solutions for the base are kept between states of a body, but not between bodies.
         for body in [&one, &Body { matrix: Arc::clone(&one.matrix), ..Body::new(&base, 2) }, &Body::new(&base, 3)] {
             for pinned in [false, true] {
                 matrix.assemble(NODES, 0, |sink| {

@@ -258,7 +258,7 @@ impl<const D: usize> BlockMatrix<D> {
         true
     }
 
-    /// y = A x, over all rows in the order of columns, with the same bits everywhere.
+    /// Computes y = A x, over all rows in the order of columns, with the same bits everywhere.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         let by_node = nodes::<D>(x);
         for (row, out) in nodes_mut::<D>(y).iter_mut().enumerate() {
@@ -289,7 +289,7 @@ impl<const D: usize> BlockMatrix<D> {
     }
 
     /// Removes directions from the matrix: A ← P A P + (1 − P) s, where P is the projector of every node that is not `free`, and
-    /// s is the size of its diagonal.
+    /// s is the size of the diagonal of the node.
     pub fn constrain(&mut self, free: &[bool], projectors: &[Block<D>]) {
         for row in 0..self.rows() {
             for at in self.start[row] as usize..self.start[row + 1] as usize {

@@ -9,7 +9,7 @@ use crate::matrix::BlockMatrix;
 
 /// A symmetric positive definite approximation of the inverse of a matrix.
 pub trait Preconditioner {
-    /// z = B r.
+    /// Computes z = B r.
     fn apply(&self, r: &[f64], z: &mut [f64]);
 }
 
@@ -130,7 +130,7 @@ impl<const D: usize> IncompleteCholesky<D> {
                 diagonal[d][d] += raised * diagonal[d][d];
             }
             for at in from..until {
-                // L_rk = (A_rk − Σ L_rj L_kjᵀ) L_kk⁻ᵀ, over the j that both rows have.
+                // L_rk = (A_rk − Σ L_rj L_kjᵀ) L_kk⁻ᵀ, summed over those j that both rows have.
                 let k = self.column[at] as usize;
                 let mut block = match self.source[at] {
                     FILL => [[0.0; D]; D],

@@ -8,7 +8,7 @@ pub(crate) struct Scalars {
     pub(crate) start: Vec<usize>,
     pub(crate) row: Vec<usize>,
     pub(crate) values: Vec<f64>,
-    /// The matrix of the pattern: number of changes of the pattern, and number of rows.
+    /// What identifies the pattern: the number of its changes in the matrix, and the number of rows.
     pattern: (u64, usize),
 }
 

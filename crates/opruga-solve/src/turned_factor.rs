@@ -22,11 +22,12 @@ pub(crate) struct TurnedFactor {
     /// The rotation, row by row.
     frame: Vec<f64>,
     solver: Option<Solver>,
-    /// The data from which the factor was made, if they do not rotate; and the matrix itself, which keeps its address.
+    /// The bits of the data from which the factor was made, if these data are the same in every frame; and the dense matrix,
+    /// which keeps its address.
     made_of: Vec<u64>,
     matrix: Option<Arc<Dense>>,
-    /// The terms of a frame that follows its nodes, and the solutions for the vectors that it follows at rest, which are kept
-    /// with the inverse.
+    /// The terms of a frame that follows its nodes, and the solutions for the vectors in [`SolvedBase`], which are kept as long
+    /// as the inverse.
     following: Option<FollowingFrame>,
     solved_base: Option<SolvedBase>,
 }
@@ -74,8 +75,8 @@ impl TurnedFactor {
         self.made_of = made_of.unwrap_or_default();
         Ok(())
     }
-    /// Takes a frame that follows its nodes, if the inverse exists and there are no other rank-one terms; returns whether it did.
-    /// `right` is replaced by the solution.
+    /// Takes a frame that follows its nodes, if the inverse exists and there are no other rank-one terms; returns whether the
+    /// frame was taken. `right` is replaced by the solution.
     pub(crate) fn follow<const D: usize>(
         &mut self,
         matrix: &BlockMatrix<D>,
@@ -161,7 +162,7 @@ impl TurnedFactor {
         self.turn(&mut out[..side.len()], false);
         out
     }
-    /// Rotates into the frame, or back.
+    /// Rotates a vector into the frame, or back.
     fn turn(&self, b: &mut [f64], back: bool) {
         let (n, frame) = (self.dimensions, &self.frame);
         for node in b.chunks_exact_mut(n) {
@@ -204,7 +205,7 @@ fn unturned<const D: usize>(matrix: &BlockMatrix<D>, positive: bool) -> Option<V
     Some(out)
 }
 
-/// 𝓡ᵀ A 𝓡 column by column, without rank-one terms.
+/// Returns 𝓡ᵀ A 𝓡 column by column, without rank-one terms.
 fn in_frame<const D: usize>(matrix: &BlockMatrix<D>, frame: &Block<D>) -> Vec<f64> {
     let size = matrix.rows() * D;
     let mut out = vec![0.0; size * size];

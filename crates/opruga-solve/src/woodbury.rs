@@ -41,8 +41,8 @@ impl Woodbury {
                 core[i * n + j] = own + dot(&self.directions[i], &self.solved[j]);
             }
         }
-        // If S and all C are positive, so is the sum. Otherwise this depends on the signs of the eigenvalues of this small
-        // matrix.
+        // If S is positive definite and all entries of C are positive, so is the sum. Otherwise this depends on the signs of
+        // the eigenvalues of this small matrix.
         if positive && !dense::has_positive(&core, n, parts.iter().filter(|part| part.factor > 0.0).count()) {
             return Err(Indefinite);
         }

@@ -64,7 +64,7 @@ impl Packs {
                     }
                 }
             }
-            // Others deliver in between.
+            // Other blocks are delivered in between.
             let mut unit = [[0.0; D]; D];
             unit[0][0] = 1.0;
             sink.block(k, k, unit);

@@ -8,10 +8,10 @@
 //! faster than the step is damped within a few steps (L-stable). Slow motion is hardly damped: the amplitude loses the fraction
 //! (hω)⁴/4 per step, compared with (hω)²/2 for backward Euler.
 //!
-//! **Memory.** The integrator remembers the displacement of the last step and the velocity before it. They are part of the
-//! state, and so of checkpoints, hashes and replays. The first step, and the first one after a program has moved a node, is a
-//! step of backward Euler. After an impact, the memory of a node is reset as if it had always moved with its velocity after the
-//! impact, because a difference across an impact does not describe the motion after it.
+//! **Memory.** The integrator remembers the displacement of the previous step and the velocity at its start. Both are part of
+//! the state, and so of checkpoints, hashes and replays. The first step, and the first one after a program has moved a node, is
+//! a step of backward Euler. After an impact, the memory of a node is reset as if the node had always moved with its velocity
+//! after the impact, because a difference across an impact does not describe the motion after it.
 //!
 //! Source: Curtiss and Hirschfelder 1952; Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, III.5 (5.9).
 
@@ -52,7 +52,7 @@ const STEP: PerBody<f64> = PerBody::new("bdf2.step");
 #[derive(Debug)]
 pub struct Bdf2Kind;
 
-/// The second-order backward differentiation formula, or a step of the first-order formula, with which it restarts.
+/// The second-order backward differentiation formula. After a restart, its first step uses the first-order formula.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bdf2 {
     begins: bool,
@@ -80,8 +80,8 @@ impl<const D: usize> Rule<D> for Bdf2 {
         vec![DISPLACEMENT.declared(), VELOCITY.declared(), STEP.declared()]
     }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
-        // The state consists of x, v, the last displacement, and the last velocity but one; z = x + ⅓ displacement, w = 4/3 v − ⅓
-        // before.
+        // The state consists of x, v, the displacement of the previous step, and the velocity before that step; z = x + ⅓
+        // displacement, w = 4/3 v − ⅓ before.
         let (square, g) = (omega * omega, 2.0 * h / 3.0);
         let factor = 1.0 / (1.0 + g * c + g * g * square);
         let third = 1.0 / 3.0;
@@ -105,7 +105,8 @@ impl<const D: usize> Rule<D> for Bdf2 {
                 for d in 0..D {
                     let k = node * D + d;
                     let velocity = workspace.v0[k];
-                    // A jump of velocity by pins applies to the remembered velocity too: the difference across it is not a force.
+                    // A jump of velocity due to pins is added to the remembered velocity too, because a difference across the
+                    // jump is not due to a force.
                     let jump = workspace.kick.get(k).copied().unwrap_or(0.0);
                     workspace.z[k] = share * (displacement.0[d][node] + last * jump);
                     workspace.y[k] = workspace.z[k] + span * (velocity + share * (velocity - before.0[d][node] - jump));
@@ -149,7 +150,7 @@ impl<const D: usize> Rule<D> for Bdf2 {
         0.5 * (workspace.v1[k] - workspace.v0[k])
     }
     fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
-        // If a node met an obstacle, the remaining differences describe how the motion along the surface continues.
+        // If a node met an obstacle, what remains of the differences describes how the motion along the surface continues.
         let velocity = |node: usize, d: usize| workspace.v1[node * D + d];
         if let Some(displacement) = system.history.vectors_mut(DISPLACEMENT) {
             for (node, u) in nodes::<D>(&workspace.u1).iter().enumerate() {

@@ -7,7 +7,7 @@ use crate::implicit::workspace::Workspace;
 use opruga_core::integrator::Amplification;
 use opruga_core::system::System;
 
-/// The rule of such a step, under the whole load. If necessary, the search holds nodes where they are.
+/// The rule of a step under the whole load. If necessary, the search holds nodes at their present positions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AmongOthers;
 

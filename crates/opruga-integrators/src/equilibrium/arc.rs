@@ -4,8 +4,8 @@
 //! curve has a kink where a node reaches or leaves a surface, and a step can pass the kink.
 //!
 //! Two points of the curve are at the given distance from the start of a step: one forward, one back. If the curve turns sharply,
-//! the iteration may find the wrong one, and only the last step defines the forward direction. So a step in which the curve turns
-//! by more than 60° is repeated with half the length, except at kinks due to obstacles.
+//! the iteration may find the wrong point, because only the previous step defines the forward direction. So a step in which the
+//! curve turns by more than 60° is repeated with half the length, except at kinks due to obstacles.
 
 use super::{COMPLETE, DISPLACEMENT, Equilibrium, Reached, SPEC};
 use crate::implicit::balance::{Balance, Solved};
@@ -125,7 +125,7 @@ fn one_step<const D: usize>(
         let leans = workspace.contacting.any();
         let mut step;
         if iteration == 0 {
-            // Continues in the direction of the last step; the first step adds load.
+            // Continues in the direction of the previous step. The first step adds load.
             let size = dot(&tangent, &tangent).sqrt();
             if size.is_nan() || size == 0.0 && !leans {
                 *unloaded = size == 0.0;
@@ -140,7 +140,7 @@ fn one_step<const D: usize>(
             }
             step = (0.5 * (displacement * displacement - dot(&gone, &gone)) - dot(&gone, &correction)) / across;
         }
-        // A body that leans on obstacles may not be able to move that far under any load. Then the step applies the remaining
+        // A body that leans on obstacles may be unable to move that far under any load. Then the step applies the remaining
         // load.
         ends |= leans && (now + step > 1.0 || step.is_nan());
         if ends {
@@ -193,7 +193,7 @@ fn one_step<const D: usize>(
 }
 
 /// Returns the correction towards equilibrium under the present load, including the displacements to surfaces, and the
-/// displacement by the whole load, K⁻¹ F_outer, whatever the signs of the eigenvalues of K.
+/// displacement due to the whole load, K⁻¹ F_outer, whatever the signs of the eigenvalues of K.
 fn directions<const D: usize>(
     rule: &Equilibrium,
     system: &System<D>,

@@ -6,8 +6,8 @@
 //! Newton's method searches downhill: if there is a potential U, every iteration lowers it. If the equilibrium is far away, it
 //! helps to apply the weight and the loads in parts (`load_steps`), or to do so only if the whole load fails
 //! (`when_not_converged = "halve"`). In statics every change of energy is external work. When a weight is lowered slowly, it
-//! releases more energy than the springs store. The rest goes into the hand that lowers it; it is entered with the work of the
-//! loads as `work_user`.
+//! releases more energy than the springs store. The rest goes into the hand that lowers it. This energy is recorded with the
+//! work of the loads as `work_user`.
 //!
 //! **Through a snap** (`arc_length`): when a shallow arch snaps, no equilibrium is near the old one. With this option the load is
 //! an unknown as well: each step moves by a given length along the curve of equilibria, past the limit points where the load
@@ -23,13 +23,13 @@
 //! Where the body meets obstacles, the curve continues along their surface. A body that only obstacles hold has no curve, because
 //! the curve begins without any load.
 //!
-//! A body that nothing holds has no equilibrium, or many: it is refused, with the names of its free motions. The same applies to
-//! a body of several pieces, such as a map with islands, if one piece is free. Without `arc_length` obstacles may hold the body
-//! too; a direction without stiffness then gets a billionth of the stiffness of the others, within the iteration only. If that
-//! fails, the error names the motions that contact leaves free.
+//! A body that nothing holds has either no equilibrium or many. It is refused, and the error names its free motions. The same
+//! applies to a body of several pieces, such as a map with islands, if one piece is free. Without `arc_length` obstacles may
+//! hold the body too; a direction without stiffness then gets a billionth of the stiffness of the others, within the iteration
+//! only. If that fails, the error names the motions that contact leaves free.
 //!
-//! Other bodies may hold a body too, in a way that is not known in advance. So the common equilibrium of touching bodies is found
-//! by the caller, with the forces and the matrix of each body ([`OpenStep`]).
+//! Other bodies may hold a body too, but how they do so is not known in advance. So the common equilibrium of touching bodies is
+//! found by the caller, with the forces and the matrix of each body ([`OpenStep`]).
 //!
 //! Source: Riks 1979; Crisfield 1981; for the direction along the curve, Feng, Perić, Owen 1996.
 
@@ -109,7 +109,7 @@ pub struct Equilibrium {
     settings: Settings,
 }
 
-/// The applied fraction of the load, whether it has reached the whole load, and the last displacement along the curve of
+/// The applied fraction of the load, whether the whole load has been reached, and the latest displacement along the curve of
 /// equilibria [m].
 const LOAD: PerBody<f64> = PerBody::new("equilibrium.load");
 const COMPLETE: PerBody<bool> = PerBody::new("equilibrium.complete");
@@ -141,7 +141,7 @@ struct Reached {
 }
 
 impl Reached {
-    /// The point half-way to another one.
+    /// The state half-way to another one.
     fn midway(self, to: Reached) -> Reached {
         let mean = |a: f64, b: f64| 0.5 * (a + b);
         Reached {
@@ -174,7 +174,7 @@ impl Equilibrium {
         let outcome = self.balance(system, workspace, to, h);
         let too_far = match &outcome {
             Err(StepError::NotConverged { .. }) => true,
-            // In a smaller step a model may have a value; a body that nothing holds stays free.
+            // With a smaller step the model may have a value. A body that nothing holds stays free in any step.
             Err(StepError::Model { model, .. }) => *model != SPEC.kind,
             _ => false,
         };
@@ -239,8 +239,8 @@ impl Equilibrium {
         report(SPEC.kind, &self.settings, system, workspace, &solved)
     }
 
-    /// Refuses a body that can move as a whole because neither pins nor the contacts of the last iteration hold it, and names the
-    /// motions.
+    /// Refuses a body that can move as a whole because neither pins nor the contacts of the latest iteration hold it. The error
+    /// names the motions.
     fn refuse_what_is_free<const D: usize>(
         &self,
         system: &System<D>,
@@ -301,7 +301,8 @@ impl Equilibrium {
     }
 }
 
-/// Motion stops at once; without a restoring force the position does not change.
+/// The effect of a step of statics: motion stops at once, and the position becomes zero, or stays if there is no restoring
+/// force.
 fn to_rest(omega: f64) -> Amplification {
     let kept = if omega > 0.0 { 0.0 } else { 1.0 };
     Amplification::new([[kept, 0.0], [0.0, 0.0]])

@@ -37,7 +37,7 @@ impl<const D: usize> Motion<D> {
     }
 }
 
-/// Sums φᵀ K ψ for all pairs of motions.
+/// Sums φᵀ K ψ for all pairs of motions φ and ψ.
 pub(super) struct Projection<'a> {
     motions: &'a [Vec<f64>],
     pub(super) out: Vec<f64>,

@@ -1,14 +1,14 @@
 //! The rigid motions that the loads do not restrain: those under which loads and weight do no work of any order.
 //!
 //! In a rigid motion q (displacements φ_q, rotation ω_q) the force on a node changes by −K φ_q, where K = −∂F/∂x. If the forces
-//! rotated with the body, it would change by ω_q × F. Only the difference can hold the body in a position:
+//! rotated with the body, the force would change by ω_q × F. Only the difference can hold the body in a position:
 //!
 //! P_pq = Σ φ_p·(ω_q × F + K φ_q)
 //!
 //! This is zero for a pressure of any strength, because pressure follows the body. It is φ_p·K φ_q for a spring to a pointer.
-//! For a dead load or the weight, it is zero for the rotation about the axis along which they act, and if their resultant
-//! passes through the support of the body. In some poses, such as that of a horizontal pendulum, a dead load does no
-//! second-order work although it does in others. So several poses of the body are examined.
+//! For a dead load or the weight, it is zero for a rotation about the axis along which they act. It is also zero if their
+//! resultant passes through the support of the body. In some poses, such as that of a horizontal pendulum, a dead load does no
+//! second-order work although it does in other poses. So several poses of the body are examined.
 
 use super::motion::{Motion, Projection, all_motions, center, displacement, of_weights, shape_at, unpinned_motions};
 use super::pieces::whole;
@@ -28,8 +28,9 @@ const NOTHING: f64 = 1e-14;
 /// The angle of rotation of the other poses of the body [rad].
 pub(super) const TURN: f64 = 0.9;
 
-/// The motions of the body, or of a piece, that nothing prevents: neither pins, nor loads, nor the weight (as of a pendulum),
-/// nor obstacles that hold nodes along the given directions. The nodes are at the given positions. Translations come first.
+/// The motions of the body, or of a piece, that nothing prevents: neither pins, nor loads, nor the weight (which holds a
+/// pendulum), nor obstacles that hold nodes along the given directions. The nodes are at the given positions. Translations come
+/// first.
 pub(super) fn free_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -73,7 +74,7 @@ pub(super) fn unstiffened_motions<const D: usize>(
     free
 }
 
-/// The external members: loads, and every model that ties nodes to space, whatever account its energy is entered in.
+/// The models that act from outside: loads, and every model that ties nodes to space, whatever the account of its energy.
 pub(super) fn outer<const D: usize>(system: &System<D>) -> Vec<&Member<D>> {
     let acts =
         |member: &&Member<D>| member.potential.properties().account == Account::User || ties_to_space(system, member);
@@ -145,7 +146,7 @@ pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Me
         let (sum, sizes) = force.iter().fold((0.0, 0.0), |(sum, sizes), f| (sum + f[d], sizes + f[d].abs()));
         f64::abs(sum) > NO_TIE * sizes
     };
-    // A model whose results do not change with positions is taken to be independent of them.
+    // A model whose results do not change with positions counts as independent of positions.
     stiffness.largest > 0.0 && !(0..shapes.len()).any(brakes) && !(0..D).any(pushes)
 }
 
@@ -156,7 +157,7 @@ fn prepared<const D: usize>(system: &System<D>, member: &Member<D>, view: &View<
     Some(scratch)
 }
 
-/// Delivers the second derivatives of the external members, at rest.
+/// Delivers the second derivatives of the models that act from outside, at rest.
 pub(super) fn deliver_outer<const D: usize>(system: &System<D>, x: &Columns<D>, sink: &mut dyn Sink<D>) {
     let rest = Columns::zeros(system.index_count());
     let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
@@ -292,7 +293,7 @@ pub(crate) fn add_forces_of<const D: usize>(
     }
 }
 
-/// ω × F.
+/// Returns ω × F.
 fn turned<const D: usize>(motion: &Motion<D>, force: &[f64; D]) -> [f64; D] {
     let turn = Motion { translation: [0.0; D], rotation: motion.rotation.clone() };
     displacement(&turn, force, &[0.0; D])

@@ -11,7 +11,7 @@ use opruga_core::system::System;
 use opruga_math::message::AnyMessage;
 use opruga_math::words::number;
 
-/// Refuses a body that can move rigidly, or that has a piece that can.
+/// Refuses a body that can move rigidly, or has a piece that can move rigidly.
 pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<(), BuildError> {
     let x = &system.state.x;
     let refused = |refusal: Refusal| Err(BuildError::of("equilibrium", refusal));
@@ -53,8 +53,8 @@ fn coordinates<const D: usize>(x: &[f64; D]) -> String {
     format!("({}) m", numbers.join(", "))
 }
 
-/// Refuses a body that can move rigidly although it lies on obstacles, which hold nodes along the given directions, with its
-/// nodes at the given positions.
+/// Refuses a body that can move rigidly although it lies on obstacles. The obstacles hold nodes along the given directions, and
+/// the nodes are at the given positions.
 pub(super) fn refuse_what_contact_leaves_free<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,

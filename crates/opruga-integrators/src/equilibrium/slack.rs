@@ -2,7 +2,7 @@
 //!
 //! A law that accounts for large rotations rotates with the body, and the weight brings the body back like a pendulum. For a
 //! linear law, a rotation is the straight motion ω × r. Its forces do not change along that motion, so a torque at the start
-//! acts for ever.
+//! acts at every angle.
 
 use super::motion::{Motion, center, shape_at};
 use super::restraint::{TURN, add_forces_of, outer, pose, unstiffened_motions};

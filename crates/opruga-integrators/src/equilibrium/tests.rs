@@ -108,7 +108,7 @@ fn a_truss_is_followed_through_its_snap() {
     assert!((highest - 0.1048).abs() < 1e-3 && (lowest + 0.1048).abs() < 1e-3, "{highest} {lowest}");
     let behind = system.state.x.at(1)[1];
     assert!(behind < -height && (needed(behind) - 1.0).abs() < 1e-9, "{behind}");
-    // And it stays there.
+    // The body stays there.
     arc.step(&mut system, 0.1).unwrap();
     assert!((system.state.x.at(1)[1] - behind).abs() < 1e-9);
 
@@ -199,7 +199,8 @@ fn what_is_out_of_balance_is_reported_for_nodes_pinned_along_some_axes_too() {
     assert!(residual > 1.0 && residual < 5.0 * 9.81, "{residual}");
 }
 
-/// A custom model that ties nodes to space holds a body, whatever account its energy is entered on; forces between nodes do not.
+/// A custom model that ties nodes to space holds a body, whatever the account of its energy. Forces between nodes do not hold a
+/// body.
 #[test]
 fn models_that_tie_nodes_to_space_hold_a_body_by_what_they_do() {
     let rule = rule(&[]);

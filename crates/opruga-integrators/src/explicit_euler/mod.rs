@@ -10,8 +10,8 @@
 //! ```
 //!
 //! whose eigenvalues are 1 + h μ with μ² + c μ + ω² = 0. Without damping their modulus is √(1 + h²ω²): **no step is stable**,
-//! energy grows by ω²h per second. A mode with damping is stable for h ≤ c/ω² (if it still oscillates) or h ≤ 2/|μ| (if it does
-//! not). Free fall is too slow: y = −g h² n(n − 1)/2 after n steps.
+//! and energy grows by the fraction ω²h per second. A mode with damping is stable for h ≤ c/ω² (if it still oscillates) or h ≤
+//! 2/|μ| (if it does not). Free fall is too slow: y = −g h² n(n − 1)/2 after n steps.
 //!
 //! It serves for comparison; [`crate::symplectic_euler`] costs the same and conserves the energy.
 

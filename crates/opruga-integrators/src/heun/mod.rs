@@ -8,8 +8,8 @@
 //! stored: x = x₀ + ½h (v₀ + v₁), v = v₀ + ½ ((v₁ − v₀) + h a₁).
 //!
 //! The stability function is R(z) = 1 + z + ½z². On the imaginary axis |R|² = 1 + ¼(hω)⁴: **no step is stable without damping**,
-//! energy grows by ¼ω⁴h³ per second (slowly: at hω = 0.1 by 2.5e-5 per radian). An overdamped mode is stable for h |μ| ≤ 2. Free
-//! fall is exact.
+//! and energy grows by the fraction ¼ω⁴h³ per second (slowly: at hω = 0.1 by 2.5e-5 per radian). An overdamped mode is stable
+//! for h |μ| ≤ 2. Free fall is exact.
 //!
 //! Source: Heun 1900; Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.1.
 

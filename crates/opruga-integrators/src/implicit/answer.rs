@@ -30,7 +30,7 @@ pub(crate) fn prepare<const D: usize>(
     Ok(outcome?.then_some(workspace.answer.number))
 }
 
-/// Records the free directions, and assigns a number to the matrix that is made now.
+/// Records the free directions, and assigns a number to the matrix that will now be made.
 fn begin<const D: usize>(workspace: &mut Workspace<D>, balance: &Balance) {
     let Workspace { answer, free, projectors, .. } = workspace;
     answer.free.clone_from(free);

@@ -5,13 +5,13 @@ use super::linear::Linear;
 use super::reused_matrix::Origin;
 use opruga_solve::blocks::Block;
 
-/// The matrix of the last step, made for other right-hand sides.
+/// The matrix of the last step, kept for further right-hand sides.
 #[derive(Debug, Default)]
 pub(crate) struct AnswerMatrix<const D: usize> {
     /// The balance of the last step and the time at its start [s]; none if the step was made in parts.
     pub(crate) last: Option<(Balance, f64)>,
     pub(crate) linear: Linear<D>,
-    /// Which directions are free in it, and the position of its stage as a fraction of the step.
+    /// The directions that are free in the matrix, and the position of its stage as a fraction of the step.
     pub(crate) free: Vec<bool>,
     pub(crate) projectors: Vec<Block<D>>,
     pub(crate) theta: f64,

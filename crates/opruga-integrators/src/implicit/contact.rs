@@ -7,8 +7,8 @@
 //! ```
 //!
 //! Every Newton iteration decides whether a node is held, from the gap after the last correction and the force of the
-//! constraint. A contact that changes too often slips, or is released, for the rest of the step. So no force leaves Coulomb's
-//! cone, and no node may be inside at the end.
+//! constraint. A contact that changes too often slips, or is released, for the rest of the step. In any case the force stays
+//! within Coulomb's cone, and no node may be inside at the end.
 
 use super::contact_query::ContactQuery;
 use super::friction::{Followed, SlipRule, against_slide, projected};
@@ -37,7 +37,7 @@ pub(crate) struct Contact<const D: usize> {
     pub(super) hold: Hold,
     /// The force along the normal in the last iteration [N].
     pub(super) normal_force: f64,
-    /// The direction of the friction force, and how much it turned in the last iteration.
+    /// The direction of the friction force, and how much this direction turned in the last iteration.
     pub(super) push: [f64; D],
     pub(super) turn: f64,
     /// How often it changed between held and released, or between stick and slip.
@@ -140,7 +140,8 @@ impl<const D: usize> Contacting<D> {
     }
 
     /// Finds the contacts of nodes that start at x₀ and end displaced by u/θ; nodes that are inside are held from now on. Depths
-    /// below a billionth of the extent do not count. Nodes that impact are first assumed to stick, or to slide.
+    /// below a billionth of the extent do not count. Nodes that hit a surface with friction are first assumed to stick, or to
+    /// slide if `impacts_slide` is set.
     pub(crate) fn look(&mut self, contact_query: &ContactQuery<'_, D>, impacts_slide: bool) -> bool {
         let ContactQuery { system, x0, u, theta, h, extent } = *contact_query;
         let Some(obstacles) = &system.contacts else {
@@ -168,8 +169,8 @@ impl<const D: usize> Contacting<D> {
             self.found.clear();
             let found = &mut self.found;
             obstacles.touch(from, &to, time, h, reach, &mut |touch| found.push(touch));
-            // If a fast node crossed a surface, its first contact comes from the crossing. From then on it is held where it is
-            // near the surface.
+            // If a fast node crossed a surface, its first contact comes from the crossing. From then on, the contact is found
+            // where the node is near the surface.
             for contact in old {
                 let beside: [f64; D] = core::array::from_fn(|d| to[d] + reach * contact.touch.normal[d]);
                 obstacles.touch(&beside, &to, time, h, reach, &mut |touch| {
@@ -414,8 +415,8 @@ impl<const D: usize> Contacting<D> {
         verdict
     }
 
-    /// Adapts friction to the present forces of the constraints; `right` is then its change. Returns whether it has changed by
-    /// more than the fraction `tolerance`.
+    /// Adapts friction to the present forces of the constraints, and writes its change to `right`. Returns whether friction has
+    /// changed by more than the fraction `tolerance`.
     pub(crate) fn follow(&mut self, reaction: &[f64], mixing: &mut Mixing, tolerance: f64, right: &mut [f64]) -> bool {
         let Contacting { contacts: all, forces: [state, change, plain], .. } = self;
         state.clear();

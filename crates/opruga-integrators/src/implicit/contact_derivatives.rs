@@ -1,4 +1,4 @@
-//! The derivatives of contact forces by the positions of their nodes.
+//! The derivatives of contact forces with respect to the positions of their nodes.
 
 use super::contact::{Contact, Contacting, SMALL, dot};
 use super::contact_query::ContactQuery;
@@ -14,7 +14,7 @@ const SLIDING: f64 = 1e-4;
 const BESIDE: f64 = 1e-5;
 
 impl<const D: usize> ContactQuery<'_, D> {
-    /// ∂n/∂x along the surface, by differences.
+    /// Returns ∂n/∂x along the surface, computed from differences.
     fn turn_of_normal(&self, contact: &Contact<D>) -> Option<Block<D>> {
         let obstacles = self.system.contacts.as_ref()?;
         let (at, step) = (contact.node * D, BESIDE * self.extent);
@@ -33,7 +33,7 @@ impl<const D: usize> ContactQuery<'_, D> {
             });
             let beside = beside?;
             let difference: [f64; D] = core::array::from_fn(|d| beside[d] - contact.touch.normal[d]);
-            // Row by row: the derivative along the axis, of the part along the surface.
+            // Each row holds the derivative along one axis, and only its part along the surface.
             turn[axis] = contact.along(&difference.map(|x| x / step));
         }
         let half = |i: usize, j: usize| 0.5 * (turn[i][j] + turn[j][i]);
@@ -55,7 +55,7 @@ impl<const D: usize> Contacting<D> {
             let normal = &contact.touch.normal;
             if contact.rubs() && D > 2 {
                 let slide = contact.slide(contact_query.u, contact_query.theta, contact_query.x0);
-                // The direction of a slide that turns far is not settled yet, so its derivative is not used.
+                // If the direction of a slide turns far, it is not settled yet, so its derivative is not used.
                 let size = dot(&slide, &slide).sqrt();
                 let strength = contact.touch.friction * contact.normal_force / size;
                 if dot(&slide, &contact.push) < 0.0

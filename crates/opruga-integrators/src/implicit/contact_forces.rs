@@ -1,4 +1,4 @@
-//! The initial contact forces of a step in real time: those of the last step.
+//! The initial contact forces of a step in real time, which are those of the previous step.
 
 use super::contact::{Contacting, Hold, dot, split};
 use opruga_math::Lane;
@@ -13,8 +13,8 @@ impl<const D: usize> Contacting<D> {
         }
     }
 
-    /// Starts contacts that the first search has found with the forces of the last step, as [`Contacting::visit_forces`] gave
-    /// them: slipping contacts keep slipping, and sticking ones keep sticking.
+    /// Gives contacts that the first search has found the forces of the previous step, as [`Contacting::visit_forces`]
+    /// delivered them: slipping contacts keep slipping, and sticking ones keep sticking.
     pub(super) fn start_from(&mut self, force: impl Fn(usize) -> [f64; D]) {
         for contacts in self.contacts.chunk_by_mut(|a, b| a.node == b.node) {
             let force = force(contacts[0].node);

@@ -38,13 +38,13 @@ impl Keep {
     }
 }
 
-/// How often a direction is corrected at most because friction has changed.
+/// The largest number of corrections of a direction because friction has changed.
 const MOST_ROUNDS: u32 = 12;
 
 /// The relative error of the friction force that may remain in the first iteration.
 const FRICTION_TOLERANCE: f64 = 1e-3;
 
-/// b = −(r − friction) − A d for the residual and for nodes with prescribed displacements d; `trial` is a buffer.
+/// Computes b = −(r − friction) − A d from the residual r and the prescribed displacements d; `trial` is a buffer.
 pub(crate) fn wanted_forces<const D: usize>(
     threads: usize,
     mixture: &Mixture<D>,
@@ -133,8 +133,8 @@ pub(super) fn find_direction<const D: usize>(
         reaction.fill(0.0);
         return Ok((products, slope));
     }
-    // The residual in the held directions after the step: r + A Δ. Friction follows it, and the step follows friction, because
-    // the friction force depends on the normal force.
+    // The residual in the held directions after the step: r + A Δ. Friction follows from this residual, because the friction
+    // force depends on the normal force, and the step follows from friction.
     friction.forget();
     let mut rounds = 0;
     loop {

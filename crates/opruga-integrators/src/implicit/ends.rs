@@ -52,8 +52,8 @@ impl Statics {
 
     /// Ends a step of statics of h [s] at the displacement in `workspace.u1`.
     ///
-    /// The change of energy of the body, minus the energy given to a gas, is entered as external work. It includes loads, pins
-    /// and whatever slows the motion down. Nothing moves, so pins do not change any motion.
+    /// The change of energy of the body, minus the energy given to a gas, is recorded as external work. This work includes that
+    /// of loads, of pins and of whatever slows the motion down. Nothing moves, so pins do not change any motion.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the end.
@@ -80,7 +80,7 @@ fn stop<const D: usize>(system: &mut System<D>) {
     system.state.v.0.iter_mut().for_each(|column| column.fill(0.0));
 }
 
-/// Takes the state at the start of a step, and enters the work for rules that use the mean of start and end.
+/// Takes the state at the start of a step, and records its share of the work for rules that use the mean of start and end.
 pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -96,7 +96,7 @@ pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
     Ok(Ledger { before, begun: system.work })
 }
 
-/// Enters the work for rules that use the stage, which was evaluated last, and the work due to coupled masses.
+/// Records the work for rules that use the stage, which was evaluated last, and the work due to coupled masses.
 pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -122,7 +122,7 @@ pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
     }
 }
 
-/// Enters the work at the end of a step, for rules that use the mean of start and end.
+/// Records the share of the end of a step in the work, for rules that use the mean of start and end.
 pub(super) fn enter_end<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

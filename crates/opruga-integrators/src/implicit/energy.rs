@@ -12,7 +12,7 @@ use opruga_solve::blocks::nodes;
 /// The change of the energy of a body in a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Change {
-    /// The energy before the step, that at its end if known, and the rounding of both [J].
+    /// The energy before the step, the energy at its end if known, and the rounding of both [J].
     before: f64,
     after: Option<f64>,
     rounding: f64,
@@ -27,12 +27,12 @@ impl Change {
         Some(!within)
     }
 
-    /// Whether a step whose end is doubtful may have created energy; if the gain is unknown, it may have.
+    /// Whether a step whose end is doubtful may have created energy. If the gain is unknown, the answer is yes.
     pub(super) fn may_be_gain(change: Option<Change>) -> bool {
         change.and_then(|change| change.is_gain()).unwrap_or(true)
     }
 
-    /// Whether a step has certainly created energy; if the gain is unknown, it has not.
+    /// Whether a step has certainly created energy. If the gain is unknown, the answer is no.
     pub(super) fn is_known_gain(change: Option<Change>) -> bool {
         change.and_then(|change| change.is_gain()).unwrap_or(false)
     }

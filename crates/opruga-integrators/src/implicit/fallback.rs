@@ -42,7 +42,7 @@ impl<const D: usize> Minimiser<D> for RealTime {
             }
             Ok((solved, Trust::IfDownhill)) if !has_risen(system, workspace, balance)? => return Ok(*solved),
             Ok((solved, _)) => *solved,
-            // A law without a value in the state that the iteration reached.
+            // A model has no value in the state that the iteration reached.
             Err(StepError::Model { .. }) => Solved::default(),
             Err(_) => return outcome.map(|(solved, _)| solved),
         };
@@ -69,7 +69,7 @@ impl<const D: usize> Minimiser<D> for RealTime {
     fn keeps_matrix(&self, system: &System<D>) -> bool {
         real_time::keeps_matrix(system)
     }
-    /// In real time, settings cannot be changed between steps.
+    /// Returns true, because in real time the user cannot change settings between steps.
     fn always_halves(&self) -> bool {
         true
     }
@@ -81,7 +81,7 @@ impl<const D: usize> Minimiser<D> for RealTime {
     }
 }
 
-/// Moves the body to the position to which it would move by itself, as in the last step, without obstacles.
+/// Starts anew, without contacts, from the positions to which the body would move with its present velocities.
 fn begin_anew<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
     workspace.contacting.clear(system.nodes);
     for k in 0..workspace.u.len() {

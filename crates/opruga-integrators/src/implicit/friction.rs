@@ -26,16 +26,16 @@ pub(crate) enum SlipRule {
 }
 
 /// k as a fraction of the diagonal of the block of a node. Since neighbours move too, the stiffness of a node is less than its
-/// block, and k has to stay below twice that. With 2 instead of 0.5, 20 of 720 steps in the test `real_time_contact` leave a
-/// larger residual than promised; with 0.5 it is 1.
+/// block, and k has to stay below twice that stiffness. With 2 instead of 0.5, 20 of 720 steps in the test `real_time_contact`
+/// leave a larger residual than promised. With 0.5, one step does.
 const PART_OF_DIAGONAL: f64 = 0.5;
 
 /// The effect of friction on a slipping node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Followed<const D: usize> {
-    /// It holds the node.
+    /// Friction holds the node.
     Sticks,
-    /// It acts in this direction.
+    /// Friction acts in this direction.
     Pushes([f64; D]),
     /// The node does not slide, and the known direction remains valid.
     Rests,

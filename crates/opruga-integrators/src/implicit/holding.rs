@@ -19,9 +19,9 @@ use opruga_math::WIDTH;
 use opruga_solve::blocks::{Block, isotropic};
 use opruga_solve::{BlockJacobi, Directions, conjugate_gradients};
 
-/// Gives pinned nodes the velocities for the coming step of `h`, and their neighbours the velocities that follow from the
-/// masses; the change of kinetic energy is work of the pins. Afterwards `kick` is the change of every velocity; it is empty if
-/// there is none. Returns the previous velocities if they have changed.
+/// Gives pinned nodes the velocities for the coming step of length `h`, and their neighbours the velocities that follow from
+/// the masses. The change of kinetic energy is work of the pins. Afterwards `kick` holds the change of every velocity; it is
+/// empty if no velocity has changed. Returns the previous velocities if they have changed.
 pub(super) fn take_hold<const D: usize>(system: &mut System<D>, kick: &mut Vec<f64>, h: f64) -> Option<Columns<D>> {
     kick.clear();
     if system.inertia.is_none() || system.pins.is_empty() {
@@ -53,7 +53,7 @@ pub(super) fn take_hold<const D: usize>(system: &mut System<D>, kick: &mut Vec<f
     Some(before.0)
 }
 
-/// Enters the work that pins do within a step against the inertia of the neighbours of their nodes, w · M_pf Δv_f.
+/// Records the work that pins do within a step against the inertia of the neighbours of their nodes, w · M_pf Δv_f.
 pub(super) fn enter_work<const D: usize>(system: &mut System<D>, v0: &[f64], v1: &[f64]) {
     let Some(inertia) = system.inertia.as_ref().filter(|_| !system.pins.is_empty()) else { return };
     let change: Vec<f64> = v0.iter().zip(v1).map(|(before, after)| after - before).collect();

@@ -12,7 +12,8 @@ use opruga_solve::blocks::{Block, isotropic, nodes};
 const MOVES_ALONG: f64 = 0.1;
 
 impl<const D: usize> Contacting<D> {
-    /// Moves nodes that are still inside an obstacle to its surface; afterwards `reaction` is the residual without them.
+    /// Moves nodes that are still inside an obstacle to its surface, and records the energy that this gives; `reaction` is the
+    /// residual on the nodes [N].
     pub(crate) fn expel(
         &self,
         system: &mut System<D>,
@@ -43,7 +44,7 @@ impl<const D: usize> Contacting<D> {
         }
     }
 
-    /// Ends a step: enters the work of the forces that held nodes (`ending.reaction`), and corrects velocities. Rules discard
+    /// Ends a step: records the work of the forces that held nodes (`ending.reaction`), and corrects velocities. Rules discard
     /// their memory in the directions in which a surface has stopped nodes; `struck` lists these nodes.
     pub(crate) fn end(
         &self,
@@ -107,7 +108,7 @@ impl<const D: usize> Ending<'_, D> {
         nodes::<D>(vector)[node]
     }
 
-    /// Enters the work of the forces of one node in the step, from its mean velocity and the change of its motion by these
+    /// Records the work of the forces on one node in the step, from its mean velocity and the change of its motion due to these
     /// forces. If the memory of the rule is discarded, the velocity that the rule would have added later is part of that change.
     fn enter_forces(
         &self,
@@ -121,8 +122,8 @@ impl<const D: usize> Ending<'_, D> {
         let (node, lane) = (contacts[0].node, contacts[0].node % WIDTH);
         let (x0, v0) = (self.part(node, self.x0), self.part(node, self.v0));
         let share = if motion.fresh { self.balance.impulse } else { 1.0 };
-        // The work that is entered beyond the share of this step replaces the memory of the rule. It does not count as a loss
-        // by the rule itself.
+        // The work that is recorded beyond the share of this step replaces the memory of the rule. It does not count as a loss
+        // due to the rule itself.
         let beyond = |share: f64, work: f64| (share - self.balance.impulse) * work;
         let mut rest = *force;
         let mut carrier = None;
@@ -205,7 +206,7 @@ impl<const D: usize> Motion<D> {
             (0.0, 0.0)
         };
 
-        // Along the surface.
+        // The motion along the surface.
         let slide_after = if contact.hold == Hold::Stick {
             let memory = contact.along(&self.memory);
             let pull = contact.along(&force.total);

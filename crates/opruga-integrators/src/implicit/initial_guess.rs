@@ -11,7 +11,7 @@ use opruga_core::system::System;
 ///
 /// Pins move to their final positions at once, so the cells next to them take the whole displacement instead of a small part of
 /// it. If that tears these cells, the iteration begins with no displacement, and pins move together with the rest of the body
-/// during the iterations. The error of the model is returned in case these fail.
+/// during the iterations. The error of the model is returned in case these iterations fail.
 pub(super) fn begin<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -28,7 +28,7 @@ pub(super) fn begin<const D: usize>(
     workspace.u.fill(0.0);
     match evaluate(system, workspace, balance, false) {
         Ok(()) => Ok(Some(error)),
-        // The body was not torn by the pins.
+        // The pins did not tear the body.
         Err(_) => Err(error),
     }
 }

@@ -1,9 +1,9 @@
 //! Corrections that leave an unstable equilibrium.
 //!
 //! A straight bar under too much compression is in equilibrium, and a matrix without negative eigenvalues leads to it as surely
-//! as to any other equilibrium. Each further correction is then a few per cent larger than the last one, because the matrix is
-//! too stiff in the direction in which the body buckles. After several such corrections, the next one is extended as far as it
-//! leads downhill.
+//! as to any other equilibrium. Each further correction is then a few per cent larger than the previous one, because the matrix
+//! is too stiff in the direction in which the body buckles. After several such corrections, the next one is extended as far as
+//! it leads downhill.
 
 use super::line_search::{LONGEST_STRETCH, Stretches};
 use opruga_math::Lane;
@@ -17,22 +17,23 @@ const OFTEN: u32 = 4;
 /// How far such a correction may be extended, as a fraction of the extent of the body.
 const REACH: f64 = 1e-2;
 
-/// Detects an unstable equilibrium by how corrections grow from one to the next, while the matrix has no negative eigenvalues.
+/// Detects an unstable equilibrium by the growth of corrections from one to the next while the matrix has no negative
+/// eigenvalues.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Instability {
     /// The last correction [m].
     last: f64,
-    /// How many times in a row they have grown.
+    /// How many times in a row corrections have grown.
     grown: u32,
 }
 
 impl Instability {
-    /// Before the first correction.
+    /// Starts before the first correction.
     pub(super) fn new() -> Instability {
         Instability { last: f64::INFINITY, grown: 0 }
     }
 
-    /// Records a correction [m], and whether its matrix is too stiff and nothing else changed it.
+    /// Records a correction [m]. `stiff` is true if its matrix is too stiff and nothing else has changed the correction.
     pub(super) fn note(&mut self, correction: f64, stiff: bool) {
         self.grown = if stiff && correction > self.last { self.grown + 1 } else { 0 };
         self.last = correction;

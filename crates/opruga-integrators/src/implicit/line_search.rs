@@ -32,8 +32,8 @@ pub(super) enum Stretches {
 /// The approximate largest number of halvings of a step.
 const MOST_TRIALS: usize = 14;
 
-/// Moves along the step until the slope of the incremental potential has fallen and, if that potential is known, it has not
-/// risen; returns the fraction of the step.
+/// Moves along the step to a point at which the slope of the incremental potential has fallen and, if that potential is known,
+/// the potential has not risen. Returns the fraction of the step.
 pub(super) fn line_search<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -41,7 +41,8 @@ pub(super) fn line_search<const D: usize>(
     slope: f64,
     stretches: Stretches,
 ) -> Result<f64, StepError> {
-    // Damping has no potential. Friction and constraints are included with the forces that they are expected to have.
+    // Damping has no potential. The work of friction and of constraints is included, with the forces that they are expected to
+    // have.
     let before = if system.is_damped() { None } else { potential(system, workspace, balance, false) };
     let given = given_along(workspace);
     let cancelled = rounding_of_models(system);
@@ -96,7 +97,7 @@ fn stretch<const D: usize>(
     };
     let mut last = before.and_then(|(_, given)| Some(potential(system, workspace, balance, false)?.0 - given));
     loop {
-        // The secant of the slopes gives the length, but at most twice the last one.
+        // The secant of the slopes gives the next length, which is at most twice the previous one.
         let left = slope.abs() + now;
         let longer = length * if left > 0.0 { (slope.abs() / left).smaller(2.0) } else { 2.0 };
         for k in 0..workspace.u.len() {

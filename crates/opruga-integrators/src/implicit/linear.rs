@@ -17,7 +17,7 @@ pub(crate) struct Linear<const D: usize> {
     full: BlockMatrix<D>,
     /// The matrix without the held directions.
     constrained: BlockMatrix<D>,
-    /// Only the diagonal blocks, if there is no matrix, and the blocks that were added to them.
+    /// If there is no matrix, only its diagonal blocks, and the blocks that were added to them.
     diagonal: Vec<Block<D>>,
     added: Vec<(usize, Block<D>)>,
     jacobi: BlockJacobi<D>,
@@ -83,7 +83,7 @@ impl<const D: usize> Filter<'_, D> {
     pub(crate) fn apply(&self, vector: &mut [f64]) {
         self.apply_from(0, vector);
     }
-    /// Does the same for the part of a vector that begins with this node.
+    /// Projects the part of a vector that begins with a given node.
     pub(crate) fn apply_from(&self, first: usize, vector: &mut [f64]) {
         for (node, x) in (first..).zip(nodes_mut::<D>(vector)) {
             if !self.free[node] {
@@ -226,7 +226,7 @@ impl<const D: usize> Linear<D> {
         });
     }
 
-    /// Copies the whole matrix of another one.
+    /// Copies the whole matrix of another `Linear`.
     pub(crate) fn take(&mut self, other: &Linear<D>) {
         self.full.copy_from(&other.full);
         self.is_unsymmetric = other.is_unsymmetric;
@@ -262,7 +262,7 @@ impl<const D: usize> Linear<D> {
         }
     }
 
-    /// y = A x with the whole matrix.
+    /// Computes y = A x with the whole matrix.
     pub(crate) fn multiply(&self, mixture: &Mixture<D>, x: &[f64], y: &mut [f64]) {
         if !mixture.matrix_free {
             return self.full.multiply(x, y);
@@ -378,7 +378,8 @@ impl<const D: usize> Linear<D> {
     /// Solves by conjugate gradients, with the complete factor if the incomplete one converges too slowly.
     fn by_gradients(&mut self, tolerance: f64, b: &[f64], out: &mut [f64]) -> Result<u32, Indefinite> {
         let mut products = 0;
-        // The complete factor is tried once; if it does not exist, only the largest number of products ends the iteration.
+        // The complete factor is tried once. If it does not exist, only convergence or the largest number of products ends the
+        // iteration.
         for most in [if self.is_slow { MOST_PRODUCTS } else { MANY_PRODUCTS }, MOST_PRODUCTS] {
             let Linear { constrained, incomplete, filled, is_filled, directions, jacobi, .. } = self;
             let by: &dyn Preconditioner = match (constrained.has_dense(), *is_filled) {
@@ -421,7 +422,7 @@ impl<const D: usize> Linear<D> {
         self.constrain(filter);
         self.cholesky.update(&self.constrained)
     }
-    /// Solves with that factor in place, for `count` consecutive right-hand sides.
+    /// Solves in place with the factor of [`Linear::factor_positive`], for `count` consecutive right-hand sides.
     pub(crate) fn solve_positive(&self, x: &mut [f64], count: usize) {
         self.cholesky.solve_all(x, count);
     }
@@ -430,7 +431,7 @@ impl<const D: usize> Linear<D> {
         self.constrain(filter);
         self.factors.update_any(&self.constrained, !self.is_unsymmetric)
     }
-    /// Solves with those factors in place.
+    /// Solves in place with the factors of [`Linear::factor`].
     pub(crate) fn solve_by_factors(&self, x: &mut [f64]) -> Result<(), Indefinite> {
         if self.factors.solve(x) { Ok(()) } else { Err(Indefinite) }
     }

@@ -26,7 +26,7 @@ pub(crate) trait Minimiser<const D: usize>: core::fmt::Debug {
     fn history(&self) -> Vec<Channel> {
         Vec::new()
     }
-    /// Improves the displacement in `workspace.u`, to which the motion of the last step leads, using its memory.
+    /// Uses its memory to improve the displacement in `workspace.u`, to which the motion of the last step leads.
     fn predict(&self, _system: &System<D>, _workspace: &mut Workspace<D>, _balance: &Balance) {}
     /// Discards data reused from step to step, after a guard has refused its stage.
     fn discard(&self, _system: &mut System<D>) {}

@@ -1,9 +1,9 @@
-//! Anderson mixing: estimates what the matrix of an iteration leaves out from the previous iterations.
+//! Anderson mixing: uses previous iterations to estimate the effect of terms that the matrix of an iteration omits.
 //!
-//! The derivatives of damping by position, of friction by the normal force and of curved obstacles are not symmetric, or belong
-//! to no model. Without them, corrections only fall by a constant factor in each iteration. An iteration is a map z → z + f(z)
-//! of the displacements and the forces of the constraints. The next state follows from the combination of the last few pairs
-//! (z, f) with the smallest |f|:
+//! Some derivatives are not symmetric, or belong to no model: those of damping with respect to position, of friction with
+//! respect to the normal force, and of curved obstacles. Without them, corrections only fall by a constant factor in each
+//! iteration. An iteration is a map z → z + f(z) of the displacements and the forces of the constraints. The next state follows
+//! from the combination of the last few pairs (z, f) with the smallest |f|:
 //!
 //! z' = z + f − Σ γⱼ (Δzⱼ + Δfⱼ),  γ = argmin |f − Σ γⱼ Δfⱼ|.
 //!
@@ -19,7 +19,7 @@ const MOST: usize = 8;
 /// A difference adds no information if its component orthogonal to the others is below this fraction of its size.
 const NOTHING_NEW: f64 = 1e-6;
 
-/// The iterations since anything but the state has changed.
+/// The iterations in which nothing but the state has changed.
 #[derive(Debug, Default)]
 pub(crate) struct Mixing {
     /// The last state and its change; empty if there is none.

@@ -38,21 +38,22 @@
 //! | `slenderness` | for which bodies the real-time setting factors its matrix |
 //! | `impact` | effects of obstacles at the end of a step: velocities and the ledger |
 //!
-//! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x: the exact one while it is positive definite, otherwise
-//! the block of each element without its negative eigenvalues, for which every direction leads downhill. The derivative of the
-//! damping force by position is left out of the matrix; mixing of iterations compensates for it. The line search accepts a step
-//! if the slope of Φ along it, minus the work of friction and of the constraints, has fallen (Hager and Zhang 2005, approximate
-//! Wolfe condition) and, if Φ is known, Φ minus that work has not risen. The iteration ends when the last correction is below
-//! `tolerance` times the extent of the body.
+//! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x. The exact matrix is used while it is positive
+//! definite. Otherwise the block of each element is used without its negative eigenvalues; every direction then leads downhill.
+//! The derivative of the damping force with respect to position is omitted from the matrix, and mixing of iterations compensates
+//! for it. The line search accepts a step if the slope of Φ along it, minus the work of friction and of the constraints, has
+//! fallen (Hager and Zhang 2005, approximate Wolfe condition) and, if Φ is known, Φ minus that work has not risen. The iteration
+//! ends when the last correction is below `tolerance` times the extent of the body.
 //!
 //! **Contact.** Obstacles hold nodes by constraints, not by penalties: a node that would end inside is moved to the surface
 //! within the iteration, all other nodes follow by elasticity, and the force of the constraint follows from the balance. A node
-//! is released when that force pulls. In statics, a correction ends at the first obstacle that it meets, because nothing else
-//! would keep a falling body from passing through. It sticks while the tangential part obeys Coulomb's law |f_t| ≤ µ f_n, and
-//! otherwise slips against a friction of µ f_n. This is the primal–dual active set method, a semi-smooth Newton method
-//! (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few additional iterations. Friction uses the
-//! normal force that the direction itself causes. Velocities are corrected at the end of the step: the incoming normal velocity
-//! is lost or returned according to the restitution, and friction takes µ times that change as well.
+//! is released when that force pulls. It sticks while the tangential part of the force obeys Coulomb's law |f_t| ≤ µ f_n, and
+//! otherwise slips against a friction of µ f_n. In statics, a correction ends at the first obstacle that it meets, because
+//! nothing else would keep a falling body from passing through. This treatment of contact is the primal–dual active set method,
+//! a semi-smooth Newton method (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few additional
+//! iterations. Friction uses the normal force that the direction itself causes. Velocities are corrected at the end of the
+//! step: the incoming normal velocity is lost or returned according to the restitution, and friction takes µ times that change
+//! as well.
 
 mod answer;
 mod answer_matrix;

@@ -20,7 +20,7 @@ use opruga_math::Lane;
 /// Convergence is slow if a correction is above this fraction of the previous one.
 const SLOW: f64 = 0.03;
 
-/// From this iteration on contacts do not change; contacts that would still change then make little difference.
+/// From this iteration on, contacts do not change any more. Those that would still change make little difference.
 const MOST_DECISIONS: u32 = 30;
 
 /// Newton's method: exact, to the tolerance of its settings.
@@ -77,7 +77,7 @@ struct Iteration<'a> {
     balance: &'a Balance,
     settings: &'a Settings,
     solved: Solved,
-    /// The correction that ends it [m].
+    /// The correction below which the iteration ends [m].
     goal: f64,
     /// The largest coordinate [m].
     size: f64,
@@ -104,12 +104,12 @@ struct Correction {
     /// Which derivatives its direction uses.
     keep: Keep,
     slope: f64,
-    /// The largest displacement of a node by the direction alone [m], and the part of it that was taken.
+    /// The largest displacement of a node due to the direction alone [m], and the part of this displacement that was taken.
     plain: f64,
     gone: f64,
-    /// Whether previous iterations are mixed in.
+    /// Whether previous iterations were mixed in.
     mixed: bool,
-    /// Whether it is at most half of the previous one.
+    /// Whether the correction is at most half of the previous one.
     nears: bool,
     /// The fraction of it that was taken.
     length: f64,
@@ -214,7 +214,7 @@ impl<'a> Iteration<'a> {
         if plain <= self.goal {
             return full_step(system, workspace, self.balance);
         }
-        // A correction that is too stiff, with obstacles near, may be extended, unless the body falls towards them without
+        // A correction with too stiff a matrix may be extended even near obstacles, unless the body falls towards them without
         // inertia.
         let falls = self.balance.sigma == 0.0 && system.contacts.is_some();
         let stiff = keep != Keep::Exact && !falls;
@@ -348,7 +348,7 @@ fn left_over<const D: usize>(
 }
 
 /// Records an iteration and, if `wanted` is set, replaces its step by the combination with previous iterations; returns whether
-/// it did.
+/// the step was replaced.
 fn mix<const D: usize>(workspace: &mut Workspace<D>, wanted: bool, slope: &mut f64) -> bool {
     workspace.mixing.note(&workspace.u, &workspace.step);
     if !wanted || workspace.mixing.is_empty() {

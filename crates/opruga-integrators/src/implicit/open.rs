@@ -28,7 +28,7 @@ struct Open<R, const D: usize> {
     workspace: Box<Workspace<D>>,
     balance: Balance,
     account: Account,
-    /// Whether forces were last evaluated at the trial.
+    /// Whether the latest evaluation of forces was at the trial state.
     tried: bool,
 }
 

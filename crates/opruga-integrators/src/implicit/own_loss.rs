@@ -6,7 +6,7 @@
 //!
 //! J = h i F + M m = M Δv − h i (r + R).
 //!
-//! With W, the work of loads and pins minus damping as entered in the ledger, the rule dissipates
+//! With the work W of loads and pins minus that of damping, as recorded in the ledger, the rule dissipates
 //!
 //! L = W + U₀ − U₁ − v̄·J.
 //!
@@ -21,21 +21,21 @@
 //!
 //! Δ goes from n to n + 1 and Δ₋ from n − 1 to n; g_f = (1 − α_f) g₁ + α_f g₀ if forces are linear, and in general it is g in
 //! the averaged state. Tests compare the rules with these formulas. The work of r, h i v̄·r, is in no channel of the ledger, so
-//! it remains unexplained. The contacts enter the work of R.
+//! it remains unexplained. The code of contacts records the work of R.
 //!
-//! Pinned nodes do not count: the work of pins is entered with the kinetic energy of these nodes.
+//! Pinned nodes do not count: the work of pins is recorded with the kinetic energy of these nodes.
 
 use super::balance::Balance;
 use super::workspace::Workspace;
 use opruga_core::system::{System, Work8};
 use opruga_math::WIDTH;
 
-/// The work of loads and pins minus that of damping, as entered so far [J].
+/// The work of loads and pins minus that of damping, as recorded so far [J].
 pub(super) fn given(work: &Work8) -> [f64; WIDTH] {
     core::array::from_fn(|lane| work.user[lane] - work.damping[lane])
 }
 
-/// Adds W, the work entered since `before`.
+/// Adds W, the work recorded since `before`.
 pub(super) fn add_given(work: &mut Work8, before: &[f64; WIDTH]) {
     let now = given(work);
     for lane in 0..WIDTH {
@@ -43,7 +43,8 @@ pub(super) fn add_given(work: &mut Work8, before: &[f64; WIDTH]) {
     }
 }
 
-/// Adds the work of the forces of other bodies to W. The ledger does not contain it yet; the code of contact enters its losses.
+/// Adds the work of the forces of other bodies to W. The ledger does not contain this work yet; the code of contact records its
+/// losses.
 pub(super) fn add_pushes<const D: usize>(system: &mut System<D>, u1: &[f64]) {
     let System { pushes, work, .. } = system;
     for (node, force) in pushes.iter().flatten() {

@@ -1,9 +1,9 @@
 //! The real-time setting: few iterations with a matrix that is kept as long as the iteration with it finds the end of a step.
 //!
 //! Every iteration balances the exact forces; the matrix only determines the correction. If the matrix belongs to another shape
-//! of the body, or its equations are solved roughly, a part of the residual remains, and the next step begins with it. At rest
-//! nothing remains. The iteration begins with the positions to which the acceleration of the last step would lead, and with the
-//! contact forces of that step (`contact_forces`).
+//! of the body, or if its equations are solved only approximately, a part of the residual remains, and the next step begins
+//! with it. At rest nothing remains. The iteration begins with the positions to which the acceleration of the last step would
+//! lead, and with the contact forces of that step (`contact_forces`).
 //!
 //! The residual of a step shows whether the matrix is still good enough. Near obstacles the residual comes mostly from changes of
 //! contacts; there, the measure is the difference between the forces after an iteration and those that the matrix predicted.
@@ -33,11 +33,12 @@ const LINEAR: f64 = 0.05;
 /// If a larger fraction of the residual remains, the next step rebuilds the matrix.
 const MOST_MISMATCH: f64 = 0.2;
 
-/// This fraction for bodies that are free or near obstacles: after three such iterations, a thousandth remains.
+/// The same fraction for bodies that are free or near obstacles: after three such iterations, a thousandth of the residual
+/// remains.
 const MOST_MISMATCH_LOOSE: f64 = 0.1;
 
 /// The fraction of the residual that the linear solver may leave for bodies that are free or near obstacles. An iteration is
-/// good enough if it leaves the square of this.
+/// good enough if at most the square of this fraction of the residual remains.
 const LOOSE: f64 = 1e-3;
 
 /// A residual counts as zero if it moves nodes by less than this fraction of the extent.
@@ -64,8 +65,8 @@ const STEP: PerBody<f64> = PerBody::new("real_time.step");
 const MATRIX: PerBody<bool> = PerBody::new("real_time.matrix");
 const STALE: PerBody<bool> = PerBody::new("real_time.stale");
 
-/// Whether nothing holds a body, or obstacles may be near. The residual would then push and rotate it, and the acceleration of an
-/// impact cannot be continued.
+/// Whether nothing holds a body, or whether obstacles may be near. The residual would then push and rotate the body, and the
+/// acceleration of an impact cannot be continued.
 fn is_loose<const D: usize>(system: &System<D>) -> bool {
     system.contacts.is_some() || system.pins.is_empty()
 }
@@ -185,7 +186,8 @@ impl Task<'_> {
         Ok(true)
     }
 
-    /// Begins with the matrix in the reference shape that the state contains, or in the initial shape if it contains none.
+    /// Begins with the matrix in the reference shape that the state contains, or in the initial shape if the state contains
+    /// none.
     fn begin<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<(), StepError> {
         let recalled = self.recall(system, workspace)?;
         evaluate(system, workspace, self.balance, false)?;
@@ -247,13 +249,13 @@ pub(super) fn keeps_matrix<const D: usize>(system: &System<D>) -> bool {
 /// Whether the result of few iterations is accepted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Trust {
-    /// It is.
+    /// The result is always accepted.
     Always,
-    /// Accepted, unless the incremental potential has risen.
+    /// The result is accepted unless the incremental potential has risen.
     IfDownhill,
-    /// Accepted, unless the body has more energy at the end of the step than before.
+    /// The result is accepted unless the body has more energy at the end of the step than before.
     IfNoGain,
-    /// It is not.
+    /// The result is not accepted.
     None,
 }
 
@@ -331,7 +333,7 @@ pub(super) fn iterate<const D: usize>(
         }
         solved.iterations += 1;
         let goal = if is_loose(system) { (linear * size).larger(enough) } else { (linear * first).larger(floor) };
-        // This happens with a gas that pushes, for example; the step is then solved exactly.
+        // A matrix can fail because of the pressure of a gas, for example. The step is then solved exactly.
         let Ok(products) = task.direction(system, workspace, goal) else {
             solved.converged = false;
             return Ok((solved, Trust::None));
@@ -339,7 +341,7 @@ pub(super) fn iterate<const D: usize>(
         solved.products += products;
         slow |= products > MANY_PRODUCTS;
         let missed = go(system, workspace, &task, moves, &mut solved)?;
-        // Errors of the matrix by rounding do not count.
+        // Errors of the matrix due to rounding do not count.
         mismatch = if missed > floor { missed / size } else { 0.0 };
         undecided = false;
         if system.contacts.is_some() {
@@ -356,7 +358,7 @@ struct End {
     size: f64,
     first: f64,
     floor: f64,
-    /// The fraction of it that may remain.
+    /// The fraction of the initial residual that may remain.
     most: f64,
     /// Whether an iteration took many products, and whether the matrix was rebuilt.
     slow: bool,

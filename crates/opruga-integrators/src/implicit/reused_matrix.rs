@@ -28,9 +28,9 @@ pub(crate) struct ReusedMatrix<const D: usize> {
     projectors: Vec<Block<D>>,
     packed: Packed<D>,
     cholesky: Cholesky,
-    /// Whether it was computed at the positions of this iteration and has not been used yet; then one pass through a dense
-    /// factor also solves for the right-hand side. A matrix that is made again because a run is resumed counts as used, so that
-    /// its solutions have the same bits as in the original run.
+    /// Whether the matrix was computed at the positions of this iteration and has not been used yet. In this case, the pass
+    /// that makes a dense factor also solves for the right-hand side. A matrix that is made again because a run is resumed
+    /// counts as used, so that its solutions have the same bits as in the original run.
     is_new: bool,
     /// The solution for the present right-hand side, and whether it is known.
     solution: Vec<f64>,
@@ -63,8 +63,7 @@ impl<const D: usize> ReusedMatrix<D> {
         })
     }
 
-    /// Makes the matrix for `reference`, the shape that was evaluated last. `is_new` says whether the iteration is at that
-    /// shape.
+    /// Makes the matrix for `reference`, the shape that was evaluated last. `is_new` is true if the iteration is at that shape.
     pub(crate) fn make(&mut self, linear: &mut Linear<D>, mixture: &Mixture<D>, reference: &Columns<D>, is_new: bool) {
         linear.assemble(mixture);
         self.packed.take(linear.full(), mixture.system.threads);
@@ -125,7 +124,7 @@ impl<const D: usize> ReusedMatrix<D> {
         self.packed.begin(system.simd, system.threads, right)
     }
 
-    /// Solves for that right-hand side; returns the number of products and whether the matrix was indefinite.
+    /// Solves for the present right-hand side; returns the number of products and whether the matrix was indefinite.
     pub(crate) fn solve(
         &mut self,
         system: &System<D>,

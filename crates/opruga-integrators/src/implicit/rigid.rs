@@ -1,21 +1,20 @@
 //! The balance of a stage in the rigid motions of a body that nothing prevents.
 //!
-//! Positions have sixteen digits. Rounding them causes forces of about ε |x| times the stiffness of a node, which may be a
-//! multiple of its weight: E ε |x|/(ρ g ℓ²) times the weight in a body with cells of size ℓ. The residual of a single node is
-//! then meaningless. But whatever the positions are, the forces between nodes and their moments sum to zero over a piece of a
-//! body, up to the rounding of that sum, which is smaller by another ε. So the sum of the residuals is known even if its terms
-//! are not: it consists of weight, loads and inertia. A matrix whose stiffness is 1/ε times its mass is also useless for these
-//! motions, since the sums of its rows are rounding errors.
+//! Positions have sixteen digits. Rounding them causes forces of about ε |x| times the stiffness of a node. Such a force may be
+//! a multiple of the weight of the node: E ε |x|/(ρ g ℓ²) times this weight in a body with cells of size ℓ. The residual of a
+//! single node is then meaningless. But whatever the positions are, the forces between nodes and their moments sum to zero over
+//! a piece of a body, up to the rounding of that sum, which is smaller by another ε. So the sum of the residuals is known even
+//! if its terms are not: it consists of weight, loads and inertia. A matrix whose stiffness is 1/ε times its mass is also
+//! useless for these motions, since the sums of its rows are rounding errors.
 //!
 //! For each piece (`pieces`) let φ be its motions t + ω × (x − c) that neither pins nor obstacles prevent, orthonormal with
-//! respect to the masses. Then
+//! respect to the masses. The motion φ a that balances the piece follows from
 //!
 //! (σ + φᵀ(K + βC)φ) a = −φᵀ r
 //!
-//! is the motion that balances the piece. Models that exert forces only between nodes are left out of r and of K: their sums
-//! are zero, but their computed moments have rounding errors like their forces. Any model that ties nodes to space resists
-//! rigid motion, if its resistance exceeds rounding. A piece moves by a finite rotation (Cayley's), which does not change its
-//! shape.
+//! Models that exert forces only between nodes are omitted from r and K: the sums of these forces are zero, but their computed
+//! moments have rounding errors like the forces themselves. Any model that ties nodes to space resists rigid motion, if its
+//! resistance exceeds rounding. A piece moves by a finite rotation (Cayley's), which does not change its shape.
 
 use super::contact::Contacting;
 use super::linear::{Filter, Mixture};
@@ -245,7 +244,7 @@ impl<const D: usize> Rigid<D> {
     }
 }
 
-/// M s.
+/// Returns M s.
 fn momenta<const D: usize>(mass: &[f64], inertia: Option<&Inertia>, s: &[f64]) -> Vec<f64> {
     let mut out: Vec<f64> = s.iter().enumerate().map(|(k, s)| mass[k / D] * s).collect();
     if let Some(inertia) = inertia {

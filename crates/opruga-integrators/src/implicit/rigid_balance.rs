@@ -12,12 +12,12 @@ use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_math::Lane;
 
-/// The largest number of rigid moves; two are enough unless rotations are large.
+/// The largest number of rigid displacements; two are enough unless rotations are large.
 const MOST_MOVES: usize = 8;
 
 /// Whether the result of Newton's method is acceptable in the rigid motions. These may be wrong if the matrix is inaccurate in
-/// them, or if the residual was taken for rounding; in both cases they are balanced first. `size` is the size of coordinates
-/// [m].
+/// them, or if the residual was taken for rounding; in both cases the rigid motions are balanced first. `size` is the size of
+/// coordinates [m].
 pub(super) fn accepts<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -45,7 +45,7 @@ pub(super) fn accepts<const D: usize>(
 
 /// Moves the pieces of a body until their total residual no longer halves, which is its rounding; pieces that would move by no
 /// more than `least` [m] are not moved. Returns how far the pieces moved [m]; none if they could not be brought closer to
-/// balance.
+/// equilibrium.
 pub(super) fn balance_rigid_motions<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

@@ -13,7 +13,7 @@ pub(super) struct Motion<const D: usize> {
     pub(super) rotation: [f64; 3],
 }
 
-/// ω × r.
+/// Returns ω × r.
 fn cross<const D: usize>(rotation: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
     let mut out = [0.0; D];
     if D == 2 {
@@ -162,8 +162,8 @@ mod tests {
     use super::*;
     use opruga_solve::blocks::isotropic;
 
-    /// If nodes of a plane body all slide along one straight guide, the body can only slide, however many these nodes are.
-    /// Differences of their directions by rounding are not separate directions.
+    /// If several nodes of a plane body slide along one straight guide, the body can only slide, however many nodes these are.
+    /// Differences of their directions due to rounding do not count as separate directions.
     #[test]
     fn nodes_that_a_guide_holds_leave_one_motion() {
         let normal = [0.6, 0.8];

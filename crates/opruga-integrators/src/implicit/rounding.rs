@@ -14,14 +14,15 @@ use opruga_solve::dot;
 /// The rounding of a force, in units of stiffness times size.
 const ROUNDING: f64 = 4e-15;
 
-/// From these fractions of the extent on, the displacement by another iteration is reduced, and reported.
+/// The fraction of the extent above which the displacement due to another iteration is reduced, and the fraction above which it
+/// is reported.
 const LEFT: f64 = 1e-8;
 const VISIBLE: f64 = 1e-7;
 
 /// The fraction of the loads that statics may leave as a residual.
 const UNCARRIED: f64 = 1e-2;
 
-/// Loads below this fraction of the largest rounding of forces may be lost in it.
+/// Loads below this fraction of the largest rounding of forces may be lost in the rounding.
 const LOST: f64 = 1e-2;
 
 /// The typical rounding of a force, as a fraction of the largest.
@@ -46,8 +47,8 @@ pub(super) fn at_rounding<const D: usize>(
     })
 }
 
-/// Continues the iteration in statics if the residual is as small as rounding, but would still visibly move a node, and as long
-/// as every further correction halves that displacement. The displacement is small in a stout body, but large in a body that is
+/// Continues the iteration in statics if the residual is as small as rounding but would still visibly move a node. Stops when a
+/// further correction does not halve that displacement. The displacement is small in a stout body, but large in a body that is
 /// stiff lengthwise and soft sideways. Returns the remaining displacement of a node [m]; zero if it is not visible. To be
 /// called after [`at_rounding`], which leaves the residual in `workspace.right`.
 pub(super) fn settle<const D: usize>(
@@ -110,7 +111,7 @@ fn leaves<const D: usize>(workspace: &mut Workspace<D>, loads: f64) -> bool {
     along.abs() > UNCARRIED * loads * loads
 }
 
-/// An equilibrium of statics that may be wrong.
+/// What makes an equilibrium of statics doubtful.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Doubt {
     /// The largest displacement of a node, all of which is uncertain [m]; zero if there is no doubt.
@@ -216,8 +217,8 @@ fn take_residual<const D: usize>(workspace: &mut Workspace<D>) {
     Filter { free: &workspace.free, projectors: &workspace.projectors }.apply(&mut workspace.right);
 }
 
-/// The displacement by the residual with the last matrix, written to `workspace.step`; returns the largest displacement of a node
-/// [m].
+/// Writes the displacement due to the residual, computed with the last matrix, to `workspace.step`; returns the largest
+/// displacement of a node [m].
 fn correction<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,

@@ -34,14 +34,14 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     fn history(&self) -> Vec<Channel> {
         Vec::new()
     }
-    /// The effect of one step on the damped oscillator, as [`Integrator::amplification`].
+    /// The effect of one step on the damped oscillator, as described at [`Integrator::amplification`].
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification;
     /// Computes y, z from the state and the history, both relative to x₀, and the numbers of the balance.
     fn begin(&self, system: &System<D>, workspace: &mut Workspace<D>, h: f64) -> Balance;
     /// Computes displacement `u1` and velocity `v1` at the end from the stage.
     fn end(&self, system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance, h: f64);
-    /// The velocity that a following step of the same length will add to a coordinate from the memory, besides the forces [m/s]:
-    /// the sum of v₁ and this changes by h F/m in every step.
+    /// The velocity that the memory will add to a coordinate in a following step of the same length, in addition to the effect
+    /// of forces [m/s]. The sum of v₁ and this velocity changes by h F/m in every step.
     fn remembered(&self, _workspace: &Workspace<D>, _k: usize, _h: f64) -> f64 {
         0.0
     }

@@ -10,8 +10,8 @@ use opruga_core::system::System;
 /// The fraction of the residual at which an iteration is good enough, and the fraction that may remain after the last one.
 const ENOUGH: [f64; 2] = [0.2, 0.2];
 
-/// These fractions for a rule that damps slow motions little. Its residual acts in the next step, with a delay, and pushes in
-/// the direction of the motion: with a fiftieth, a beam of 10 × 2 quadrilaterals still gained energy under `bdf2`.
+/// The same fractions for a rule that damps slow motions little. Its residual acts with a delay, in the next step, and pushes
+/// in the direction of the motion: with a fiftieth, a beam of 10 × 2 quadrilaterals still gained energy under `bdf2`.
 const ENOUGH_UNDAMPED: [f64; 2] = [1e-3, 0.05];
 
 /// How the equations of a step are solved.
@@ -165,7 +165,7 @@ compared with others, for slender bodies of many thousand nodes, or for motions 
 refuse the setting.",
 );
 
-/// Integrators that keep the residual of a step.
+/// Integrators with which residuals of steps would accumulate.
 const UNDAMPED: [&str; 2] = ["implicit_midpoint", "newmark"];
 
 /// Integrators that damp slow motions little.
@@ -182,8 +182,8 @@ impl Settings {
             return Err(BuildError::of(
                 kind,
                 match values.number("spectral_radius") {
-                    // Its acceleration follows from the displacement, even if forces do not balance there, and the next step
-                    // begins with it.
+                    // The remembered acceleration follows from the displacement, even if forces do not balance there, and the
+                    // next step begins with this acceleration.
                     Some(radius) if radius < 1.0 => Refusal::DampsLittle { integrator: kind, radius },
                     _ => Refusal::DampsNothing { integrator: kind },
                 },

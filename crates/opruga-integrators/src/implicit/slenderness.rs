@@ -8,10 +8,10 @@ use opruga_core::system::{Stage, System};
 /// A body is slender if no layer of cells has more nodes than this many times the number of layers.
 const SLENDER: usize = 8;
 
-/// The largest size of the factor: the number of nodes of the widest layer times that of the body.
+/// The largest size of the factor: the number of nodes of the widest layer times the number of nodes of the body.
 const LARGEST_FACTOR: usize = 400_000;
 
-/// Which nodes are coupled, as delivered.
+/// Collects which nodes the delivered blocks couple.
 struct Touching {
     neighbours: Vec<Vec<u32>>,
 }

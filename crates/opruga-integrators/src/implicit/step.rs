@@ -152,7 +152,8 @@ struct Method<'a, R, const D: usize> {
 }
 
 impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
-    /// Makes a step of h, or two of half the length if it does not converge. This is the outermost guard.
+    /// Makes a step of length h, or two steps of half the length if the whole step does not converge. This is the outermost
+    /// guard.
     fn advance(
         &self,
         system: &mut System<D>,
@@ -186,7 +187,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         outcome
     }
 
-    /// Makes a step of h from start to ledger.
+    /// Makes a step of length h from start to ledger.
     fn attempt(&self, system: &mut System<D>, workspace: &mut Workspace<D>, h: f64) -> Result<(), StepError> {
         let ledger = open_ledger::<R, D>(system, workspace, h)?;
         let found = self.find_end(system, workspace, h)?;
@@ -215,7 +216,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         loop {
             let (balance, solved) = find_stage(rule, minimiser, system, workspace, h)?;
             if let Some(other) = in_contact.filter(|_| rule.in_contact().is_some() && workspace.contacting.any()) {
-                // A contact that was not foreseen.
+                // There is a contact that was not foreseen.
                 rule = other;
                 continue;
             }
@@ -280,7 +281,7 @@ fn find_stage<R: Rule<D>, const D: usize>(
     Ok((balance, solved))
 }
 
-/// Whether its velocity alone would bring any node onto or into an obstacle by the end of the step.
+/// Whether any node would be on or in an obstacle at the end of the step if it moved with its velocity alone.
 fn touches<const D: usize>(system: &System<D>, workspace: &Workspace<D>, h: f64) -> bool {
     let Some(obstacles) = &system.contacts else { return false };
     nodes::<D>(&workspace.x0).iter().zip(nodes::<D>(&workspace.v0)).any(|(from, velocity)| {

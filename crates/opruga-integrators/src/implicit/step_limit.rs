@@ -44,7 +44,7 @@ pub(crate) fn lift_out<const D: usize>(system: &System<D>, workspace: &mut Works
             lift[d] -= touch.gap * touch.normal[d];
         }
     }
-    // There is no room for the body between the obstacles, so it begins at its present position.
+    // The obstacles leave no space for the body, so it begins at its present position.
 }
 
 /// Whether the displacement in `workspace.u` leaves a node inside an obstacle because its contact changed too often. Only nodes

@@ -17,8 +17,8 @@ const RADIUS_IN_CONTACT: f64 = 0.9;
 impl Theta {
     /// The implicit midpoint rule.
     pub(crate) const MIDDLE: Theta = Theta(0.5);
-    /// For steps in which obstacles hold nodes. Otherwise the vibration of a stiff body would never end, and friction would act
-    /// on it.
+    /// The rule for steps in which obstacles hold nodes. Without it, the vibration of a stiff body in contact would never end,
+    /// and friction would act on this vibration.
     pub(crate) const IN_CONTACT: Theta = Theta(1.0 / (1.0 + RADIUS_IN_CONTACT));
     /// Backward Euler, which dissipates energy from all motion.
     pub(crate) const END: Theta = Theta(1.0);
@@ -27,7 +27,7 @@ impl Theta {
         self.0
     }
 
-    /// Computes y, z from the state.
+    /// Computes y and z from the state.
     pub(crate) fn begin<const D: usize>(self, workspace: &mut Workspace<D>, h: f64) -> Balance {
         let span = self.0 * h;
         for (y, v) in workspace.y.iter_mut().zip(&workspace.v0) {

@@ -57,7 +57,7 @@ pub(crate) struct Workspace<const D: usize> {
     /// The velocities that the rule will still add from its memory [m/s].
     pub(crate) memory: Vec<f64>,
     pub(crate) linear: Linear<D>,
-    /// The matrix with which its end responds to other bodies.
+    /// The matrix with which the end of the step responds to other bodies.
     pub(crate) answer: AnswerMatrix<D>,
     /// Whether the real-time setting factors its matrix with a given solver, if already determined.
     pub(crate) direct: Option<(Solver, bool)>,

@@ -2,7 +2,7 @@
 //!
 //! M (v₁ − v₀) = h F((x₀ + x₁)/2, (x₁ − x₀)/h, t + h/2),  x₁ = x₀ + ½ h (v₀ + v₁).
 //!
-//! Second order, stable for every step size on linear systems, symplectic: without damping the amplitude of a linear
+//! Second order, stable for every step size on linear systems, and symplectic: without damping the amplitude of a linear
 //! oscillation stays constant at any h ω, and linear and angular momentum are conserved to the tolerance of the iteration.
 //! Motion that is too fast for the step is not damped, but slowed down to half a period per step.
 //!
@@ -10,11 +10,11 @@
 //! Energy is conserved exactly if forces are linear. A stiff spring that rotates within a step exchanges energy with its stretch,
 //! which limits the step in practice.
 //!
-//! In contact the vibration of a stiff body would never end, and friction would act on it. So steps in which obstacles hold
-//! nodes have their stage at θ = 1/(1 + 0.9) instead of ½: in each step, the amplitude of motion much faster than the step is
-//! multiplied by (1 − θ)/θ = 0.9, and that of an oscillation with small hω loses the fraction (θ − ½) h²ω² (the θ-method;
-//! Hughes 1987, 8.2). If such a step would gain energy, as may happen when stiff parts rotate far, it is made by backward
-//! Euler.
+//! In contact the vibration of a stiff body would never end, and friction would act on this vibration. So steps in which
+//! obstacles hold nodes have their stage at θ = 1/(1 + 0.9) instead of ½: in each step, the amplitude of motion much faster
+//! than the step is multiplied by (1 − θ)/θ = 0.9, and that of an oscillation with small hω loses the fraction (θ − ½) h²ω²
+//! (the θ-method; Hughes 1987, 8.2). If such a step would gain energy, as may happen when stiff parts rotate far, it is made by
+//! backward Euler.
 //!
 //! Source: Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1 and IV.2.
 

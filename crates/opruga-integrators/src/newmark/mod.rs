@@ -57,7 +57,7 @@ given, average acceleration is used.",
     roles: &[],
 };
 
-/// The acceleration at the end of the last step [m/s²], and whether there was one.
+/// The acceleration at the end of the previous step [m/s²], and whether there was a previous step.
 const ACCELERATION: PerNode = PerNode::new("newmark.acceleration");
 const BEGUN: PerBody<bool> = PerBody::new("newmark.begun");
 
@@ -72,7 +72,7 @@ pub struct Newmark {
     alpha_f: f64,
     beta: f64,
     gamma: f64,
-    /// A step of the θ-method, used instead.
+    /// The θ-method that makes the step instead, if any.
     theta: Option<Theta>,
 }
 
@@ -221,7 +221,7 @@ impl<const D: usize> Rule<D> for Newmark {
     }
 }
 
-/// M a₀ = F at the start; if nodes are coupled, pinned ones do not accelerate.
+/// Solves M a₀ = F at the start. If masses couple nodes, pinned nodes do not accelerate.
 fn first_acceleration<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>) {
     let Workspace { a0, force, right, .. } = workspace;
     a0.clear();
@@ -237,7 +237,7 @@ fn first_acceleration<const D: usize>(system: &System<D>, workspace: &mut Worksp
 }
 
 impl Newmark {
-    /// a₁ from the displacement of the step.
+    /// Computes a₁ from the displacement of the step.
     fn acceleration<const D: usize>(&self, workspace: &Workspace<D>, k: usize, h: f64) -> f64 {
         (workspace.u1[k] - h * workspace.v0[k] - h * h * (0.5 - self.beta) * workspace.a0[k]) / (self.beta * h * h)
     }

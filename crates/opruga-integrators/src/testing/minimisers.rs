@@ -1,5 +1,5 @@
-//! A minimiser that shares nothing with Newton's method reaches the same incremental potential, and rules do not depend on which
-//! one is used.
+//! A minimiser that has nothing in common with Newton's method reaches the same incremental potential, and rules do not depend
+//! on which minimiser is used.
 
 use super::problems::Springs;
 use super::{distance, state};
@@ -75,7 +75,7 @@ impl Minimiser<2> for GradientDescent {
     }
 }
 
-/// Lets both find the same stage from the same start, and uses the result of Newton's method.
+/// Makes both minimisers find the stage from the same start, and uses the result of Newton's method.
 #[derive(Debug)]
 struct Both {
     newton: Newton,

@@ -237,8 +237,8 @@ pub(crate) fn check_no_stable_step(integrator: &dyn Integrator<2>, growth: fn(f6
     }
 }
 
-/// Checks that the energy of an undamped nonlinear spring stays, for a long time, within a bound that shrinks with h to the power
-/// `order`.
+/// Checks that the energy of an undamped nonlinear spring stays within a bound for a long time. The bound shrinks with h to the
+/// power `order`.
 pub(crate) fn check_bounded_energy(integrator: &dyn Integrator<2>, order: f64) {
     let mut bounds = Vec::new();
     for steps_per_second in [100.0, 200.0] {

@@ -90,7 +90,7 @@ fn dot(a: &Vectors, b: &Vectors) -> f64 {
     a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a * b).sum()
 }
 
-/// a·M b.
+/// Returns a·M b.
 fn by_mass(system: &System<2>, a: &Vectors, b: &Vectors) -> f64 {
     (0..NODES).map(|n| system.mass.at(n) * (a[n][0] * b[n][0] + a[n][1] * b[n][1])).sum()
 }

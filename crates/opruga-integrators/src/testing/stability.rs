@@ -88,7 +88,7 @@ fn rings_have_the_frequency_of_their_closed_form() {
     }
 }
 
-/// The thesis's springs: k = 1600 N/m, c = 40 N·s/m, m = 1 kg; (2/ω)(√(1 + ζ²) − ζ) = 0.01036 s instead of 0.025 s.
+/// The springs of the thesis: k = 1600 N/m, c = 40 N·s/m, m = 1 kg; (2/ω)(√(1 + ζ²) − ζ) = 0.01036 s instead of 0.025 s.
 #[test]
 fn the_step_of_the_thesis_ball() {
     let make = || ring(36, 100.0, 1.0, 1600.0, 40.0, 0.0);
@@ -178,7 +178,7 @@ fn growth_is_as_fast_as_announced() {
     let mut system = ring(36, 100.0, 1.0, 1600.0, 0.0, 0.0);
     let announced =
         estimated(&system, &ExplicitEuler).spectrum.growth_per_second(&ExplicitEuler as &dyn Integrator<2>, h);
-    // Only the alternating motion.
+    // The initial motion is only the alternating one.
     for p in 0..36 {
         let (x, sign) = (system.state.x.at(p), if p % 2 == 0 { 1e-9 } else { -1e-9 });
         system.state.v.set(p, [-x[1] * sign, x[0] * sign]);

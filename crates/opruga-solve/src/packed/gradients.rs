@@ -16,7 +16,7 @@ pub struct Reached {
     pub indefinite: bool,
 }
 
-/// y = A x for the rows of a piece, and the scalar product x·y.
+/// y = A x for the rows of a piece; returns the scalar product x·y.
 struct Multiply<'a, const D: usize> {
     piece: &'a mut Piece<D>,
     rows: &'a [f64],
@@ -60,7 +60,7 @@ impl<const D: usize> Work for Multiply<'_, D> {
     }
 }
 
-/// x ← x + s p, r ← r − s A p, z ← B r, and the scalar product r·z.
+/// x ← x + s p, r ← r − s A p, z ← B r; returns the scalar product r·z.
 struct Advance<'a, const D: usize> {
     piece: &'a mut Piece<D>,
     step: f64,
@@ -94,7 +94,7 @@ impl<const D: usize> Work for Advance<'_, D> {
     }
 }
 
-/// p ← z + t p, also by seat for products.
+/// p ← z + t p; p is also stored by seat, for products.
 struct Turn<'a, const D: usize> {
     direction: &'a mut Column,
     improved: &'a [f64],
@@ -130,7 +130,7 @@ impl<const D: usize> Packed<D> {
         self.pieces.iter().map(|piece| piece.sum).sum()
     }
 
-    /// The directions by seat.
+    /// Copies the directions to their seats.
     pub(super) fn spread(&mut self, threads: usize) {
         each_with(threads, &mut self.pieces, &mut self.rows, PACKS * WIDTH * ROW, |piece, rows| {
             for (pack, rows) in rows.chunks_exact_mut(ROW * WIDTH).enumerate() {
@@ -143,7 +143,7 @@ impl<const D: usize> Packed<D> {
         });
     }
 
-    /// The product of the direction, and the scalar product with it.
+    /// Computes the product A p with the direction p; returns the scalar product p·A p.
     pub(super) fn multiply_direction(&mut self, simd: Simd, threads: usize) -> f64 {
         let rows = &*self.rows;
         each(threads, &mut self.pieces, |piece| piece.sum = simd.run(Multiply { piece, rows }));
@@ -190,14 +190,15 @@ impl<const D: usize> Packed<D> {
         self.size.sqrt()
     }
 
-    /// Solves A x = b for the last right-hand side, until the residual in the norm of the preconditioner is at most `goal`, or
-    /// after `most` products. Every number of threads and every set of instructions gives the same bits.
+    /// Solves A x = b for the right-hand side of the last [`Packed::begin`], until the residual in the norm of the
+    /// preconditioner is at most `goal`, or after `most` products. Every number of threads and every set of instructions gives
+    /// the same bits.
     ///
     /// # Errors
     /// [`Indefinite`] if b is not finite or the first direction has no positive curvature.
     ///
     /// # Source
-    /// Source: Hestenes and Stiefel 1952; Steihaug 1983 for the end at a direction of negative curvature.
+    /// Hestenes and Stiefel 1952; Steihaug 1983 for the end at a direction of negative curvature.
     pub fn solve(
         &mut self,
         simd: Simd,

@@ -5,7 +5,7 @@
 //!                     k-th blocks of the eight rows side by side: D² packs of numbers
 //! ```
 //!
-//! Rows are sorted by length within windows, so that there is little padding; the number of a node in that order is its *seat*.
+//! Rows are sorted by length within windows, so that there is little padding. The number of a node in this order is its *seat*.
 //! Pieces and the order of their sums depend only on the matrix, so every number of threads gives the same bits.
 
 mod gradients;
@@ -63,10 +63,10 @@ struct Piece<const D: usize> {
     start: Vec<u32>,
     /// Eight seats of columns for every eight blocks.
     column: Vec<u32>,
-    /// Their indices in the matrix.
+    /// The indices of the blocks in the matrix.
     source: Vec<u32>,
-    /// They are in single precision, so that only half of the memory has to be read; this is enough because [`Packed`] solves
-    /// for corrections.
+    /// The values of the blocks in single precision, so that only half as much memory has to be read. This precision is enough
+    /// because [`Packed`] solves for corrections.
     values: Vec<f32>,
     /// The approximate inverse of the diagonal blocks: D² packs each, without the held directions.
     inverse: Column,
@@ -161,8 +161,8 @@ impl<const D: usize> Packed<D> {
         }
     }
 
-    /// Removes the directions that are not free, and inverts the remaining diagonal blocks; `matrix` is the one whose values were
-    /// taken.
+    /// Removes the directions that are not free, and inverts the remaining diagonal blocks; `matrix` is the matrix whose values
+    /// were taken.
     ///
     /// # Errors
     /// [`Indefinite`] if a block is not positive definite.
@@ -210,7 +210,7 @@ impl<const D: usize> Packed<D> {
         self.stiffness
     }
 
-    /// y = A x with the rounded entries of the whole matrix.
+    /// Computes y = A x with the rounded entries of the whole matrix.
     pub fn multiply(&mut self, simd: Simd, threads: usize, x: &[f64], y: &mut [f64]) {
         let nodes = &self.node;
         each(threads, &mut self.pieces, |piece| load::<D>(nodes, piece.first, x, &mut piece.direction));
