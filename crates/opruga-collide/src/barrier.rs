@@ -8,8 +8,8 @@
 //! two continuous derivatives and grows without bound as g falls to zero. The factor m fades out pairs of nearly parallel
 //! edges, whose closest points jump. κ [N/m] is the stiffness of the bodies at the pair, so the user need not give one.
 //!
-//! Only the second derivatives of b are used, κ m b″ ∇g ∇gᵀ: they have no negative eigenvalues, and the next iteration accounts
-//! for the curvature of the distance.
+//! Of the second derivatives only κ m b″ ∇g ∇gᵀ is used: this matrix has no negative eigenvalue, and the next iteration
+//! accounts for the curvature of the distance.
 //!
 //! The friction of a pair with the normal force N = −κ m b′ depends on its slip s in the step, perpendicular to the normal:
 //!
@@ -214,8 +214,8 @@ impl<const D: usize> Barrier<D> {
         Ok(())
     }
 
-    /// Searches for the pairs that come within distances [m] while the points stay in their boxes, and within a margin [m] of
-    /// these.
+    /// Searches for the pairs that come closer than the given distances [m] while the points stay within a margin [m] around
+    /// their boxes.
     fn search(
         &mut self,
         surface: &Surface<D>,
@@ -404,7 +404,7 @@ impl<const D: usize> Touching<D> {
 struct Pair<const D: usize> {
     points: [u32; 4],
     weights: [f64; 4],
-    /// From the second feature to the first [m].
+    /// The vector from the second feature to the first [m].
     between: [f64; D],
 }
 

@@ -45,7 +45,7 @@ fn meet_boxes<const D: usize>(a: &Bounds<D>, b: &Bounds<D>) -> bool {
     (0..D).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
 }
 
-/// Merges new pairs into others, which are ascending.
+/// Merges new pairs into an ascending list.
 fn merge(pairs: &mut Vec<[u32; 2]>, fresh: &mut [[u32; 2]], merged: &mut Vec<[u32; 2]>) {
     // One number per pair, which is compared faster than two.
     let key = |[a, b]: &[u32; 2]| u64::from(*a) << 32 | u64::from(*b);

@@ -55,7 +55,7 @@ struct Motion<const D: usize> {
 struct Known {
     features: [u32; 2],
     bodies: [u32; 2],
-    /// Its last known distance, plus the paths of both bodies up to then [m].
+    /// Its latest known distance, plus the paths that both bodies had then [m].
     until: f64,
 }
 

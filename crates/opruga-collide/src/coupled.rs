@@ -1,4 +1,4 @@
-//! Bodies whose points respond to impulses together, as with integrators that solve for the end of a step.
+//! Bodies whose points respond to impulses together, such as bodies with implicit integrators.
 //!
 //! An impulse on one point moves all of them, Δv = Y p. Columns of Y are requested when contacts need them, and are kept as long
 //! as the body responds with the same matrix.

@@ -40,7 +40,8 @@ pub(crate) fn arrays<R: Register, const D: usize>(registers: &[R; D]) -> [[f64; 
 pub(crate) struct NodePaths<const D: usize> {
     /// Their start, carried along with the shape, and their end [m].
     pub(crate) ends: [[[f64; WIDTH]; D]; 2],
-    /// Whether a node is to be processed, and whether another contact is already active at it in this step: above 0.
+    /// Numbers above 0 for nodes that are to be processed, and for nodes at which another contact is already active in this
+    /// step.
     pub(crate) asked: [f64; WIDTH],
     pub(crate) active: [f64; WIDTH],
     /// Distances below this size are rounding errors [m].

@@ -87,7 +87,8 @@ pub(crate) struct Facets<const D: usize> {
     /// The largest coordinates.
     pub(crate) high: [f64; D],
     half_width: f64,
-    /// The distance from the surface [m] below which the direction to it is only rounding; nearer nodes are on the surface.
+    /// The distance from the surface below which the direction to the surface is only rounding [m]. Nearer nodes are on the
+    /// surface.
     grain: f64,
 }
 
@@ -143,7 +144,7 @@ impl<const D: usize> Facets<D> {
         out.grain = 0.01 * out.resolved();
         Ok(out)
     }
-    /// A distance that is large enough for its direction not to be rounding [m].
+    /// A distance that is large enough to have a direction in spite of rounding [m].
     fn resolved(&self) -> f64 {
         let mut far = 0.0;
         for d in 0..D {
@@ -182,7 +183,7 @@ impl<const D: usize> Facets<D> {
         let displacement = subtract(x, before);
         let far = 0.5 * self.half_width;
         let (gap, normal) = self.gap_and_normal(x);
-        // The face through which it entered, which need not be the nearest one.
+        // The face through which the node entered need not be the nearest one.
         if (gap - margin < -self.grain || dot(&displacement, &displacement) > far * far)
             && let Some(found) = entry(self, margin, before, x)
         {

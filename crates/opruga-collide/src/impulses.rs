@@ -52,7 +52,7 @@ pub(crate) struct Turns<const D: usize> {
     /// The points of the rows, and their last turns; 0 before the first.
     heads: Vec<([u32; 4], u64)>,
     now: u64,
-    /// Another point that rows connect to each, or the point itself.
+    /// For each point, another one to which rows connect it, or the point itself.
     parent: Vec<u32>,
     /// The number of the set to which a point is connected, by its root; and the start of the rows of each set, in the order in
     /// which they are found.
@@ -69,9 +69,9 @@ pub(crate) struct Turns<const D: usize> {
 /// that are not connected have no influence.
 #[derive(Clone, Debug, Default)]
 struct Approach {
-    /// Another body that is connected to each, or the body itself.
+    /// For each body, another one to which it is connected, or the body itself.
     parent: Vec<u32>,
-    /// By the root of the bodies: the sum and the number of contacts, then the mean.
+    /// For each root of connected bodies: first the sum of the approach velocities and the number of contacts, then the mean.
     mean: Vec<(f64, u32)>,
 }
 

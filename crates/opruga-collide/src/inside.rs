@@ -15,7 +15,7 @@ pub struct Buried<const D: usize> {
     pub count: usize,
     /// The depth of the deepest node, including its margin [m].
     pub depth: f64,
-    /// A shift after which no node is inside any obstacle [m]; none if none was found.
+    /// A shift after which no node is inside any obstacle [m]; none if no such shift was found.
     pub shift: Option<[f64; D]>,
 }
 

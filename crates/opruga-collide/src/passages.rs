@@ -152,7 +152,7 @@ impl<const D: usize> Touching<D> {
     /// pass. It has the momentum and the angular momentum of the points.
     ///
     /// # Errors
-    /// [`Trouble::LedThrough`] if pins and obstacles prevent that.
+    /// [`Trouble::LedThrough`] if pins and obstacles prevent such a motion.
     ///
     /// # Source
     /// X. Provot, Collision and self-collision handling in cloth model dedicated to design garments (1997);

@@ -3,8 +3,8 @@
 use crate::vector::{Bounds, dot, subtract};
 use opruga_math::Lane;
 
-/// For every point, the box that it does not leave within the step, whatever contact does; and the box for which candidates were
-/// searched.
+/// For every point, the box that it does not leave within the step, whatever contact does; and the larger box of the last search
+/// for candidates.
 ///
 /// Every point has its own box, so one fast point does not turn all the others into candidates.
 #[derive(Clone, Debug, Default)]

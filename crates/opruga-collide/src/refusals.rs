@@ -17,7 +17,7 @@ messages! {
     /// Why the parameters of an obstacle are refused.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Refusal {
-        /// A kind of collider of another dimension.
+        /// A kind of collider that does not exist in this dimension.
         "collider.kind" #[error("there is no such collider in {dimension}D")]
         Kind { dimension: usize },
         /// A hollow ball that is filled by its thickness.

@@ -6,7 +6,7 @@ use crate::surface::Surface;
 use crate::vector::{dot, length, scaled, subtract};
 use opruga_math::Lane;
 
-/// The bit in the number of a row for a point and an obstacle that holds it.
+/// The bit that marks the key of a row for a point and an obstacle that holds it.
 pub(crate) const OBSTACLE_BIT: u64 = 1 << 63;
 
 /// One contact: a lower bound on its normal velocity, and Coulomb friction.

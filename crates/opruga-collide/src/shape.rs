@@ -24,7 +24,7 @@ pub(crate) struct Met<const D: usize> {
     /// The height of the node above the face [m].
     pub(crate) height: f64,
     pub(crate) normal: [f64; D],
-    /// The smallest distance of the end of the path behind a face, over all faces on which the node is [m].
+    /// Over all faces on which the node is, the smallest depth of the end of the path behind a face [m].
     pub(crate) behind: f64,
     /// The number of faces on which the node is.
     pub(crate) faces: usize,

@@ -41,7 +41,8 @@ impl<const D: usize> Surface<D> {
         self.body.len()
     }
 
-    /// The points of a body, by its number in the order of addition: first those that are nodes, then those that nodes carry.
+    /// The points of a body, given its number in the order of addition: first those that are nodes, then those that nodes
+    /// carry.
     pub fn points_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 0, self.points())
     }
@@ -52,12 +53,12 @@ impl<const D: usize> Surface<D> {
         self.starts.get(number).map_or(points.end, |start| start[3] as usize)..points.end
     }
 
-    /// The facets of a body, by its number in the order of addition.
+    /// The facets of a body, given its number in the order of addition.
     pub fn facets_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 1, self.facets.len())
     }
 
-    /// The edges of a body, by its number in the order of addition.
+    /// The edges of a body, given its number in the order of addition.
     pub fn edges_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 2, self.edges.len())
     }
@@ -110,14 +111,14 @@ impl<const D: usize> Surface<D> {
         self.sides.extend(sides);
     }
 
-    /// Lets a body, by its number in the order of addition, touch faces of obstacles with its vertices. Otherwise obstacles hold
-    /// its nodes directly.
+    /// Lets a body touch faces of obstacles with its vertices, given its number in the order of addition. Otherwise obstacles
+    /// hold its nodes directly.
     pub fn touch_faces(&mut self, number: usize) {
         self.touch_faces.resize(self.touch_faces.len().max(number + 1), false);
         self.touch_faces[number] = true;
     }
 
-    /// Whether a body touches faces of obstacles, by its number in the order of addition.
+    /// Whether a body touches faces of obstacles, given its number in the order of addition.
     pub(crate) fn touches_faces(&self, number: u32) -> bool {
         self.touch_faces.get(number as usize).is_some_and(|touches| *touches)
     }
@@ -189,7 +190,7 @@ impl<const D: usize> Surface<D> {
         self.carried.iter().map(|p| *p as usize).zip(&self.carriers)
     }
 
-    /// Whether nodes carry any of some points.
+    /// Whether nodes carry any of the given points.
     #[inline]
     pub(crate) fn carries_any(&self, points: &[u32]) -> bool {
         !self.carried.is_empty() && points.iter().any(|p| self.carried.binary_search(p).is_ok())

@@ -104,7 +104,7 @@ impl<const D: usize> NodePath<'_, D> {
         }
     }
 
-    /// Calls `visit` with the surfaces of a collider that the node has reached; they are numbered from `first` on.
+    /// Calls `visit` with the surfaces of a collider that the node has reached; their numbers are `numbers`, one for each part.
     pub(crate) fn touch(&self, collider: &Collider<D>, numbers: Range<usize>, visit: &mut dyn FnMut(Touch<D>)) {
         let still;
         let Frame { pose, carry }: &Frame<D> = match &collider.still {
@@ -173,7 +173,7 @@ impl<const D: usize> Seen<'_, D> {
         let mut found = (gap - self.law.thickness, normal);
         let displacement = subtract(self.kept, &self.carried);
         let far = 0.5 * shape.half_width();
-        // The face through which it entered, which need not be the nearest one.
+        // The face through which the node entered need not be the nearest one.
         let small = rounding(self.law, self.kept);
         let margin = self.law.thickness;
         // A node exactly at the junction of two solids counts as inside both.
@@ -191,7 +191,7 @@ impl<const D: usize> Seen<'_, D> {
     }
 
     /// Considers those faces at a point that no other solid adjoins. Among them, selects the face that the path opposes most,
-    /// and returns the height of the point above it and its normal. Serves points at which solids meet.
+    /// and returns the height of the point above this face and its normal. Needed where solids meet.
     fn open_face<T: Shape<D>>(
         &self,
         shape: &T,

@@ -28,7 +28,7 @@ use opruga_math::{Lane, Simd};
 /// ```
 ///
 /// Impulses start from those of the previous substep; the caller has to keep those of the last substep of a frame
-/// ([`Touching::visit_kept`], [`Touching::keep`]). Results do not depend on when candidates were searched.
+/// ([`Touching::visit_kept`], [`Touching::keep`]). Results do not depend on when candidates were searched for.
 #[derive(Debug, Default)]
 pub struct Touching<const D: usize> {
     /// The surfaces.
@@ -81,7 +81,8 @@ pub struct Touching<const D: usize> {
     /// Pairs that do not meet by themselves, and their points; pairs that were activated leave an empty entry.
     pub(crate) watched: Vec<Row<D>>,
     pub(crate) heads: Vec<[u32; 4]>,
-    /// Pairs that meet by themselves, but are solved for only if the solution of the others leaves them too fast.
+    /// Pairs that meet by themselves, but are solved for only if they still approach too fast after the others have been solved
+    /// for.
     pub(crate) inactive: Vec<Row<D>>,
     /// Features and impulses of the previous substep, ascending.
     pub(crate) last: Vec<(u64, f64, [f64; D])>,

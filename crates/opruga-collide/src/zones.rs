@@ -3,7 +3,7 @@
 
 use opruga_math::symmetric;
 
-/// Differences of speeds, relative to 1 m/s or to the speeds, that count as rounding.
+/// Differences of speeds below this number count as rounding. They are relative to 1 m/s or to the speeds themselves.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// The points of a pair, and their number: at most four points with at most four nodes each.
@@ -12,7 +12,7 @@ pub(crate) type PointsOfPair = ([u32; 16], usize);
 /// The zones of a step, and the previous motion of their points.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Zones<const D: usize> {
-    /// Another point of the zone, or the point itself; empty if there is no zone.
+    /// For each point, another point of its zone, or the point itself; empty if there is no zone.
     parent: Vec<u32>,
     /// Points in zones, ascending, with the velocities that were solved for [m/s] and the velocities along prescribed axes.
     points: Vec<(u32, [f64; D], Led<D>)>,

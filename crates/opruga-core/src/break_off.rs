@@ -57,7 +57,7 @@ impl BreakOff {
         Some(f64::from_bits(self.prepared.load(Ordering::Relaxed))).filter(|share| !share.is_nan())
     }
 
-    /// Whether the present computation shall end.
+    /// Whether the present computation must end.
     pub fn is_wanted(&self) -> bool {
         let latest = f64::from_bits(self.latest.load(Ordering::Relaxed));
         self.is_asked() || latest.is_finite() && (self.clock)() >= latest

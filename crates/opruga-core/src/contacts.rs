@@ -42,7 +42,7 @@ pub struct Moved<'a, const D: usize> {
 /// A surface next to a node at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch<const D: usize> {
-    /// The surface, as a number that stays the same.
+    /// The number of the surface, which never changes.
     pub surface: usize,
     /// The distance of the node minus the thickness; negative inside [m].
     pub gap: f64,

@@ -233,7 +233,7 @@ fn once<P: Pack>(tile: &[f64], x: &[f64], y: &mut [f64]) {
     }
 }
 
-/// Adds T x of the columns to the rows, and Tᵀ x of the rows to the columns.
+/// Adds T x, with the x of the columns, to the rows, and Tᵀ x, with the x of the rows, to the columns.
 #[inline(always)]
 fn twice<P: Pack>(tile: &[f64], of_rows: &[f64], of_columns: &[f64], rows: &mut [f64], columns: &mut [f64]) {
     const BLOCK: usize = ROWS * WIDTH;

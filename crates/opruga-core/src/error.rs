@@ -92,9 +92,9 @@ messages! {
         "part.step" #[error("node {node} of body {body} left {} at t = {} s", what_was_left(*range), number(*time))]
         Diverged { body: usize, node: u32, time: f64, range: Option<f64> },
         /// An implicit integrator has not found the end of the step. The fields are the number of Newton iterations, the largest
-        /// residual force on a node \[N\], the largest displacement in the last iteration \[m\], the correction that ends the
-        /// iteration \[m\], the time at the start of the step \[s\], the fraction of the load up to which an equilibrium was
-        /// found, the number of degenerate or inverted cells at the start of the step, and the total number of cells.
+        /// residual force on a node \[N\], the largest displacement in the last iteration \[m\], the correction below which the
+        /// iteration ends \[m\], the time at the start of the step \[s\], the fraction of the load up to which an equilibrium
+        /// was found, the number of degenerate or inverted cells at the start of the step, and the total number of cells.
         "part.step"
         #[error("`{integrator}` did not converge in {} at t = {} s{}: the forces are out of balance by {} N, and the last correction was {} m", counted(u64::from(*iterations), "iteration", "iterations"), number(*time), circumstances(*beyond, *inverted, *cells), number(*residual), number(*correction))]
         #[allowed("{} m", number(*tolerance))] #[hint("{hint}")]

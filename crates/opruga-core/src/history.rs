@@ -288,7 +288,7 @@ mod tests {
         history.set(TURN, 2);
         history.add(&[TURN.declared(), PerBody::<f64>::new("last").declared()], 8);
         assert_eq!((history.get(TURN), history.channels().len()), (2, 5));
-        // The owner that declared the first ones stays the owner.
+        // The owner that declared the first channels stays the owner.
         let declared: Vec<Channel> = history.channels().map(|(channel, _)| channel).collect();
         assert!(history.is_of("rule", &declared[..4]) && !history.is_of("rule", &declared[1..]));
     }

@@ -56,7 +56,7 @@ impl StepWork {
             }
         }
     }
-    /// Counts the step of `h` [s] with the power at its start in some lanes, one bit each.
+    /// Counts the step of length `h` [s] with the power at its start. This is done in some lanes, given by one bit each.
     pub(crate) fn count_by_start(&self, h: f64, lanes: u8, account: &mut [f64; WIDTH]) {
         for l in (0..WIDTH).filter(|l| lanes >> l & 1 == 1) {
             account[l] += h * self.at_start[l] - self.counted[l];
@@ -79,7 +79,7 @@ pub struct SolverWork {
     pub accepted: u64,
     /// The number of steps that were halved for lack of convergence.
     pub halved: u64,
-    /// The largest number of halvings of one step: its shortest part is 2⁻ⁿ of it.
+    /// The largest number n of halvings of one step, whose shortest part is then 2⁻ⁿ of its length.
     pub deepest: u64,
     /// The number of steps of the real-time setting whose error may be larger than promised, because the budget was spent, or
     /// because the solver converged so slowly that the residual is a poor measure of the error.
@@ -94,7 +94,7 @@ pub struct SolverWork {
     pub error_estimate: f64,
     /// The number of steps in which forces due to rounding of positions exceeded the loads.
     pub conditioned: u64,
-    /// The largest ratio of these forces to the loads.
+    /// The largest ratio of forces due to rounding of positions to the loads.
     pub conditioning: f64,
     /// How often a body that rested in a degenerate shape was displaced at random.
     pub disturbed: u64,

@@ -30,8 +30,8 @@ pub trait OpenStep<const D: usize>: Send {
     fn potential(&self, system: &System<D>) -> Option<[f64; 2]>;
     /// The rounding of Φ in its models [J].
     fn rounding(&self, system: &System<D>) -> f64;
-    /// The part of r that is due to rounding of positions, in the free directions and with the last derivatives: the root of the
-    /// sum of squares [N].
+    /// The part of r that is due to rounding of positions, as the root of the sum of squares [N]. It is computed in the free
+    /// directions, with the last derivatives.
     fn rounding_of_forces(&self, system: &System<D>) -> f64;
     /// The residual r in the last evaluated state [N].
     fn residual(&self) -> &[f64];
@@ -42,7 +42,7 @@ pub trait OpenStep<const D: usize>: Send {
     /// Assembles the derivatives in the last evaluated state, the exact ones if `exact` is set and they are positive definite,
     /// and factors them in the free directions; returns whether that was possible.
     fn factor(&mut self, system: &System<D>, exact: bool) -> bool;
-    /// The mean diagonal entry of A at a node [N/m]; 0 if a pin holds all of it.
+    /// The mean diagonal entry of A at a node [N/m]; 0 if pins hold all of its axes.
     fn stiffness(&self, system: &System<D>, node: usize) -> f64;
     /// How far prescribed nodes still have to move [m].
     fn prescribed(&self) -> &[f64];

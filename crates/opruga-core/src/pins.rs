@@ -33,7 +33,8 @@ impl<const D: usize> Pin<D> {
     }
 }
 
-/// The point and its velocity on a piecewise linear path with rows `[t, x, y(, z)]`, which is at rest before and after it.
+/// The point and its velocity on a piecewise linear path with rows `[t, x, y(, z)]`. Before and after the path, the point is at
+/// rest.
 pub fn along_path<const D: usize>(path: &[Vec<f64>], time: f64) -> ([f64; D], [f64; D]) {
     let point = |row: &Vec<f64>| core::array::from_fn(|d| row[d + 1]);
     let (Some(first), Some(last)) = (path.first(), path.last()) else {

@@ -122,7 +122,7 @@ pub trait Sink<const D: usize> {
     /// Adds c·u uᵀ, where u is given by its entries at some indices. The product is never expanded to a dense matrix.
     fn low_rank(&mut self, c: f64, u: &[(usize, [f64; D])]);
     /// Adds a dense matrix that rotates with its body. A sink with a sparse matrix stores this part separately, as it is; a sink
-    /// that processes only entries receives them block by block.
+    /// that processes only entries receives the part block by block.
     fn dense(&mut self, part: &DensePart<'_, D>) {
         for (a, row) in part.indices.iter().enumerate() {
             for (b, column) in part.indices.iter().enumerate() {

@@ -5,8 +5,8 @@
 //!
 //! K d ≈ (F(x − εd) − F(x + εd)) / 2ε,  C d = F(x, 0) − F(x, d),
 //!
-//! so every model takes part, including the gas as a whole and models without a Hessian, with the fast code that the step uses.
-//! Obstacles contribute nothing: explicit integrators treat them by impulses, which have no stiffness.
+//! so every model takes part, including the gas as a whole and models without a Hessian, and the same fast code runs as in a
+//! step. Obstacles contribute nothing: explicit integrators treat them by impulses, which have no stiffness.
 //!
 //! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It computes the same products as
 //! a power iteration from the same start vector, but uses the best combination of them. A power iteration is still 2 % off
@@ -15,8 +15,8 @@
 //! the step.
 //!
 //! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 satisfies μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. So the
-//! pairs (ω², c) of all modes are in the joint numerical range of K and C, whatever their eigenvectors. A polygon encloses it,
-//! from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
+//! pairs (ω², c) of all modes are in the joint numerical range of K and C, whatever their eigenvectors. A polygon encloses this
+//! range. It follows from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
 //!
 //! ```text
 //!     c │     ______________         0 ≤ ω² ≤ ω²_max,  c_min ≤ c ≤ c_max,
@@ -187,7 +187,7 @@ impl Spectrum {
         if radius <= 1.0 + ROUNDING { 0.0 } else { Lane::ln(radius) / h }
     }
 
-    /// Pairs (ω, c) on the boundary of the polygon: its smallest and its strongest damping at many frequencies.
+    /// Pairs (ω, c) on the boundary of the polygon: the weakest and the strongest damping within it at many frequencies.
     fn corners(&self) -> Vec<(f64, f64)> {
         const POINTS: usize = 24;
         let most = self.omega * self.omega;

@@ -163,7 +163,8 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
                 _ => self.in_a_row(items[0]),
             };
             let mut powers = [0.0; WIDTH];
-            // Register by register: kernels need more values at a time than there are registers.
+            // Elements are processed register by register, because kernels need more values at a time than a processor has
+            // registers for whole packs.
             for part in 0..P::PARTS {
                 let offset = part * P::Part::NUMBERS;
                 let (p, x) = (eight.parameters(&self.parameters, offset), eight.read::<P::Part, D>(&view.x, offset));

@@ -37,7 +37,7 @@ pub fn eigen<S: Lane, const N: usize>(matrix: &[[S; N]; N]) -> ([S; N], [[S; N];
 /// The matrix without its negative eigenvalues: Σ max(λ, 0) v vᵀ; the matrix itself if it has none.
 #[inline(always)]
 pub fn positive_part<S: Lane, const N: usize>(matrix: &[[S; N]; N]) -> [[S; N]; N] {
-    // It is positive definite if all pivots of Gaussian elimination are positive.
+    // A matrix is positive definite if all pivots of Gaussian elimination are positive.
     let mut left = *matrix;
     let mut open = S::zero();
     for k in 0..N {

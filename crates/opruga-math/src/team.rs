@@ -187,8 +187,8 @@ impl Team {
         let some: &Work<'_> = if together == 1 { work } else { &some };
         let pieces = count.div_ceil(together);
         self.done.0.store(0, Ordering::Relaxed);
-        // SAFETY: no thread has a piece, so none reads it. It is not called after this function has returned, because every
-        // piece is done by then.
+        // SAFETY: no thread has a piece, so none reads it. The work is not called after this function has returned, because
+        // every piece is done by then.
         #[allow(unsafe_code)]
         unsafe {
             *self.work.0.get() = Some(core::mem::transmute::<*const Work<'_>, *const Work<'static>>(some));

@@ -53,7 +53,7 @@ pub struct IncompleteCholesky<const D: usize> {
     generation: u64,
     start: Vec<u32>,
     column: Vec<u32>,
-    /// For each block below the diagonal its index in the matrix, or [`FILL`]; and for each block on the diagonal.
+    /// The index in the matrix of each block below the diagonal, or [`FILL`]; and the index of each block on the diagonal.
     source: Vec<u32>,
     diagonal: Vec<u32>,
     below: Vec<Block<D>>,

@@ -98,14 +98,14 @@ fn forces_are_the_gradient_of_the_energy_in_the_plane() {
     forces_are_the_gradient::<2>(0.0);
 }
 
-/// With edges at an angle, and with nearly parallel ones, which fade out.
+/// Tests edges at an angle, and nearly parallel edges, which fade out.
 #[test]
 fn forces_are_the_gradient_of_the_energy_in_space() {
     forces_are_the_gradient::<3>(0.3);
     forces_are_the_gradient::<3>(0.01);
 }
 
-/// At the end of its reach energy, force and curvature begin at zero; they grow as the gap closes.
+/// At the end of the reach of the barrier, energy, force and curvature are zero. They grow as the gap closes.
 #[test]
 fn the_barrier_has_two_continuous_derivatives_and_no_bound() {
     let at = |gap: f64| {

@@ -16,7 +16,7 @@ fn slab(angle: f64) -> Values {
     values::<2>("convex", &[("points", rows(&points))])
 }
 
-/// On a slope without friction a node moves g sin θ t²/2, on a convex body as on a half-space.
+/// On a slope without friction a node moves by g sin θ t²/2, on a convex body as on a half-space.
 #[test]
 fn nodes_slide_freely_down_a_convex_body_turned_by_any_angle() {
     for degrees in [10.0f64, 26.565, 30.0, 45.0, 60.0, -20.0] {

@@ -118,7 +118,7 @@ fn a_conveyor_takes_a_node_along() {
     run(&mut system, H, 960);
     let (x, v) = at(&system, 0);
     assert!((v[0] - 1.0).abs() < 1e-12 && v[1] == 0.0);
-    // Behind the floor by v²/(2 µ g).
+    // The node is behind the floor by v²/(2 µ g).
     assert!((x[0] - (1.0 - 0.5 / (0.5 * G))).abs() < 2e-3, "{x:?}");
     // The work of the floor is the kinetic energy plus the same amount lost by friction.
     let (work, lost) = (sum(&system.work.user), sum(&system.work.friction));

@@ -287,7 +287,8 @@ fn continuous_detection_misses_nothing() {
     assert!(extra <= 10, "{extra} false alarms");
 }
 
-/// A vertex that moves through a facet at any speed meets it, where it is closer than the given distance.
+/// A vertex that moves through a facet at any speed meets the facet, at a point where the two are closer than the given
+/// distance.
 #[test]
 fn fast_features_do_not_pass_through() {
     let facet = [[-1.0, 0.0], [1.0, 0.0]];

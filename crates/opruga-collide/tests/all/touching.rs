@@ -303,7 +303,7 @@ fn what_is_led_through_is_refused() {
     panic!("they passed");
 }
 
-/// A heap of gas balls in a box comes to rest without overlap; one of bare springs is crushed and gains no energy.
+/// A heap of gas balls in a box comes to rest without overlap. A heap of bare springs is crushed and gains no energy.
 #[test]
 fn heaps_come_to_rest() {
     for (gas, friction) in [(20.0, 0.3), (0.0, 0.3), (0.0, 0.0)] {

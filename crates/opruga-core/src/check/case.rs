@@ -123,8 +123,8 @@ impl<'a, const D: usize> Case<'a, D> {
         self.prepare(simd)?;
         Ok(self.potential.energy(simd, &self.view(), &self.scratch))
     }
-    /// Force and power with the indices divided into tiles. If there is a `weight`, the forces begin with it; with `fused` the
-    /// model itself adds it.
+    /// Computes force and power, with the indices divided into tiles. If there is a `weight`, the forces begin with it; if
+    /// `fused` is set, the model itself adds it.
     pub(super) fn forces(
         &mut self,
         simd: Simd,
@@ -154,7 +154,7 @@ impl<'a, const D: usize> Case<'a, D> {
         }
         Ok((out, power))
     }
-    /// Forces node by node of one body, in the tiles of a step.
+    /// Computes the forces on one body, node by node, with the tiles of a step.
     pub(super) fn plain(&mut self, simd: Simd) -> Answer<(Vec<[f64; D]>, f64)> {
         let tiles = regular(self.index_count(), TILE);
         let (columns, power) = self.forces(simd, &tiles, None)?;
@@ -206,7 +206,7 @@ pub(super) fn largest<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> f64 {
     out
 }
 
-/// The largest difference, relative to the largest entry of `b`, but at least to `scale`.
+/// The largest difference between `a` and `b`, relative to the largest entry of `b` or to `scale`, whichever is larger.
 pub(super) fn difference(a: &[f64], b: &[f64], scale: f64) -> f64 {
     let errors: Vec<f64> = a.iter().zip(b).map(|(x, y)| x - y).collect();
     let scale = Lane::larger(largest(b), scale);

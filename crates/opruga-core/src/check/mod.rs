@@ -51,7 +51,7 @@ pub struct Options {
     pub states: usize,
     /// The random displacement of each coordinate, in mean edge lengths of the mesh.
     pub noise: f64,
-    /// The factor by which the rest shape is scaled before that.
+    /// The factor by which the rest shape is scaled before the random displacement.
     pub stretch: f64,
     /// Whether the first axis is mirrored, which inverts the body.
     pub mirrored: bool,
@@ -61,7 +61,8 @@ pub struct Options {
     pub views: bool,
     /// Whether the model claims a finite force if all nodes coincide.
     pub coincident: bool,
-    /// Whether finite differences are taken, as many as there are coordinates; not for meshes of more than some hundred nodes.
+    /// Whether finite differences are computed. Each coordinate needs some, so this is not meant for meshes of more than some
+    /// hundred nodes.
     pub derivatives: bool,
     /// The time of the state [s].
     pub time: f64,

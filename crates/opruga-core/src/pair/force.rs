@@ -42,7 +42,7 @@ impl PairTable {
             }
             let (a, b) = (run.a as usize * stride, run.b as usize * stride);
             let (first, length) = (run.first as usize * stride, run.count as usize * stride);
-            // The indices of the run whose first (second) node is in the tile.
+            // The indices of the run whose first node is in the tile, and those whose second node is.
             let own = within(a, length, start, end);
             let other = within(b, length, start, end);
             if own.is_empty() && other.is_empty() {
@@ -335,8 +335,8 @@ impl<L: PairLaw<D>, const D: usize> Work for Long<'_, '_, '_, L, D> {
     }
 }
 
-/// Adds slots to `count` forces from `at` on: one slot times `sign`, or (`BOTH`) the slot of the first node and then `sign` times
-/// that of the second. Later forces do not change.
+/// Adds slots to `count` forces from `at` on. Each force receives one slot times `sign`. If `BOTH` is set, it receives the slot
+/// of the first node and then `sign` times the slot of the second node. Forces behind these do not change.
 #[inline(always)]
 fn add_slots<P: Pack, const BOTH: bool>(
     into: &mut [f64],

@@ -17,7 +17,7 @@ pub(super) struct Lone {
 }
 
 impl Lone {
-    /// Adds its force to those of its nodes that are in a tile.
+    /// Adds the force of the pair to those of its nodes that are in a tile.
     #[inline(always)]
     pub(super) fn add<P: Pack, L: PairLaw<D>, const D: usize>(
         &self,
@@ -35,7 +35,7 @@ impl Lone {
         }
     }
 
-    /// Its power is in the first of eight partial sums.
+    /// Adds the force of a pair of one body. Returns its power in the first of eight partial sums.
     #[inline(always)]
     fn add_of_one<P: Pack, L: PairLaw<D>, const D: usize>(&self, law: L, view: &View<D>, tile: &mut Tile<D>) -> P {
         let &Lone { a, b, number, .. } = self;

@@ -202,7 +202,8 @@ fn within(from: usize, length: usize, start: usize, end: usize) -> Range<usize> 
     low..high.max(low)
 }
 
-/// The slot that an index of the first (second) nodes of a run receives.
+/// The slot for a node of a run, given its `index`. `node` is the index of the first or of the second node of the first pair,
+/// and `start` is the first index of the evaluated part of the run.
 #[inline(always)]
 fn slot_of(index: usize, node: usize, start: usize) -> usize {
     WIDTH + index - node - start

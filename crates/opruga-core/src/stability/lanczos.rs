@@ -8,7 +8,7 @@ use opruga_math::{Lane, WIDTH, sum_in_fixed_order};
 /// The largest number of products with K or C.
 const MOST_PRODUCTS: usize = 300;
 
-/// A Ritz value has converged if its residual is at most this fraction of the largest one.
+/// A Ritz value has converged if its residual is at most this fraction of the largest Ritz value.
 const TOLERANCE: f64 = 2e-3;
 
 /// The largest entry, by absolute value.

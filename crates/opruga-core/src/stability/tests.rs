@@ -136,7 +136,8 @@ fn rectangle(omega: f64, [least_damping, damping]: [f64; 2]) -> Spectrum {
 
 #[test]
 fn limits_of_symplectic_euler() {
-    // Undamped 2/ω; damped (2/ω)(√(1 + ζ²) − ζ): the thesis's springs ω = 80, c = 160: 0.01036 s, not 0.025 s.
+    // The limit is 2/ω without damping and (2/ω)(√(1 + ζ²) − ζ) with damping. For the springs of the thesis, ω = 80 and c =
+    // 160, it is 0.01036 s, not 0.025 s.
     let limit = |omega, c| rectangle(omega, [0.0, c]).largest_stable_step(&SYMPLECTIC).unwrap();
     assert!((limit(80.0, 0.0) - 0.025).abs() < 1e-9);
     assert!((limit(80.0, 160.0) - 0.025 * (2.0f64.sqrt() - 1.0)).abs() < 1e-9);

@@ -3,12 +3,12 @@
 //! x₁ = x₀ + h v₁,  M (v₁ − v₀) = h F(x₁, v₁, t₁).
 //!
 //! First order, stable for every step size. The end of the step is the minimum of the incremental potential Φ(x) = |x − x₀ − h
-//! v₀|²_M / 2h² + U(x) (Martin et al. 2011), so a step always exists.
+//! v₀|²_M / 2h² + U(x) (Martin et al. 2011), so a step always has a solution.
 //!
-//! It damps. In each step, the amplitude of an oscillation is multiplied by 1/√(1 + h²ω²), which is 0.995 at hω = 0.1 and 0.1
-//! at hω = 10. This is a numerical error and not physics, but it makes the integrator forgiving: motion that is too fast for
-//! the step dies out at once, and slow motion remains. Equilibrium is exact: if the forces balance, nothing moves, whatever h
-//! is. Free fall is −½ g t² (1 + h/t).
+//! Backward Euler damps. In each step, the amplitude of an oscillation is multiplied by 1/√(1 + h²ω²), which is 0.995 at hω =
+//! 0.1 and 0.1 at hω = 10. This is a numerical error and not physics, but it makes the integrator forgiving: motion that is too
+//! fast for the step dies out at once, and slow motion remains. Equilibrium is exact: if the forces balance, nothing moves,
+//! whatever h is. In free fall the position is −½ g t² (1 + h/t).
 //!
 //! Source: Baraff and Witkin 1998; Hairer and Wanner, *Solving Ordinary Differential Equations II*, IV.3.
 

@@ -162,7 +162,7 @@ pub(super) fn loose_motions<const D: usize>(
         motions.iter().map(|motion| shape_at(x, system.nodes, piece, motion, &center)).collect();
     let n = motions.len();
 
-    // How far each combination moves pinned axes, or strains external ties.
+    // The resistance of pinned axes, obstacles and external ties to every pair of motions.
     let mut resistance = vec![0.0; n * n];
     system.pinned_axes(&mut |node, d| {
         for p in 0..n {

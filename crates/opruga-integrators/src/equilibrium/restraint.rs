@@ -22,7 +22,7 @@ use opruga_solve::dense::symmetric_eigen;
 /// Times after the present one at which loads are evaluated [s], because some loads begin at zero.
 const TIMES: [f64; 7] = [0.0, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
 
-/// Restraints below this fraction of the loads count as zero; squared, since P is squared.
+/// Restraints below a fraction of the loads count as zero. This number is the square of the fraction, because P is squared.
 const NOTHING: f64 = 1e-14;
 
 /// The angle of rotation of the other poses of the body [rad].

@@ -66,7 +66,8 @@ fn degenerate_cells<const D: usize>(system: &System<D>) -> [u32; 2] {
     [degenerate, all]
 }
 
-/// The error of a step that did not converge, with its time [s] and the degenerate or inverted cells that it found.
+/// The error of a step that did not converge, with the time at its start [s], the number of degenerate or inverted cells, and
+/// the number of all cells.
 pub(super) fn refusal<const D: usize>(
     integrator: &'static str,
     settings: &Settings,

@@ -140,7 +140,7 @@ pub(super) fn given_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
     let mut work = dot(right, step);
     Filter { free, projectors }.apply(right);
     work -= dot(right, step);
-    // Subtracted from zero, this is the friction.
+    // Friction is subtracted from zero, so its work is added below.
     right.fill(0.0);
     contacting.subtract_friction(right);
     work - dot(right, step)

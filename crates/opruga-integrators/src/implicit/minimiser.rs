@@ -15,7 +15,8 @@ pub(crate) trait Minimiser<const D: usize>: core::fmt::Debug {
     /// Finds the stage, starting from the displacement in `workspace.u`; on success forces and residual belong to the result.
     ///
     /// # Errors
-    /// [`StepError`] if a model has no value, or the caller broke the step off. A search that does not converge is not an error.
+    /// [`StepError`] if a model has no value, or if the caller has stopped the step. A search that does not converge is not an
+    /// error.
     fn minimise(
         &self,
         system: &mut System<D>,

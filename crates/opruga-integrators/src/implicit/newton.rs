@@ -111,7 +111,7 @@ struct Correction {
     mixed: bool,
     /// Whether the correction is at most half of the previous one.
     nears: bool,
-    /// The fraction of it that was taken.
+    /// The fraction of the correction that was taken.
     length: f64,
 }
 
@@ -189,7 +189,7 @@ impl<'a> Iteration<'a> {
             gone *= part;
             slope *= part;
         }
-        // If convergence is slow, the terms that the matrix leaves out matter.
+        // If convergence is slow, the terms that the matrix omits matter.
         if changed {
             workspace.mixing.forget();
         }
@@ -276,7 +276,8 @@ impl<'a> Iteration<'a> {
         true
     }
 
-    /// Decides from the forces of the constraints which nodes remain held; returns whether any of this has changed.
+    /// Decides from the forces of the constraints which nodes remain held; returns whether these nodes, or how they are held,
+    /// have changed.
     fn judge<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) -> bool {
         if system.contacts.is_none() || self.solved.iterations >= MOST_DECISIONS {
             return false;
@@ -333,7 +334,7 @@ impl<'a> Iteration<'a> {
 }
 
 /// How far the residual would move a node with the matrix of the result [m]; the earlier estimate used an earlier matrix. None
-/// without a positive matrix, or on obstacles.
+/// if the matrix is not positive definite, or if obstacles hold nodes.
 fn left_over<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,

@@ -2,8 +2,8 @@
 //!
 //! Every iteration balances the exact forces; the matrix only determines the correction. If the matrix belongs to another shape
 //! of the body, or if its equations are solved only approximately, a part of the residual remains, and the next step begins
-//! with it. At rest nothing remains. The iteration begins with the positions to which the acceleration of the last step would
-//! lead, and with the contact forces of that step (`contact_forces`).
+//! with it. At rest nothing remains. The iteration begins with the positions to which the acceleration of the previous step
+//! would lead, and with the contact forces of that step (`contact_forces`).
 //!
 //! The residual of a step shows whether the matrix is still good enough. Near obstacles the residual comes mostly from changes of
 //! contacts; there, the measure is the difference between the forces after an iteration and those that the matrix predicted.
@@ -48,15 +48,15 @@ const NOTHING: f64 = 1e-9;
 const PRODUCTS: u32 = 1000;
 
 /// Iterations with more products than this count as cut off. A body through which information travels so slowly is
-/// ill-conditioned. Stiff motions dominate its residual, which says little about slow motions such as the bending of a slender
-/// body.
+/// ill-conditioned. Stiff motions dominate its residual, which is a poor measure of slow motions such as the bending of a
+/// slender body.
 const MANY_PRODUCTS: u32 = 120;
 
-/// The shape in which the matrix was made [m], the velocity at the start of the last step [m/s] and its length [s]; zero if its
-/// acceleration cannot be continued.
+/// The shape in which the matrix was made [m], the velocity at the start of the previous step [m/s] and its length [s]; zero if
+/// its acceleration cannot be continued.
 const REFERENCE: PerNode = PerNode::new("real_time.reference");
 
-/// The contact forces at the end of the last step, with friction if nodes slip [N].
+/// The contact forces at the end of the previous step, with friction if nodes slip [N].
 const CONTACT_FORCE: PerNode = PerNode::new("real_time.contact_force");
 const VELOCITY: PerNode = PerNode::new("real_time.velocity");
 const STEP: PerBody<f64> = PerBody::new("real_time.step");
@@ -77,7 +77,7 @@ pub(super) fn channels() -> Vec<Channel> {
     vectors.into_iter().chain([STEP.declared(), MATRIX.declared(), STALE.declared()]).collect()
 }
 
-/// The displacement from x₀ under the acceleration of the last step, in `workspace.u`.
+/// Writes the displacement from x₀ under the acceleration of the previous step to `workspace.u`.
 pub(super) fn predict<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, theta: f64, h: f64) {
     let last = system.history.get(STEP);
     if last <= 0.0 || is_loose(system) {
@@ -164,7 +164,8 @@ impl Task<'_> {
         self.make(system, workspace, true);
     }
 
-    /// Makes the matrix in the reference shape, which is in the state, unless it exists; none if there is no reference.
+    /// Makes the matrix in the reference shape, which is part of the state, unless this matrix exists. Returns false if no
+    /// reference can be used.
     fn recall<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<bool, StepError> {
         if !keeps_matrix(system) || !system.hessian_is_of_positions() {
             return Ok(false);

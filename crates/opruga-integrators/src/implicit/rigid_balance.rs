@@ -129,7 +129,7 @@ fn stage<'a, const D: usize>(
     Stage { mixture, x0, u, y, filter: Filter { free, projectors }, contacting }
 }
 
-/// The total residual in that stage.
+/// The total residual in the stage that was evaluated last.
 fn sums<const D: usize>(
     rigid: &Rigid<D>,
     system: &System<D>,

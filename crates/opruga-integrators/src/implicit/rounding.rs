@@ -142,8 +142,8 @@ pub(super) fn in_doubt<const D: usize>(
     if lost || leaves(workspace, loads) { Doubt { displacement, lost } } else { Doubt::default() }
 }
 
-/// The rounding of positions [m], the largest rounding of the force of a node [N], and how far that would move a node against its
-/// inertia [m], in a body at this distance from the origin.
+/// The rounding of positions [m], the largest rounding of the force of a node [N], and how far such a force would move a node
+/// against its inertia [m], in a body at this distance from the origin.
 pub(super) fn most_rounding<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,

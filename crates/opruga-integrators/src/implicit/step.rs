@@ -1,6 +1,6 @@
 //! A step of an implicit rule from start to ledger.
 //!
-//! Guards wrap the minimiser, from the outside to the inside:
+//! Guards wrap the minimiser. From the outside to the inside, they are:
 //!
 //! | guard | what it refuses, and what it does instead | where |
 //! |---|---|---|
@@ -257,7 +257,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
     }
 }
 
-/// Finds the stage of a rule, starting from the motion of the last step.
+/// Finds the stage of a rule, starting from a continuation of the previous motion.
 fn find_stage<R: Rule<D>, const D: usize>(
     rule: R,
     minimiser: &dyn Minimiser<D>,

@@ -20,7 +20,7 @@ pub(crate) struct Workspace<const D: usize> {
     /// The state at the start.
     pub(crate) x0: Vec<f64>,
     pub(crate) v0: Vec<f64>,
-    /// The changes of velocities by pins at the start of the step; empty if there are none.
+    /// The changes of velocities due to pins at the start of the step; empty if there are none.
     pub(crate) kick: Vec<f64>,
     /// The acceleration at the start, for rules that have one [m/s²].
     pub(crate) a0: Vec<f64>,

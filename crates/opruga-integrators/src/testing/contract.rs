@@ -95,7 +95,7 @@ fn held_axes_follow_their_path() {
     for (rule, _) in &rules() {
         let rule = &**rule;
         let mut system = two_nodes::<2>(0.5);
-        // The first node moves along x with 2 m/s from (1, 0) and is free along y; the second is pinned in y.
+        // The first node moves along x at 2 m/s from (1, 0) and is free along y. The second node is pinned along y.
         let motion = Arc::new(vec![vec![0.0, 0.0, 0.0], vec![10.0, 20.0, 0.0]]);
         system.pins.push(Pin { index: 0, axes: [true, false], anchor: [1.0, 0.0], motion });
         system.pins.push(Pin { index: 1, axes: [false, true], anchor: [0.0, 0.25], motion: Arc::default() });
