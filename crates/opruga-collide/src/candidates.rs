@@ -214,7 +214,7 @@ impl<const D: usize> Candidates<D> {
         self.first.extend(own.filter(|(_, own)| meet_boxes(own, &region)));
     }
 
-    /// Calls `visit` with every feature of the first list and feature of the second list whose boxes overlap.
+    /// Calls `visit` with all pairs of a feature of the first list and a feature of the second list whose boxes overlap.
     fn join(&mut self, mut visit: impl FnMut(u32, u32)) {
         if self.second.len() <= FEW || self.first.len() * self.second.len() <= FEW * WIDTH {
             let Candidates { first, second, columns, simd, .. } = self;

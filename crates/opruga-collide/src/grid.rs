@@ -2,9 +2,9 @@
 
 use opruga_math::Lane;
 
-/// Boxes are sorted into the cell of their lowest corner, which is at least as large as the box: the smallest cells have the mean
-/// extent of the boxes, and each further level has cells twice as large. So a box extends at most into the next cell along every
-/// axis, however different the sizes are, and no box is found twice.
+/// A box is sorted into a cell that contains its lowest corner and is at least as large as the box: the smallest cells have the
+/// mean extent of the boxes, and each further level has cells twice as large. So a box extends at most into the next cell along
+/// every axis, however different the sizes are, and no box is found twice.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Grid<const D: usize> {
     boxes: Vec<[[f64; D]; 2]>,

@@ -258,8 +258,8 @@ pub(crate) struct Problem<'a, const D: usize> {
     pub(crate) coupled: &'a mut Coupled<D>,
     pub(crate) v: &'a mut Vec<[f64; D]>,
     pub(crate) turns: &'a mut Turns<D>,
-    /// For bodies at rest, the approach velocity over a whole thickness [m/s]: their sweeps also end at the tolerance relative
-    /// to this velocity.
+    /// For bodies at rest, the velocity of an approach by a whole thickness [m/s]. Their sweeps also end at the tolerance
+    /// relative to this velocity.
     pub(crate) at_rest: Option<f64>,
     /// Whether coupled bodies have a budget.
     pub(crate) has_budget: bool,

@@ -97,7 +97,7 @@ impl<const D: usize> Motion<D> {
 }
 
 impl<const D: usize> Pose<D> {
-    /// The present position of a point of the shape at rest.
+    /// The present position of a point of the shape, given its position at rest.
     pub(crate) fn transform(&self, x: &[f64; D]) -> [f64; D] {
         if self.upright {
             add(x, &self.shift)

@@ -33,8 +33,8 @@ impl Columns {
     }
 }
 
-/// Calls `visit` with every feature of the first list and feature of the second list whose boxes overlap; `columns` holds the
-/// boxes of the second list.
+/// Calls `visit` with all pairs of a feature of the first list and a feature of the second list whose boxes overlap; `columns`
+/// holds the boxes of the second list.
 pub(crate) struct Overlaps<'a, F, const D: usize> {
     pub(crate) first: &'a [(u32, Bounds<D>)],
     pub(crate) second: &'a [(u32, Bounds<D>)],

@@ -8,7 +8,7 @@ use core::marker::PhantomData;
 
 /// A value that a channel can hold once per body.
 pub trait PerBodyValue: Copy + Default + 'static {
-    /// The content of a channel with this value.
+    /// Returns this value as the content of a channel.
     fn content<const D: usize>(self) -> Content<D>;
     /// The value of a channel; `None` if it holds another type.
     fn of<const D: usize>(content: &Content<D>) -> Option<Self>;

@@ -259,7 +259,7 @@ macro_rules! lists {
     })* };
 }
 
-/// A position, rounded as numbers are.
+/// A position, whose coordinates are rounded like other numbers.
 impl<const D: usize> IntoField for [f64; D] {
     fn field(&self) -> Field {
         Field::Text(format!("({})", self.map(number).join(", ")))

@@ -152,8 +152,9 @@ fn nodes_that_begin_on_a_thin_surface_are_held_on_the_side_of_its_normal() {
     }
 }
 
-/// The margin of a thin surface grows with its distance from the origin, so a node that begins exactly on it is not inside, near
-/// the origin or far from it. A node is inside if it is closer than a thickness that the scene requires.
+/// The margin of a thin surface grows with its distance from the origin. So a node that begins exactly on the surface is not
+/// inside it, whether the surface is near the origin or far away. A node is inside if it is closer to the surface than a
+/// thickness that the scene requires.
 #[test]
 fn nodes_that_begin_on_a_thin_surface_are_not_buried_in_it() {
     for far in [0.0, 3.0, 1e3, 1e6, 1e7] {

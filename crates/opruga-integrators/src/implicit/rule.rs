@@ -21,7 +21,7 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     fn in_contact(self) -> Option<Self> {
         None
     }
-    /// The replacement of this rule if a body in contact would gain energy with it.
+    /// The rule that replaces this one if a body in contact would gain energy.
     fn calmed(self) -> Option<Self> {
         None
     }

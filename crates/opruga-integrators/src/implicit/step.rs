@@ -1,4 +1,4 @@
-//! A step of an implicit rule from start to ledger.
+//! A step of an implicit rule, from its start to its entry in the ledger.
 //!
 //! Guards wrap the minimiser. From the outside to the inside, they are:
 //!
@@ -187,7 +187,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         outcome
     }
 
-    /// Makes a step of length h from start to ledger.
+    /// Makes a step of length h, from its start to its entry in the ledger.
     fn attempt(&self, system: &mut System<D>, workspace: &mut Workspace<D>, h: f64) -> Result<(), StepError> {
         let ledger = open_ledger::<R, D>(system, workspace, h)?;
         let found = self.find_end(system, workspace, h)?;

@@ -107,7 +107,7 @@ impl Minimiser<2> for Both {
     }
 }
 
-/// A ring of eight nodes with springs along and across it, which is stretched, spins and is pushed at one node.
+/// A ring of eight nodes with springs along and across it. The ring is stretched and spins, and one node is pushed.
 fn ring() -> System<2> {
     let (mut x, mut v) = (Columns::zeros(8), Columns::zeros(8));
     for node in 0..8 {
