@@ -223,18 +223,20 @@ fn force_is_pressure_times_the_change_of_volume() {
     }
 }
 
-/// P V and P V^γ stay constant, to 1e-12, down to the smallest volume that the scene allows.
+/// P V and P V^γ stay constant, to 1e-12, down to the smallest volume that the scene allows. The energy of the gas falls by the work that it does:
+/// P₀V₀ ln(V/V₀) at constant temperature, and (P₀V₀ − P V)/(γ − 1) without heat.
 #[test]
 fn gas_laws() {
     let mesh = Mesh::icosphere(0.5, 2).unwrap();
     for gamma in [1.0, 1.4, 1.67] {
         let gas = if gamma > 1.0 {
-            values!(pressure, pressure: 100.0, process: "adiabatic", gamma: gamma, smallest_volume: 1e-3)
+            values!(pressure, pressure: 100.0, ambient: 0.0, process: "adiabatic", gamma: gamma, smallest_volume: 1e-3)
         } else {
-            values!(pressure, pressure: 100.0, smallest_volume: 1e-3)
+            values!(pressure, pressure: 100.0, ambient: 0.0, smallest_volume: 1e-3)
         };
         let mut balloon = system(&mesh, &[(&Pressure as _, gas)]);
         let start = reading(&mut balloon, 0, "volume");
+        let (product, energy_at_start) = (100.0 * start, energy(&mut balloon));
         for factor in [0.2, 0.5f64.cbrt(), 1.1, 3.0] {
             for (node, x) in mesh.positions.iter().enumerate() {
                 balloon.state.x.set(node, x.map(|c| factor * c));
@@ -243,6 +245,10 @@ fn gas_laws() {
             let pressure = reading(&mut balloon, 0, "pressure");
             assert!((ratio / factor.powi(3) - 1.0).abs() < 1e-12);
             assert!((pressure * ratio.powf(gamma) / 100.0 - 1.0).abs() < 1e-12, "{pressure}");
+            let work =
+                if gamma > 1.0 { (product - pressure * ratio * start) / (gamma - 1.0) } else { product * ratio.ln() };
+            let fall = energy_at_start - energy(&mut balloon);
+            assert!((fall - work).abs() < 1e-12 * product, "{gamma} {factor}: {fall} {work}");
         }
     }
 }
