@@ -325,8 +325,8 @@ pub(crate) struct Run {
     pub(crate) record_every: Option<u32>,
     /// Write a row of diagnostics.csv every FRAMES frames; 1 writes every frame
     ///
-    /// The first and the last frame always have a row. By default, every frame has a row if the table then stays below 67 MB. If it would be
-    /// larger, rows are left out, and a warning counts them.
+    /// The first and the last frame always have a row. By default, every frame has a row if the table then stays below 67 MB. Otherwise
+    /// rows are left out, and a warning says how many.
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
     pub(crate) diagnostics_every: Option<u32>,
     /// Check after every frame that no surfaces cross; a run in which surfaces cross ends with exit code 1
@@ -356,7 +356,7 @@ pub(crate) struct Run {
 pub(crate) struct Modes {
     /// A scene file, or the name of a scene that comes with the program
     pub(crate) scene: String,
-    /// The number of modes, starting with the lowest: a number from 1, or `all`
+    /// How many modes to compute, starting with the lowest: 1 or more, or `all`
     #[arg(short = 'n', long = "count", default_value = "10", allow_negative_numbers = true, value_parser = count_of_modes)]
     pub(crate) count: usize,
     /// The body whose modes are computed [default: the first one]

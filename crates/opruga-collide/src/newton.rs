@@ -464,8 +464,8 @@ mod tests {
         row
     }
 
-    /// A column of points of 1 kg on a pinned one, with two equal contacts between neighbours: the distribution between these is
-    /// not unique.
+    /// A column of points of 1 kg on a pinned point, with two equal contacts between neighbours. How these share the force is not
+    /// unique.
     fn column(points: usize, friction: f64) -> (Vec<Row<3>>, Vec<[f64; 3]>) {
         let mut inverse_mass = vec![[1.0; 3]; points];
         inverse_mass[0] = [0.0; 3];

@@ -70,7 +70,7 @@ messages! {
         FreePiece { pieces: usize, nodes: usize, center: String, motions: AnyMessage, count: usize },
         /// A curve of equilibria that begins where nothing holds the body.
         "static.arc_length_and_obstacles"
-        #[error("with `arc_length`, pins must hold the body: the curve begins without load, and nothing then presses the body onto obstacles")] #[parameters("arc_length")]
+        #[error("with `arc_length`, pins must hold the body: the load starts at zero, when nothing presses the body onto obstacles")] #[parameters("arc_length")]
         #[allowed("pins that hold it, or the whole load at once, in as many `load_steps` as needed")]
         LooseByArc {},
         /// A body that can slide on an obstacle.

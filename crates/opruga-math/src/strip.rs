@@ -11,7 +11,7 @@
 use crate::lane::{Pack, Register, WIDTH};
 use core::marker::PhantomData;
 
-/// The same piece of `N` columns, for reading.
+/// The same range of each of `N` columns, for reading.
 #[derive(Clone, Copy, Debug)]
 pub struct Strip<'a, const N: usize> {
     start: [*const f64; N],
@@ -19,7 +19,7 @@ pub struct Strip<'a, const N: usize> {
     borrow: PhantomData<&'a f64>,
 }
 
-/// The same piece of `N` columns, for reading and writing.
+/// The same range of each of `N` columns, for reading and writing.
 #[derive(Debug)]
 pub struct StripMut<'a, const N: usize> {
     start: [*mut f64; N],

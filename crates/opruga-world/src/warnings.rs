@@ -223,7 +223,7 @@ messages! {
         #[hint("use more substeps, {help}{}", if_any(unfold))]
         Inverted { time: f64, cells: InvertedCells, cell: u32, body: String, ratio: f64, help: CellHint, unfold: Option<UnfoldHint> },
         "cells.other_balance"
-        #[error("at t = {} s, {} account for. Such an equilibrium is not the rest shape, but snapped through, folded, inverted or twisted. The first is body `{body}` with {} J, of which {} J are accounted for, and V/V₀ = {}; its cell {cell} has J = {}", number(*time), bodies_hold(*count), rounded(*energy, 4), rounded(*accounted, 4), rounded(*volume, 4), rounded(*ratio, 4))]
+        #[error("at t = {} s, {} contains {} J, of which the forces account for {} J. Its volume is {} times that at rest, and det F is {} in cell {cell}", number(*time), at_rest(*count, body), rounded(*energy, 4), rounded(*accounted, 4), rounded(*volume, 4), rounded(*ratio, 4))]
         #[hint("if this is not intended, start from the rest shape, with more damping or more substeps{}", if_any(unfold))]
         OtherBalance { time: f64, count: u64, body: String, energy: f64, accounted: f64, volume: f64, cell: u32, ratio: f64, unfold: Option<UnfoldHint> },
         "law.turned"
@@ -250,9 +250,14 @@ fn cells_are(count: u64) -> String {
     if count == 1 { "1 cell is".into() } else { format!("{count} cells are") }
 }
 
-fn bodies_hold(count: u64) -> String {
+fn at_rest(count: u64, body: &str) -> String {
+    let shapes = "snapped through, or are folded, inverted or twisted";
     match count {
-        1 => "1 body holds more energy in its cells than the forces on it".into(),
-        _ => format!("{count} bodies hold more energy in their cells than the forces on them"),
+        1 => format!(
+            "body `{body}` has come to rest with more energy in its cells than the forces account for: parts of it have {shapes}. It"
+        ),
+        _ => format!(
+            "{count} bodies have come to rest with more energy in their cells than the forces account for: they have {shapes}. The first, body `{body}`,"
+        ),
     }
 }

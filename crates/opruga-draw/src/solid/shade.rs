@@ -7,7 +7,7 @@ use crate::colour::ColourMap;
 /// The side in samples below which the light is computed only at the corners of a triangle.
 const SMALL: f32 = 40.0;
 
-/// The cosine of the angle between faces above which an edge is sharp.
+/// An edge is sharp if the cosine of the angle between its faces is at most this.
 const SHARP: f64 = 0.77;
 /// An edge at a corner is not sharp if the cosine of the angle between a face and the mean of the faces at that corner is above
 /// this.

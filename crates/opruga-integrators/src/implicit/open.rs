@@ -58,7 +58,7 @@ pub(super) fn open<R: Rule<D>, const D: usize>(
     begin((rule, settings), system, workspace, account, h)
 }
 
-/// Begins a step of statics of h [s].
+/// Begins a static step, whose length is h [s].
 ///
 /// # Errors
 /// [`StepError`] if a model refuses the start.

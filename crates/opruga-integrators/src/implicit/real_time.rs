@@ -38,7 +38,7 @@ const MOST_MISMATCH: f64 = 0.2;
 const MOST_MISMATCH_LOOSE: f64 = 0.1;
 
 /// The fraction of the residual that the linear solver may leave for bodies that are free or near obstacles. An iteration is
-/// good enough if at most the square of this fraction of the residual remains.
+/// good enough if the residual has fallen to the square of this fraction, a millionth.
 const LOOSE: f64 = 1e-3;
 
 /// A residual counts as zero if it moves nodes by less than this fraction of the extent.

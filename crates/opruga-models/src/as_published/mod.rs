@@ -192,7 +192,7 @@ impl AsPublished {
         volume
     }
 
-    /// 2. The mouse: pulls the vertex that it holds; returns the press and the vertex.
+    /// 2. The mouse: pulls the vertex that it holds. Returns the number of the mouse press, from 1, and the vertex; zeros if no press is active.
     fn mouse<const D: usize>(&self, view: &View<D>, body: usize, memory: &[f64], forces: &mut [f64]) -> (usize, usize) {
         let c = self.constants(body);
         let press = c.press(view.time);

@@ -23,7 +23,7 @@ pub(super) struct Cells<C, const D: usize, const N: usize> {
     /// ∂ξ/∂X [1/m] at every point, row by row; for a simplex, ∇Nₐ of all corners but the first. The last pack is filled up with
     /// copies of the last cell.
     pub(super) inverse: Column,
-    /// The area vectors of the dual faces [m², in the plane times the thickness]; empty for simplices, whose Wₐ = −V ∇Nₐ. Copies
+    /// The area vectors of the dual faces [m²; in 2D, length times thickness]. Empty for simplices, where Wₐ = −V ∇Nₐ. Copies
     /// that fill up the last pack have zero area and volume.
     pub(super) areas: Column,
     /// Volume [m³].

@@ -15,7 +15,7 @@ use opruga_math::{Simd, WIDTH, matrix};
 #[derive(Debug)]
 pub(super) struct Matter<const D: usize> {
     pub(super) law: Box<dyn Law<D>>,
-    /// The law in space, if it gives the out-of-plane stress.
+    /// The same law in 3D, which gives the out-of-plane stress in plane strain; none in plane stress and in 3D.
     pub(super) in_space: Option<Box<dyn Law<3>>>,
     /// μ, λ, the material's own parameter and a thermal growth of one, for [`MOST_PACKS`] packs of points.
     pub(super) parameters: Vec<f64>,

@@ -79,7 +79,7 @@ fn face_alike<const D: usize>(one: &[u32; D], other: &[u32; D]) -> bool {
 }
 
 impl CurvedSides {
-    /// The curved sides of a chamber, from its facets, some of which are pieces of such sides; none if there are no curved sides.
+    /// Finds the curved sides of a chamber: those of `sides` whose pieces are among its facets. None if there are none.
     pub(super) fn of<const D: usize>(facets: &[[u32; D]], sides: &[Vec<u32>]) -> Option<CurvedSides> {
         let mut left: BTreeMap<[u32; D], [u32; D]> = facets.iter().map(|facet| (ascending(facet), *facet)).collect();
         let mut terms = Vec::new();

@@ -194,7 +194,7 @@ struct Impact {
     gained: f64,
     /// The time until half of the momentum is transferred [s].
     half: f64,
-    /// The compression at the middle of the second bar divided by half of the approach speed, over c.
+    /// The compressive strain at the middle of the second bar, divided by v/(2c), with the approach speed v.
     stress: f64,
     /// The speed of separation divided by the speed of approach.
     apart: f64,
