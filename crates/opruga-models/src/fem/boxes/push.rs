@@ -5,10 +5,10 @@ use super::super::group::Group;
 use super::super::work::scatter;
 use super::hourglass::{FIELDS, modes};
 use super::rest::Rest;
-use super::{Frame, KEPT, Kept, Modes, cofactor_along};
+use super::{Frame, KEPT, Kept, cofactor_along};
 use crate::materials::points::read_matrix;
 use core::marker::PhantomData;
-use opruga_math::matrix::{self, Matrix};
+use opruga_math::matrix;
 use opruga_math::{Lane, Pack, Register, WIDTH, Work};
 
 /// Rates of a state, for damping.
@@ -32,71 +32,13 @@ pub(in super::super) struct Push<'a, E, const D: usize, const N: usize> {
     pub(in super::super) force: &'a mut [f64],
 }
 
-impl<E: Shape<D, N>, const D: usize, const N: usize> Push<'_, E, D, N> {
-    /// Σ V P, and Σ V f P for the functions f of the stresses.
-    #[inline(always)]
-    fn stresses<R: Register>(
-        &self,
-        k: usize,
-        part: usize,
-        rest: &Rest<'_, R, D, N>,
-    ) -> (Matrix<R, D>, [Matrix<R, D>; FIELDS]) {
-        let mut on_f = matrix::zeros::<R, D>();
-        let mut stresses = [matrix::zeros::<R, D>(); FIELDS];
-        for i in 0..D {
-            for j in 0..D {
-                let mut at = rest.measures;
-                for q in 0..N {
-                    let from = ((k * self.group.points + q) * D * D + i * D + j) * WIDTH + part * R::NUMBERS;
-                    at[q] = at[q] * R::load(&self.stress[from..]);
-                }
-                let (sum, of_fields) = rest.over_points(&at);
-                on_f[i][j] = sum;
-                for field in 0..FIELDS {
-                    stresses[field][i][j] = of_fields[field];
-                }
-            }
-        }
-        (on_f, stresses)
-    }
-}
-
-/// Transforms forces on the amplitudes q to forces on F and g, and adds those of the guard energy of degenerate cells; returns
-/// the guard energy.
-#[inline(always)]
-fn turn<R: Register, const D: usize, const N: usize>(
-    rest: &Rest<'_, R, D, N>,
-    f: &Matrix<R, D>,
-    g: &Modes<R, D>,
-    on_q: &Modes<R, D>,
-    on_f: &mut Matrix<R, D>,
-    on_g: &mut Modes<R, D>,
-) -> R {
-    let half = R::splat(0.5);
-    let frame = Frame::new(f);
-    let mut on_cofactors = matrix::zeros::<R, D>();
-    let mut guarded = R::zero();
-    for mode in 0..modes::<D, N>() {
-        for j in 0..D {
-            let stiff = rest.guards[mode] * g[mode][j];
-            guarded += stiff * g[mode][j];
-            let mut sum = R::zero();
-            for i in 0..D {
-                on_cofactors[j][i] += g[mode][j] * on_q[mode][i];
-                sum += frame.cofactors[j][i] * on_q[mode][i];
-            }
-            on_g[mode][j] = frame.phi[0] * sum + frame.lost[0] * stiff;
-        }
-    }
-    let on_volume = frame.phi[1] * matrix::inner(&on_cofactors, &frame.cofactors) + half * frame.lost[1] * guarded;
-    *on_f = matrix::plus(on_f, frame.phi[0], &cofactor_along(f, &on_cofactors));
-    *on_f = matrix::plus(on_f, on_volume, &frame.cofactors);
-    half * frame.lost[0] * guarded
-}
-
 impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Push<'_, E, D, N> {
     type Output = ();
     #[inline(always)]
+    #[expect(
+        clippy::too_many_lines,
+        reason = "with parts of it in functions of their own, forces take 12 % longer with AVX-512, although all is inlined"
+    )]
     fn run<P: Pack>(mut self) {
         let (count, turns, points) = (modes::<D, N>(), self.group.turns, self.group.points);
         let half = P::Part::splat(0.5);
@@ -108,7 +50,23 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Push<'_, E, D, N> 
                 let rest = Rest::<P::Part, D, N>::read(&self.group, pack, part);
                 let Kept { f, g, beta } = Kept::<P::Part, D>::read::<N>(&self.kept[k * KEPT * WIDTH..], part);
                 let strained = rest.strained(&if turns { f } else { matrix::identity() });
-                let (mut on_f, stresses) = self.stresses(k, part, &rest);
+                // Σ V P, and Σ V f P for the functions f of the stresses.
+                let mut on_f = matrix::zeros::<P::Part, D>();
+                let mut stresses = [matrix::zeros::<P::Part, D>(); FIELDS];
+                for i in 0..D {
+                    for j in 0..D {
+                        let mut at = rest.measures;
+                        for q in 0..N {
+                            let from = ((k * points + q) * D * D + i * D + j) * WIDTH + offset;
+                            at[q] = at[q] * P::Part::load(&self.stress[from..]);
+                        }
+                        let (sum, of_fields) = rest.over_points(&at);
+                        on_f[i][j] = sum;
+                        for field in 0..FIELDS {
+                            stresses[field][i][j] = of_fields[field];
+                        }
+                    }
+                }
                 let (mut energy, mut lost) = (P::Part::zero(), P::Part::zero());
                 for q in 0..N {
                     let from = (k * points + q) * WIDTH + offset;
@@ -153,7 +111,27 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Push<'_, E, D, N> 
                 let on_q = rest.on_amplitudes(&pulls.on_beta);
                 let mut on_g = on_q;
                 if turns {
-                    energy += turn(&rest, &f, &g, &on_q, &mut on_f, &mut on_g);
+                    // Forces on the amplitudes q become forces on F and g. Degenerate cells add the guard energy.
+                    let frame = Frame::new(&f);
+                    let mut on_cofactors = matrix::zeros::<P::Part, D>();
+                    let mut guarded = P::Part::zero();
+                    for mode in 0..count {
+                        for j in 0..D {
+                            let stiff = rest.guards[mode] * g[mode][j];
+                            guarded += stiff * g[mode][j];
+                            let mut sum = P::Part::zero();
+                            for i in 0..D {
+                                on_cofactors[j][i] += g[mode][j] * on_q[mode][i];
+                                sum += frame.cofactors[j][i] * on_q[mode][i];
+                            }
+                            on_g[mode][j] = frame.phi[0] * sum + frame.lost[0] * stiff;
+                        }
+                    }
+                    let on_volume =
+                        frame.phi[1] * matrix::inner(&on_cofactors, &frame.cofactors) + half * frame.lost[1] * guarded;
+                    on_f = matrix::plus(&on_f, frame.phi[0], &cofactor_along(&f, &on_cofactors));
+                    on_f = matrix::plus(&on_f, on_volume, &frame.cofactors);
+                    energy += half * frame.lost[0] * guarded;
                 }
                 let mut columns = [[P::Part::zero(); D]; N];
                 for i in 0..D {
