@@ -1,7 +1,7 @@
 //! Boxes of two lists that overlap, compared eight at a time in vector instructions.
 
 use crate::vector::Bounds;
-use opruga_math::{Pack, WIDTH, Work, lanes};
+use opruga_math::{Lane, Pack, WIDTH, Work, lanes};
 
 /// Boxes by coordinates: the lowest ones along every axis, then the highest ones, padded to whole packs.
 #[derive(Clone, Debug, Default)]
@@ -9,11 +9,29 @@ pub(crate) struct Columns {
     coordinates: Vec<f64>,
     /// The number of boxes with their padding.
     padded: usize,
+    /// If the boxes are sorted: the axis along which their lowest coordinates ascend.
+    axis: Option<usize>,
+    /// For every sorted box, the highest coordinate along that axis of all boxes up to this one.
+    highest: Vec<f64>,
 }
 
+/// More boxes than this are sorted along an axis, so a box is compared only with those that overlap it along this axis. Fewer boxes are compared in
+/// less time than sorting them takes.
+const UNSORTED: usize = 128;
+
 impl Columns {
-    /// Replaces the present boxes by new ones.
-    pub(crate) fn fill<const D: usize>(&mut self, boxes: &[(u32, Bounds<D>)]) {
+    /// Replaces the present boxes by new ones, and sorts these if there are many.
+    pub(crate) fn fill<const D: usize>(&mut self, boxes: &mut [(u32, Bounds<D>)]) {
+        self.axis = (boxes.len() > UNSORTED).then(|| longest_axis(boxes));
+        self.highest.clear();
+        if let Some(axis) = self.axis {
+            boxes.sort_unstable_by(|(_, [a, _]), (_, [b, _])| a[axis].total_cmp(&b[axis]));
+            let mut most = f64::NEG_INFINITY;
+            self.highest.extend(boxes.iter().map(|(_, [_, high])| {
+                most = high[axis].larger(most);
+                most
+            }));
+        }
         self.padded = boxes.len().next_multiple_of(WIDTH);
         // Nothing overlaps a box from infinity to minus infinity.
         self.coordinates.clear();
@@ -27,10 +45,33 @@ impl Columns {
         }
     }
 
+    /// The boxes that may overlap a box, as a range that begins with a whole pack.
+    #[inline(always)]
+    fn near<const D: usize>(&self, [low, high]: &Bounds<D>) -> core::ops::Range<usize> {
+        let Some(axis) = self.axis else { return 0..self.padded };
+        let lowest = &self.coordinates[axis * self.padded..axis * self.padded + self.highest.len()];
+        let start = self.highest.partition_point(|most| *most < low[axis]);
+        let end = lowest.partition_point(|least| *least <= high[axis]);
+        start / WIDTH * WIDTH..end
+    }
+
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
-        8 * self.coordinates.capacity()
+        8 * (self.coordinates.capacity() + self.highest.capacity())
     }
+}
+
+/// The axis along which the lowest corners of boxes are farthest apart.
+fn longest_axis<const D: usize>(boxes: &[(u32, Bounds<D>)]) -> usize {
+    let extent = |d: usize| {
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (_, [low, _]) in boxes {
+            (least, most) = (low[d].smaller(least), low[d].larger(most));
+        }
+        most - least
+    };
+    let extents: [f64; D] = core::array::from_fn(extent);
+    (1..D).fold(0, |longest, d| if extents[d] > extents[longest] { d } else { longest })
 }
 
 /// Calls `visit` with all pairs of a feature of the first list and a feature of the second list whose boxes overlap; `columns`
@@ -46,10 +87,11 @@ impl<F: FnMut(u32, u32), const D: usize> Work for Overlaps<'_, F, D> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(mut self) {
-        let Columns { coordinates, padded } = self.columns;
-        for (a, [low, high]) in self.first {
+        let Columns { coordinates, padded, .. } = self.columns;
+        for (a, bounds @ [low, high]) in self.first {
+            let near = self.columns.near(bounds);
             let (low, high): ([P; D], [P; D]) = (lanes!(P, d => P::splat(low[d])), lanes!(P, d => P::splat(high[d])));
-            for k in (0..*padded).step_by(WIDTH) {
+            for k in near.step_by(WIDTH) {
                 let load = |d: usize| P::load(&coordinates[d * padded + k..]);
                 let mut meets = P::both(load(0).less_or_equal(high[0]), low[0].less_or_equal(load(D)));
                 for d in 1..D {
