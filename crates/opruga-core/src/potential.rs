@@ -418,6 +418,11 @@ pub trait Model<const D: usize>: Send + Sync {
     fn views(&self) -> Views {
         Views { energy: true, hessian: true, symmetric: true, damping: false }
     }
+    /// Whether its potentials also handle [`crate::state::Layout::Batch`], in which up to eight bodies with their own parameters share the columns.
+    /// Bodies with other models are stepped one by one.
+    fn batches(&self) -> bool {
+        false
+    }
     /// Its needs for one body, besides the mesh and the state.
     fn need(&self, _counts: &Counts) -> Need {
         Need::default()

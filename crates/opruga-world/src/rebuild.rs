@@ -53,7 +53,9 @@ impl<const D: usize> World<D> {
         let kind = body.integrator.as_ref().unwrap_or(&self.blueprint.integrator).kind();
         // Unfolding displaces bodies one by one.
         let alone = !self.options.batches || self.blueprint.surroundings.unfold;
-        !alone && self.registry.integrator(kind).is_none_or(|integrator| integrator.batches())
+        !alone
+            && self.registry.integrator(kind).is_none_or(|integrator| integrator.batches())
+            && body.models.iter().all(|model| self.registry.model(model.kind()).is_none_or(|model| model.batches()))
     }
 
     /// Rebuilds the islands of some bodies after commands on them began or ended. The grouping of bodies in lanes does not change.

@@ -13,6 +13,10 @@ impl Model<2> for BedModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn views(&self) -> Views {
+        // Only forces: implicit integrators would need the Hessian, and the ledger would need the energy.
+        Views::default()
+    }
     fn build(&self, of: &Ingredients<2>) -> Result<Box<dyn Potential<2>>, BuildError> {
         Ok(Box::new(Bed(of.values[0].number("stiffness").unwrap_or(0.0), of.mesh.positions.clone())))
     }
@@ -23,8 +27,7 @@ impl Model<2> for BedModel {
 struct Bed(f64, Vec<[f64; 2]>);
 impl Potential<2> for Bed {
     fn properties(&self) -> Properties {
-        // Only forces: implicit integrators would need the Hessian, and the ledger would need the energy.
-        Properties::new(SPEC.kind, Views::default())
+        Properties::new(SPEC.kind, BedModel.views())
     }
     fn add_force(&self, _: Simd, view: &View<2>, _: &[f64], tile: &mut Tile<2>) {
         for node in tile.range.start..tile.range.end.min(self.1.len()) {

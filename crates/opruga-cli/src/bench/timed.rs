@@ -62,6 +62,9 @@ impl<const D: usize> Model<D> for TimedModel<D> {
     fn views(&self) -> Views {
         self.library.model(self.spec.kind).map_or(Views::default(), |model| model.views())
     }
+    fn batches(&self) -> bool {
+        self.library.model(self.spec.kind).is_some_and(|model| model.batches())
+    }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {
         let Some(model) = self.library.model(self.spec.kind) else {
             return Err(BuildError::new(self.spec.kind, "scene.unknown_name", "the library lacks it"));

@@ -85,6 +85,9 @@ impl<const D: usize> Model<D> for AsPublishedModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn batches(&self) -> bool {
+        true
+    }
     fn views(&self) -> Views {
         Views { energy: false, hessian: false, symmetric: false, damping: true }
     }

@@ -57,6 +57,9 @@ impl<const D: usize> Model<D> for BendingModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn batches(&self) -> bool {
+        true
+    }
     fn need(&self, counts: &Counts) -> Need {
         Need { bytes: 60.0 * counts.hinges, couplings: counts.hinges }
     }

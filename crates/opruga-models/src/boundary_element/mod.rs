@@ -65,6 +65,9 @@ impl<const D: usize> Model<D> for BoundaryElementModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn batches(&self) -> bool {
+        true
+    }
     fn need(&self, counts: &Counts) -> Need {
         Need { bytes: bytes(D, counts.nodes), couplings: 0.0 }
     }

@@ -35,6 +35,9 @@ impl<const D: usize> Model<D> for DragModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn batches(&self) -> bool {
+        true
+    }
     fn views(&self) -> Views {
         Views { energy: false, hessian: true, symmetric: true, damping: true }
     }

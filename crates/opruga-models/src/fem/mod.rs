@@ -66,6 +66,9 @@ impl Model<2> for FemModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn batches(&self) -> bool {
+        true
+    }
     fn need(&self, counts: &Counts) -> Need {
         Need { bytes: counts.cell_bytes, couplings: counts.cell_pairs }
     }
@@ -88,6 +91,9 @@ impl Model<2> for FemModel {
 impl Model<3> for FemModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+    fn batches(&self) -> bool {
+        true
     }
     fn need(&self, counts: &Counts) -> Need {
         Need { bytes: counts.cell_bytes, couplings: counts.cell_pairs }

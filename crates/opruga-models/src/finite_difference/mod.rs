@@ -199,6 +199,9 @@ impl<const D: usize> Model<D> for FiniteDifferenceModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn batches(&self) -> bool {
+        true
+    }
     fn need(&self, counts: &Counts) -> Need {
         // Eight numbers per stencil, and the location of their forces. A curve has no cell pairs; its torsion couples nodes that
         // are three edges apart.

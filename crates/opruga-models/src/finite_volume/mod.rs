@@ -140,6 +140,9 @@ impl Model<2> for FiniteVolumeModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn batches(&self) -> bool {
+        true
+    }
     fn views(&self) -> Views {
         VIEWS
     }
@@ -164,6 +167,9 @@ impl Model<2> for FiniteVolumeModel {
 impl Model<3> for FiniteVolumeModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
+    }
+    fn batches(&self) -> bool {
+        true
     }
     fn views(&self) -> Views {
         VIEWS

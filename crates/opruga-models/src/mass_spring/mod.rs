@@ -45,6 +45,9 @@ impl<const D: usize> Model<D> for MassSpring {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn batches(&self) -> bool {
+        true
+    }
     fn need(&self, counts: &Counts) -> Need {
         Need { bytes: 110.0 * counts.edges, couplings: counts.edges }
     }

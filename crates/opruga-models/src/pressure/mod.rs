@@ -77,6 +77,9 @@ impl<const D: usize> Model<D> for PressureModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn batches(&self) -> bool {
+        true
+    }
     fn need(&self, counts: &Counts) -> Need {
         Need { bytes: 100.0 * counts.facets, couplings: counts.facets }
     }

@@ -79,6 +79,9 @@ impl<const D: usize> Model<D> for ShapeMatchingModel {
     fn spec(&self) -> &'static Spec {
         &SPEC
     }
+    fn batches(&self) -> bool {
+        true
+    }
     fn need(&self, counts: &Counts) -> Need {
         // This is the need of a body that is one cluster: masses and columns. With boxes, a node is in 2ᴰ clusters.
         Need { bytes: 150.0 * counts.nodes, couplings: 0.0 }

@@ -4,7 +4,7 @@ use opruga::extend::*;
 use opruga::io::{reference, scene, schema};
 use opruga::pictures::Scenery;
 use opruga::sweep::{Status, Sweep};
-use opruga::{Options, Registries, Registry, WorldError, catalogue, catalogue_of};
+use opruga::{Options, Registries, Registry, World, WorldError, catalogue, catalogue_of};
 use std::sync::Arc;
 
 const K: Field = Field::new("tightness", Allowed::POSITIVE, "N/m", Default::Required, "Stiffness k of every node.");
@@ -88,6 +88,24 @@ fn a_registered_model_is_listed_described_and_paired_with_integrators() {
     let schema = schema::json_schema(&known).to_string();
     assert!(schema.contains(SPEC.kind) && schema.contains(K.name));
     assert!(!reference::markdown(&catalogue()).contains(SPEC.kind));
+}
+
+/// A model that does not say that it handles batches may take indices for nodes.
+#[test]
+fn alike_bodies_with_a_registered_model_move_alike() {
+    let (registries, known) = (registries(), catalogue_of(&registries()));
+    let text = text(2, SPEC.kind) + "copies = { count = [5, 1], spacing = [9, 9] }\n";
+    let read = scene::read(text.as_bytes(), "a.toml", &known, &scene::Options::default()).expect("a scene");
+    let opruga::blueprint::AnyBlueprint::Plane(mut blueprint) = read.0 else { panic!("a scene of the plane") };
+    // The bed attaches bodies to their rest positions.
+    blueprint.bodies.iter_mut().for_each(|body| body.translation = [0.0; 2]);
+    let mut world = World::with_registry(blueprint, Options::default(), registries.plane).expect("a world");
+    (0..3).for_each(|_| world.frame().expect("a frame"));
+    let positions = |body| (0..12).map(|node| world.position(body, node)).collect::<Vec<_>>();
+    assert!(positions(0)[0][1] < 0.0, "it sinks");
+    for body in 1..5 {
+        assert_eq!(positions(body), positions(0));
+    }
 }
 
 /// If a scene misspells the name of the model, the error suggests the name. If the model is not registered, the scene is refused.
