@@ -2,7 +2,7 @@
 //! After every frame the result is checked by code that is independent of the detection of contact. Every failure counts.
 //!
 //! ```sh
-//! cargo test -p opruga --test all -- --ignored --nocapture hard_contact_from_ten_starts
+//! cargo test --release -p opruga --test all -- --ignored --nocapture hard_contact_from_ten_starts
 //! ```
 
 #![allow(clippy::disallowed_methods)] // scenes and what is printed need not have the same bits everywhere
@@ -186,6 +186,7 @@ fn trials() -> Vec<Trial> {
         rings(36, [3, 4]),
         rings(256, [2, 2]),
         rings(1024, [1, 2]),
+        rings(4096, [1, 2]),
         Trial::new("discs", include_str!("../robust/discs.toml")).short(),
         Trial::new("funnel", include_str!("../robust/funnel.toml")),
         Trial::new("letter", include_str!("../robust/letter.toml")),
