@@ -47,7 +47,7 @@ impl Columns {
 
     /// The boxes that may overlap a box, as a range that begins with a whole pack.
     #[inline(always)]
-    fn near<const D: usize>(&self, [low, high]: &Bounds<D>) -> core::ops::Range<usize> {
+    fn candidates<const D: usize>(&self, [low, high]: &Bounds<D>) -> core::ops::Range<usize> {
         let Some(axis) = self.axis else { return 0..self.padded };
         let lowest = &self.coordinates[axis * self.padded..axis * self.padded + self.highest.len()];
         let start = self.highest.partition_point(|most| *most < low[axis]);
@@ -89,9 +89,9 @@ impl<F: FnMut(u32, u32), const D: usize> Work for Overlaps<'_, F, D> {
     fn run<P: Pack>(mut self) {
         let Columns { coordinates, padded, .. } = self.columns;
         for (a, bounds @ [low, high]) in self.first {
-            let near = self.columns.near(bounds);
+            let candidates = self.columns.candidates(bounds);
             let (low, high): ([P; D], [P; D]) = (lanes!(P, d => P::splat(low[d])), lanes!(P, d => P::splat(high[d])));
-            for k in near.step_by(WIDTH) {
+            for k in candidates.step_by(WIDTH) {
                 let load = |d: usize| P::load(&coordinates[d * padded + k..]);
                 let mut meets = P::both(load(0).less_or_equal(high[0]), low[0].less_or_equal(load(D)));
                 for d in 1..D {

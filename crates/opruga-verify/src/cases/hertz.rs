@@ -43,7 +43,7 @@ Hertz's value at the same force, plane strain, by `equilibrium`",
         over: Over::Cells("cells along an eighth of a great circle; one less for the other ball"),
         levels: &[4.0, 5.0, 6.0],
         expected: &[1548.4],
-        measure: held_balls,
+        measure: force_of_balls,
         ..BASE
     },
 ];
@@ -167,6 +167,6 @@ fn sphere(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok((2.5 * press.spread).sqrt() / (0.75 * press.force * 0.5 / stiffness).cbrt())
 }
 
-fn held_balls(lab: &Lab, n: f64) -> Result<f64, Trouble> {
+fn force_of_balls(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(balls(lab, n)?.force)
 }

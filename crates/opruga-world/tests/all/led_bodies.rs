@@ -161,5 +161,5 @@ fn folded_bodies_that_pins_carry_and_turn_as_a_whole_are_told_of() {
     (0..3600).for_each(|_| world.frame().expect("a frame"));
     assert!(world.position(0, 0)[0] > 4.9, "{:?}", world.position(0, 0));
     let told = world.other_balances().expect("a folded body").message;
-    assert!(told.contains("body `body` with 969.9 J"), "{told}");
+    assert!(told.contains("It contains 969.9 J"), "{told}");
 }
