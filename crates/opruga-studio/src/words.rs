@@ -224,7 +224,7 @@ words! {
     halve_step: "Go back a second and halve the step", "Vrati se sekundu i prepolovi korak";
     take_steady: "Go back a second and use {}", "Vrati se sekundu i uzmi integrator „{}”";
     use_substeps: "Use {} substeps, with a safety margin", "Uzmi {} podkoraka, s rezervom";
-    take_coarser: "Use {} instead, with the substeps that it needs", "Uzmi radije {}, s podkoracima za to";
+    take_coarser: "Use {} instead, with enough substeps", "Uzmi radije {}, s podkoracima za to";
     frame_would_take: "With that many substeps, a frame takes about {} s", "S toliko podkoraka sličica traje oko {} s";
     computing: "computing this frame: {} s so far", "sličica se računa {} s";
     nothing_has_it: "no body here has this quantity: {}", "ovdje nema veličine: {}";

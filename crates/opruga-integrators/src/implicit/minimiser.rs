@@ -29,7 +29,7 @@ pub(crate) trait Minimiser<const D: usize>: core::fmt::Debug {
     }
     /// Uses its memory to improve the displacement in `workspace.u`, to which the motion of the last step leads.
     fn predict(&self, _system: &System<D>, _workspace: &mut Workspace<D>, _balance: &Balance) {}
-    /// Discards data reused from step to step, after a guard has refused its stage.
+    /// Discards the data that it reuses from step to step, after a guard has refused the stage that it found.
     fn discard(&self, _system: &mut System<D>) {}
     /// Remembers an accepted step of h [s].
     fn remember(&self, _system: &mut System<D>, _workspace: &Workspace<D>, _h: f64) {}

@@ -32,7 +32,7 @@ opruga_math::messages! {
         GappyValues { count: usize },
         "part.left_out" #[error("the names of {}", counted(*count as u64, "group", "groups"))]
         GroupNames { count: usize },
-        "part.left_out" #[error("names of {}, which are replaced by numbers in alphabetical order", counted(*count as u64, "group of cells", "groups of cells"))]
+        "part.left_out" #[error("names of {}; the groups are numbered from 1, in alphabetical order of their names", counted(*count as u64, "group of cells", "groups of cells"))]
         NamesOfCellGroups { count: usize },
         "part.left_out" #[error("names of {}", counted(*count as u64, "value of cells", "values of cells"))]
         NamesOfCellValues { count: usize },

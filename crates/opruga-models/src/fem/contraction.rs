@@ -83,7 +83,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Contract<'_, E, D,
     }
 }
 
-/// Computes the blocks of the first node of a simplex: the sums over b of K_ab are zero.
+/// Computes the blocks of the first node of a simplex from the others, since the sum of K_ab over b is zero.
 #[inline(always)]
 fn complete<R: Register, const D: usize, const N: usize>(blocks: &mut [[Matrix<R, D>; N]; N]) {
     for b in 1..N {

@@ -196,7 +196,7 @@ pub(super) const DYNAMICS: &[Case] = &[
     },
     Case {
         name: "finite-difference-bar-third-wave",
-        quantity: "ωL/c of the third wave of a plane bar clamped at one end",
+        quantity: "ωL/c of the third longitudinal mode of a plane bar clamped at one end",
         source: "exact: 5π/2",
         over: Over::Cells("cells along the bar"),
         levels: &[16.0, 32.0, 64.0],

@@ -94,7 +94,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "bar-third-wave",
-        quantity: "ωL/c of the third wave of a bar clamped at one end",
+        quantity: "ωL/c of the third longitudinal mode of a bar clamped at one end",
         source: "exact: 5π/2, f = 5c/4L",
         over: Over::Cells("cells along the bar"),
         levels: &[16.0, 32.0, 64.0],
