@@ -203,8 +203,15 @@ impl SceneError {
     /// The same error with other settings and names.
     #[must_use]
     pub fn replaced(mut self, by: &Replacing<'_>) -> SceneError {
+        let mut changed = false;
         for message in [&mut self.about, &mut self.advice, &mut self.allowance].into_iter().flatten() {
-            *message = IntoField::replaced(message, by);
+            let replaced = IntoField::replaced(message, by);
+            changed |= replaced != *message;
+            *message = replaced;
+        }
+        // Texts that were set beside the message stay if nothing in it has another name.
+        if !changed {
+            return self;
         }
         let Some(about) = &self.about else { return self };
         let text = |message: &Option<AnyMessage>| message.as_ref().map(AnyMessage::to_string);

@@ -111,6 +111,8 @@ mod tests {
         assert_eq!(known.in_report(Report::World(error)), Report::World(told));
         let scene = |body: &str| SceneError::of(PathFault::NoBodyCalled { name: body.into(), nearest: None });
         assert_eq!(known.in_report(Report::Scene(vec![scene("ball-3")])), Report::Scene(vec![scene("ball")]));
+        let unnamed = SceneError { hint: Some("its own".into()), ..scene("box") };
+        assert_eq!(known.in_report(Report::Scene(vec![unnamed.clone()])), Report::Scene(vec![unnamed]));
         let warning = |body: &str| Warning::new(PathFault::NoBodyCalled { name: body.into(), nearest: None }, 1);
         assert_eq!(known.in_warning(warning("ball-3")), warning("ball"));
         assert_eq!(known.in_report(Report::SetDown), Report::SetDown);
