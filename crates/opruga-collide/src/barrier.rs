@@ -234,7 +234,7 @@ impl<const D: usize> Barrier<D> {
             }
         }
         self.forget();
-        Err(Trouble::TooMany { found: self.candidates.len() })
+        Err(Trouble::TooMany { found: most + 1 })
     }
 
     /// Whether the boxes of a pair come within reach on the paths examined last. Pairs that only the margin adds do not.

@@ -1,11 +1,12 @@
 //! Pairs of features that may meet.
 
+use crate::comparison::{Comparison, Comparisons};
 use crate::grid::Grid;
-use crate::overlaps::{Columns, Overlaps};
-use crate::reach::around;
 use crate::surface::Surface;
 use crate::vector::Bounds;
-use opruga_math::{Lane, Simd, WIDTH};
+use core::sync::atomic::AtomicUsize;
+use opruga_core::threads;
+use opruga_math::{Lane, Simd};
 
 /// Pairs of a vertex and a facet, and in 3D of two edges, whose boxes are closer than a distance, in ascending order, each
 /// once.
@@ -19,6 +20,8 @@ pub struct Candidates<const D: usize> {
     pub edge_edge: Vec<[u32; 2]>,
     /// The vector instructions. The pairs that a search finds do not depend on them.
     pub simd: Simd,
+    /// The threads that may compare features. The pairs that a search finds do not depend on them.
+    pub(crate) threads: usize,
     /// Pairs that a search adds, and the merged list.
     fresh: Vec<[u32; 2]>,
     merged: Vec<[u32; 2]>,
@@ -27,13 +30,11 @@ pub struct Candidates<const D: usize> {
     /// The boxes around the points of every body.
     bodies: Vec<Bounds<D>>,
     close_bodies: Vec<[u32; 2]>,
-    first: Vec<(u32, Bounds<D>)>,
-    second: Vec<(u32, Bounds<D>)>,
-    columns: Columns,
+    parts: Vec<Comparison<D>>,
 }
 
 /// A box, enlarged by a distance [m] on all sides.
-fn wider<const D: usize>([mut low, mut high]: Bounds<D>, distance: f64) -> Bounds<D> {
+pub(crate) fn wider<const D: usize>([mut low, mut high]: Bounds<D>, distance: f64) -> Bounds<D> {
     for d in 0..D {
         low[d] -= distance;
         high[d] += distance;
@@ -41,15 +42,13 @@ fn wider<const D: usize>([mut low, mut high]: Bounds<D>, distance: f64) -> Bound
     [low, high]
 }
 
-fn meet_boxes<const D: usize>(a: &Bounds<D>, b: &Bounds<D>) -> bool {
-    (0..D).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
+/// One number per pair, which is compared faster than two.
+pub(crate) fn key([a, b]: &[u32; 2]) -> u64 {
+    u64::from(*a) << 32 | u64::from(*b)
 }
 
 /// Merges new pairs into an ascending list.
-fn merge(pairs: &mut Vec<[u32; 2]>, fresh: &mut [[u32; 2]], merged: &mut Vec<[u32; 2]>) {
-    // One number per pair, which is compared faster than two.
-    let key = |[a, b]: &[u32; 2]| u64::from(*a) << 32 | u64::from(*b);
-    fresh.sort_unstable_by_key(key);
+fn merge(pairs: &mut Vec<[u32; 2]>, fresh: &[[u32; 2]], merged: &mut Vec<[u32; 2]>) {
     merged.clear();
     let mut known = pairs.iter().peekable();
     for one in fresh.iter() {
@@ -62,9 +61,8 @@ fn merge(pairs: &mut Vec<[u32; 2]>, fresh: &mut [[u32; 2]], merged: &mut Vec<[u3
     std::mem::swap(pairs, merged);
 }
 
-/// Up to this number of features, or of packs of pairs, the features of two bodies are compared with one another, eight at a time. Larger sets are
-/// sorted into cells: finding the cells of a feature takes as long as a thousand comparisons.
-const FEW: usize = 1024;
+/// The least number of pairs of bodies whose features are compared as one part. So many pairs take some tens of microseconds.
+const LEAST_PART: usize = 16;
 
 impl<const D: usize> Candidates<D> {
     /// Finds all pairs of features with boxes closer than a distance [m] along every axis, given the boxes of the points [m]. The
@@ -92,7 +90,7 @@ impl<const D: usize> Candidates<D> {
         &mut self,
         surface: &Surface<D>,
         boxes: &[Bounds<D>],
-        own: impl Fn(u32) -> Bounds<D>,
+        own: impl Fn(u32) -> Bounds<D> + Sync,
         distances: [f64; 2],
         most: usize,
         meet: impl Fn(u32, u32) -> bool,
@@ -105,59 +103,34 @@ impl<const D: usize> Candidates<D> {
             !stale(a, b)
         });
         self.find_close_bodies(surface, boxes, distances, |a, b| meet(a, b) && stale(a, b));
-        let mut pairs = std::mem::take(&mut self.fresh);
-        let close = std::mem::take(&mut self.close_bodies);
-        let mut complete = true;
-        let of_obstacle = |body: u32| surface.is_obstacle(body);
-        let distance_of = |pair: &[u32; 2]| distances[usize::from(pair.iter().any(|body| of_obstacle(*body)))];
-        pairs.clear();
-        for pair @ [a, b] in close.iter().filter(|[a, b]| !of_obstacle(*b) || surface.touches_faces(*a)) {
-            let distance = distance_of(pair);
-            let [a, b] = [*a as usize, *b as usize];
-            let at = |p: u32| if a == b { own(p) } else { boxes[p as usize] };
-            self.choose(surface.vertices_of(a), b, distance, |p| at(p as u32));
-            std::mem::swap(&mut self.first, &mut self.second);
-            self.choose(surface.facets_of(b), a, 0.0, |f| wider(around(at, &surface.facets[f]), distance));
-            std::mem::swap(&mut self.first, &mut self.second);
-            let apart = |p: u32, facet: u32| a != b || !surface.share(&[p], &surface.facets[facet as usize]);
-            self.join(|p, facet| {
-                if apart(p, facet) {
-                    pairs.push([p, facet]);
-                }
-            });
-            complete = self.len() + pairs.len() <= most;
-            if !complete {
-                break;
+        self.parts.resize_with(1, Comparison::default);
+        for (k, range) in threads::parts(self.close_bodies.len(), self.threads, LEAST_PART).enumerate() {
+            if self.parts.len() <= k {
+                self.parts.push(Comparison::default());
             }
+            self.parts[k].range = range;
         }
-        merge(&mut self.vertex_facet, &mut pairs, &mut self.merged);
-        pairs.clear();
-        for pair @ [a, b] in close.iter().filter(|[a, b]| D == 3 && a <= b) {
-            let distance = distance_of(pair);
-            let [a, b] = [*a as usize, *b as usize];
-            let at = |p: u32| if a == b { own(p) } else { boxes[p as usize] };
-            let of = |edge: usize| around(at, &surface.edges[edge]);
-            self.choose(surface.edges_of(a), b, distance, of);
-            std::mem::swap(&mut self.first, &mut self.second);
-            self.choose(surface.edges_of(b), a, 0.0, |edge| wider(of(edge), distance));
-            std::mem::swap(&mut self.first, &mut self.second);
-            let apart = |i: u32, j: u32| {
-                let [first, second] = [i, j].map(|edge| &surface.edges[edge as usize]);
-                a != b || i < j && !surface.share(first, second)
-            };
-            self.join(|i, j| {
-                if apart(i, j) {
-                    pairs.push(if i < j { [i, j] } else { [j, i] });
-                }
-            });
-            complete &= self.len() + pairs.len() <= most;
-            if !complete {
-                break;
-            }
+        let counted = AtomicUsize::new(self.len());
+        let comparisons = Comparisons {
+            surface,
+            boxes,
+            own,
+            bodies: &self.bodies,
+            pairs: &self.close_bodies,
+            distances,
+            simd: self.simd,
+            most,
+            counted: &counted,
+        };
+        threads::each_in_pool(&mut self.parts, |part| comparisons.compare(part));
+        for (list, known) in [&mut self.vertex_facet, &mut self.edge_edge].into_iter().enumerate() {
+            self.fresh.clear();
+            self.parts.iter().for_each(|part| self.fresh.extend(&part.pairs[list]));
+            // Every part is sorted already.
+            self.fresh.sort_by_key(key);
+            merge(known, &self.fresh, &mut self.merged);
         }
-        merge(&mut self.edge_edge, &mut pairs, &mut self.merged);
-        (self.fresh, self.close_bodies) = (pairs, close);
-        complete
+        counted.into_inner() <= most
     }
 
     /// Lists the pairs of bodies whose boxes are closer than the distance for such a pair [m], each in both orders. Also lists
@@ -200,34 +173,6 @@ impl<const D: usize> Candidates<D> {
         }
     }
 
-    /// Collects, in the first list, the features of a body whose boxes are closer than a distance [m] to another body.
-    fn choose(
-        &mut self,
-        features: core::ops::Range<usize>,
-        other: usize,
-        distance: f64,
-        bounds: impl Fn(usize) -> Bounds<D>,
-    ) {
-        let region = wider(self.bodies[other], distance);
-        self.first.clear();
-        let own = features.map(|feature| (feature as u32, bounds(feature)));
-        self.first.extend(own.filter(|(_, own)| meet_boxes(own, &region)));
-    }
-
-    /// Calls `visit` with all pairs of a feature of the first list and a feature of the second list whose boxes overlap.
-    fn join(&mut self, mut visit: impl FnMut(u32, u32)) {
-        if self.second.len() <= FEW || self.first.len() * self.second.len() <= FEW * WIDTH {
-            let Candidates { first, second, columns, simd, .. } = self;
-            columns.fill(second);
-            return simd.run(Overlaps { first, second, columns, visit });
-        }
-        self.grid.fill(self.second.iter().map(|(_, bounds)| *bounds));
-        for (a, bounds) in &self.first {
-            self.grid.touching(bounds, &mut self.found);
-            self.found.iter().for_each(|k| visit(*a, self.second[*k as usize].0));
-        }
-    }
-
     /// The number of pairs.
     pub fn len(&self) -> usize {
         self.vertex_facet.len() + self.edge_edge.len()
@@ -243,8 +188,8 @@ impl<const D: usize> Candidates<D> {
         let pairs = [&self.vertex_facet, &self.edge_edge, &self.fresh, &self.merged];
         8 * pairs.map(Vec::capacity).iter().sum::<usize>()
             + 4 * self.found.capacity()
-            + 16 * D * (self.bodies.capacity() + self.first.capacity() + self.second.capacity())
+            + 16 * D * self.bodies.capacity()
             + self.grid.heap_bytes()
-            + self.columns.heap_bytes()
+            + self.parts.iter().map(Comparison::heap_bytes).sum::<usize>()
     }
 }

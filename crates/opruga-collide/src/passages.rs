@@ -7,7 +7,11 @@ use crate::row::Row;
 use crate::touching::{Touching, Trouble};
 use crate::vector::{dot, subtract};
 use crate::zones::{Led, PointsOfPair, ROUNDING, Zone};
+use opruga_core::threads;
 use opruga_math::Lane;
+
+/// The least number of pairs that a thread checks in one piece. So many pairs take some tens of microseconds.
+const LEAST_PART: usize = 1024;
 
 impl<const D: usize> Touching<D> {
     /// Checks the motion to the end of the step of h [s]: adds the pairs that pass through one another to those listed before.
@@ -18,22 +22,46 @@ impl<const D: usize> Touching<D> {
         self.fresh.clear();
         let mut found = false;
         for with_facet in [true, false] {
-            for k in 0..self.close[usize::from(!with_facet)].len() {
-                let (pair @ [a, b], distance) = self.close[usize::from(!with_facet)][k];
-                if self.is_out_of_reach(pair, with_facet, distance) {
-                    continue;
-                }
-                let [first, second] = if with_facet {
-                    [self.path(&[a]), self.path(&self.surface.facets[b as usize])]
-                } else {
-                    [a, b].map(|edge| self.path(&self.surface.edges[edge as usize]))
-                };
-                if (0..D).all(|d| first[0][d] <= second[1][d] && second[0][d] <= first[1][d]) {
-                    found |= self.look(pair, with_facet, h);
-                }
+            let close = &self.close[usize::from(!with_facet)];
+            let parts = threads::parts(close.len(), self.threads, LEAST_PART);
+            let mut parts: Vec<_> = parts.map(|range| (range, Vec::new())).collect();
+            threads::each_in_pool(&mut parts, |(range, meeting)| {
+                let time = |(pair, distance): &_| self.passage(*pair, with_facet, *distance).map(|time| (*pair, time));
+                meeting.extend(close[range.clone()].iter().filter_map(time));
+            });
+            for (pair, time) in parts.into_iter().flat_map(|(_, meeting)| meeting) {
+                found |= self.look(pair, with_facet, time, h);
             }
         }
         found
+    }
+
+    /// The fraction of the step at which a pair meets that may pass through one another, given its distance at the start of the step
+    /// [m].
+    fn passage(&self, pair @ [a, b]: [u32; 2], with_facet: bool, distance: f64) -> Option<f64> {
+        if self.is_out_of_reach(pair, with_facet, distance) {
+            return None;
+        }
+        let [first, second] = if with_facet {
+            [self.path(&[a]), self.path(&self.surface.facets[b as usize])]
+        } else {
+            [a, b].map(|edge| self.path(&self.surface.edges[edge as usize]))
+        };
+        if (0..D).any(|d| first[0][d] > second[1][d] || second[0][d] > first[1][d]) {
+            return None;
+        }
+        let x0 = &self.before[0];
+        let time = meeting_time(&self.surface, [x0, &self.end], 0.0, pair, with_facet)?;
+        let bodies = self.bodies_of(pair, with_facet);
+        let start = if bodies[0] == bodies[1] {
+            None
+        } else if with_facet {
+            Some(Gap::of_vertex_and_facet(&self.surface, x0, a, b))
+        } else {
+            Gap::of_edges(&self.surface, x0, a, b)
+        };
+        // A pair that starts inside may leave.
+        (!start.is_some_and(|start| start.gap < 0.0)).then_some(time)
     }
 
     /// Whether a pair cannot meet in the step because each of its points travels less than half of the distance between its features at
@@ -64,20 +92,9 @@ impl<const D: usize> Touching<D> {
         [low, high]
     }
 
-    /// Checks one pair.
-    fn look(&mut self, pair: [u32; 2], with_facet: bool, h: f64) -> bool {
-        let x0 = &self.before[0];
-        let ends = [&x0[..], &self.end];
-        let Some(time) = meeting_time(&self.surface, ends, 0.0, pair, with_facet) else { return false };
-        let start = if with_facet {
-            Some(Gap::of_vertex_and_facet(&self.surface, x0, pair[0], pair[1]))
-        } else {
-            Gap::of_edges(&self.surface, x0, pair[0], pair[1])
-        };
-        let bodies = self.bodies_of(pair, with_facet);
-        if start.is_some_and(|start| start.gap < 0.0) && bodies[0] != bodies[1] {
-            return false;
-        }
+    /// Checks one pair that meets at a fraction of the step; returns whether it passes.
+    fn look(&mut self, pair: [u32; 2], with_facet: bool, time: f64, h: f64) -> bool {
+        let ends = [&self.before[0][..], &self.end];
         if self.zones.hold(&self.points_of_pair(pair, with_facet)) {
             return false;
         }

@@ -1,6 +1,7 @@
 //! How far points may move within a step, and whether the present candidates include all pairs that meet in it.
 
 use crate::vector::{Bounds, dot, subtract};
+use opruga_core::threads;
 use opruga_math::Lane;
 
 /// For every point, the box that it does not leave within the step, whatever contact does; and the larger box of the last search
@@ -37,13 +38,31 @@ pub(crate) fn beyond(moves: f64, steps: f64, margin: f64) -> f64 {
     (0.5 * margin).larger((steps * moves).smaller(margin))
 }
 
+/// What the points of a body, or of a part of it, need in the step.
+struct Began {
+    body: u32,
+    push: f64,
+    stale: bool,
+    due: bool,
+}
+
+/// The least number of points that a thread processes in one piece. So many points take some tens of microseconds.
+const LEAST_PART: usize = 4096;
+
 /// An empty box.
 const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 impl<const D: usize> Reach<D> {
     /// Begins a step from the positions of points before and after the free motion [m] and their bodies. Contact may push every
     /// point as far as it moves by itself, plus the distance for separating overlapping bodies.
-    pub(crate) fn begin(&mut self, body: &[u32], [from, to]: [&[[f64; D]]; 2], recovery: f64, margin: f64, steps: f64) {
+    pub(crate) fn begin(
+        &mut self,
+        body: &[u32],
+        [from, to]: [&[[f64; D]]; 2],
+        recovery: f64,
+        (margin, steps): (f64, f64),
+        threads: usize,
+    ) {
         self.push.resize(from.len(), 0.0);
         self.swept.resize(from.len(), [[0.0; D]; 2]);
         if self.found_in.len() != self.swept.len() {
@@ -57,26 +76,42 @@ impl<const D: usize> Reach<D> {
         self.due.fill(false);
         self.body_push.fill(0.0);
         let spare = 0.25 * margin;
-        let boxes = self.push.iter_mut().zip(&mut self.swept).zip(&self.found_in);
-        for (((from, to), ((push, swept), found)), body) in from.iter().zip(to).zip(boxes).zip(body) {
-            let displacement = subtract(to, from);
-            *push = dot(&displacement, &displacement).sqrt() + recovery;
-            let body = *body as usize;
-            self.body_push[body] = push.larger(self.body_push[body]);
-            let (mut least, mut most) = (f64::INFINITY, 0.0);
-            for d in 0..D {
-                let (low, high) = (from[d].smaller(to[d]) - *push, from[d].larger(to[d]) + *push);
-                (swept[0][d], swept[1][d]) = (low, high);
-                let [below, above] = [low - found[0][d], found[1][d] - high];
-                least = below.smaller(above).smaller(least);
-                most = below.larger(above).larger(most);
+        let size = threads::part_size(from.len(), threads, LEAST_PART);
+        let boxes = self.push.chunks_mut(size).zip(self.swept.chunks_mut(size)).zip(self.found_in.chunks(size));
+        let points = from.chunks(size).zip(to.chunks(size)).zip(body.chunks(size));
+        let mut parts: Vec<_> = points.zip(boxes).map(|part| (part, Vec::new())).collect();
+        threads::each_in_pool(&mut parts, |(((points, body), ((push, swept), found)), bodies)| {
+            let own = push.iter_mut().zip(swept.iter_mut()).zip(found.iter()).zip(body.iter());
+            for ((from, to), (((push, swept), found), body)) in points.0.iter().zip(points.1).zip(own) {
+                let displacement = subtract(to, from);
+                *push = dot(&displacement, &displacement).sqrt() + recovery;
+                let (mut least, mut most) = (f64::INFINITY, 0.0);
+                for d in 0..D {
+                    let (low, high) = (from[d].smaller(to[d]) - *push, from[d].larger(to[d]) + *push);
+                    (swept[0][d], swept[1][d]) = (low, high);
+                    let [below, above] = [low - found[0][d], found[1][d] - high];
+                    least = below.smaller(above).smaller(least);
+                    most = below.larger(above).larger(most);
+                }
+                let wide = beyond(*push, steps, margin);
+                // NaN is never covered.
+                let covered = least >= spare && most <= MOST_WIDTHS * wide;
+                let lasting = least >= spare + 0.5 * (wide - spare);
+                if bodies.last().is_none_or(|last: &Began| last.body != *body) {
+                    bodies.push(Began { body: *body, push: 0.0, stale: false, due: false });
+                }
+                if let Some(last) = bodies.last_mut() {
+                    last.push = push.larger(last.push);
+                    last.stale |= !covered;
+                    last.due |= !lasting;
+                }
             }
-            let wide = beyond(*push, steps, margin);
-            // NaN is never covered.
-            let covered = least >= spare && most <= MOST_WIDTHS * wide;
-            let lasting = least >= spare + 0.5 * (wide - spare);
-            self.stale[body] |= !covered;
-            self.due[body] |= !lasting;
+        });
+        for Began { body, push, stale, due } in parts.into_iter().flat_map(|(_, bodies)| bodies) {
+            let body = body as usize;
+            self.body_push[body] = push.larger(self.body_push[body]);
+            self.stale[body] |= stale;
+            self.due[body] |= due;
         }
     }
 

@@ -206,14 +206,14 @@ impl<const D: usize> Row<D> {
         out
     }
 
-    /// Takes one turn of a row that acts on its points: sets the normal impulse that its bound needs, then the friction that
-    /// this impulse allows. Returns the change of its velocity [m/s].
+    /// Takes one turn of a row that acts on its points, which have these indices in the lists: sets the normal impulse that its bound
+    /// needs, then the friction that this impulse allows. Returns the change of its velocity [m/s].
     #[inline(always)]
-    pub(crate) fn solve(&mut self, inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) -> f64 {
+    pub(crate) fn solve(&mut self, points: &[u32; 4], inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) -> f64 {
         // Velocities and inverse masses of its points, which are at most D + 1, are read from memory once.
         let (mut own, mut inverse) = ([[0.0; D]; 4], [[0.0; D]; 4]);
         for k in 0..=D {
-            let p = self.points[k] as usize;
+            let p = points[k] as usize;
             (own[k], inverse[k]) = (v[p], inverse_mass[p]);
         }
         let mean = |own: &[[f64; D]; 4]| {
@@ -260,7 +260,7 @@ impl<const D: usize> Row<D> {
             // The first point is written last: a contact with an obstacle has no other points, and its unused entries repeat
             // the first one.
             for k in (0..=D).rev() {
-                v[self.points[k] as usize] = own[k];
+                v[points[k] as usize] = own[k];
             }
         }
         changed

@@ -113,7 +113,7 @@ impl<const D: usize> Touching<D> {
 const LEAST_PART: usize = 1024;
 
 /// Moves all of a list behind another one.
-fn append<T>(to: &mut Vec<T>, from: &mut Vec<T>) {
+pub(crate) fn append<T>(to: &mut Vec<T>, from: &mut Vec<T>) {
     if to.is_empty() {
         std::mem::swap(to, from);
     } else {

@@ -8,9 +8,21 @@ impl<const D: usize> Touching<D> {
         let [x0, x1] = [&self.before[0], &self.after[0]];
         if self.at_once {
             // As long as the contact forces are not those of the equilibrium, the free motion alone could take bodies anywhere.
-            self.reach.begin(&self.surface.body, [x0, x0], self.thickest[0] + self.margin, self.margin, 0.0);
+            self.reach.begin(
+                &self.surface.body,
+                [x0, x0],
+                self.thickest[0] + self.margin,
+                (self.margin, 0.0),
+                self.threads,
+            );
         } else {
-            self.reach.begin(&self.surface.body, [x0, x1], h * self.laws.recovery_speed, self.margin, STEPS);
+            self.reach.begin(
+                &self.surface.body,
+                [x0, x1],
+                h * self.laws.recovery_speed,
+                (self.margin, STEPS),
+                self.threads,
+            );
         }
         self.clearance.follow(&self.surface, x0);
     }
@@ -23,6 +35,7 @@ impl<const D: usize> Touching<D> {
         }
         self.counts.searches += 1;
         let Touching { surface, laws, reach, clearance, candidates, margin, thickest, most, .. } = self;
+        candidates.threads = self.threads;
         for steps in [if self.at_once { 0.0 } else { STEPS }, 0.0] {
             reach.take_due();
             reach.widen(&surface.body, *margin, steps);
@@ -42,7 +55,7 @@ impl<const D: usize> Touching<D> {
             clearance.forget_own();
         }
         reach.forget();
-        Err(Trouble::TooMany { found: self.candidates.len() })
+        Err(Trouble::TooMany { found: self.most + 1 })
     }
 
     /// Extends the boxes of points to their end positions; returns whether any box had to be extended.

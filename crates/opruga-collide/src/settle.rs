@@ -3,30 +3,47 @@
 use crate::impulses::part;
 use crate::touching::{Touching, acting};
 use crate::vector::{dot, subtract};
+use opruga_core::threads;
 use opruga_math::Lane;
 
 /// The fraction of the thickness by which pairs may be too close before they are separated. Within this fraction the surfaces
 /// themselves do not overlap, and errors that the sweeps leave do not move anything.
 pub(crate) const OVERLAP: f64 = 0.01;
 
+/// The least number of points that a thread moves in one piece. So many points take some ten microseconds.
+const LEAST_PART: usize = 4096;
+
 impl<const D: usize> Touching<D> {
     /// Moves the points with their new velocities, and separates overlapping ones.
     pub(crate) fn settle(&mut self, h: f64) {
         for row in &self.rows {
-            if row.normal_impulse > 0.0 && !row.of_obstacle {
-                acting(&self.spread, row).for_each(|(p, _)| self.touched[p as usize] = true);
-            }
+            let (points, weights) = row.on(&self.spread);
+            let presses = row.normal_impulse > 0.0 && !row.of_obstacle;
+            // Without branches, because nobody can predict which points have a weight.
+            points.iter().zip(weights).for_each(|(p, w)| self.touched[*p as usize] |= presses & (*w != 0.0));
         }
         self.recover(h);
-        self.end.clone_from(&self.after[0]);
-        for (p, _) in self.touched.iter().enumerate().filter(|(_, touched)| **touched) {
-            for d in (0..D).filter(|d| self.inverse_mass[p][*d] > 0.0) {
-                self.end[p][d] = self.before[0][p][d] + (h * self.v[p][d] + self.moved[p][d]);
+        let Touching { before: [before, _], after: [free, _], end, moved, v, touched, inverse_mass, coupled, .. } =
+            self;
+        end.resize(free.len(), [0.0; D]);
+        let size = threads::part_size(end.len(), self.threads, LEAST_PART);
+        let mut parts: Vec<_> = end.chunks_mut(size).zip(moved.chunks_mut(size)).enumerate().collect();
+        threads::each_in_pool(&mut parts, |(part, (end, moved))| {
+            let first = *part * size;
+            end.copy_from_slice(&free[first..first + end.len()]);
+            for (k, (end, moved)) in end.iter_mut().zip(moved.iter_mut()).enumerate() {
+                let p = first + k;
+                if !touched[p] {
+                    continue;
+                }
+                for d in (0..D).filter(|d| inverse_mass[p][*d] > 0.0) {
+                    end[d] = before[p][d] + (h * v[p][d] + moved[d]);
+                }
+                if coupled.body_of(p as u32).is_none() {
+                    *moved = [0.0; D];
+                }
             }
-            if self.coupled.body_of(p as u32).is_none() {
-                self.moved[p] = [0.0; D];
-            }
-        }
+        });
         self.lead_carried();
     }
 

@@ -82,6 +82,22 @@ impl Spread {
         if head[3] == ELSEWHERE { &self.points[head[0] as usize..(head[0] + head[1]) as usize] } else { &head[..=D] }
     }
 
+    /// The weights of these points; all are 1 for points that are not in this list.
+    #[inline(always)]
+    pub(crate) fn weights_of<'a, const D: usize>(&'a self, head: &'a [u32; 4]) -> &'a [f64] {
+        if Self::is_elsewhere(head) {
+            &self.weights[head[0] as usize..(head[0] + head[1]) as usize]
+        } else {
+            &[1.0; 4][..=D]
+        }
+    }
+
+    /// Whether a head represents points in this list, or none.
+    #[inline(always)]
+    pub(crate) fn is_elsewhere(head: &[u32; 4]) -> bool {
+        head[3] == ELSEWHERE
+    }
+
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         4 * self.points.capacity() + 8 * self.weights.capacity()

@@ -5,13 +5,14 @@ use crate::clearance::Clearance;
 use crate::coupled::{Coupled, Respond};
 use crate::found::Found;
 use crate::gap::Gap;
-use crate::impulses::{Problem, Turns};
+use crate::impulses::Problem;
 use crate::law::Laws;
 use crate::reach::Reach;
 use crate::reports::{self, Report};
-use crate::row::{OBSTACLE_BIT, Row};
+use crate::row::Row;
 use crate::spread::Spread;
 use crate::surface::Surface;
+use crate::turns::Turns;
 use crate::vector::{dot, length, subtract};
 use crate::zones::Zones;
 use opruga_core::contacts::Touch;
@@ -86,9 +87,10 @@ pub struct Touching<const D: usize> {
     pub(crate) inactive: Vec<Row<D>>,
     /// Features and impulses of the previous substep, ascending.
     pub(crate) last: Vec<(u64, f64, [f64; D])>,
-    /// Whether the obstacles of a point are among the rows; and the points whose obstacles are requested.
-    known: Vec<bool>,
-    asked: Vec<u32>,
+    /// Whether the obstacles of a point are among the rows, or are requested; and the points whose obstacles are requested, ascending.
+    pub(crate) known: Vec<bool>,
+    pub(crate) asks: Vec<bool>,
+    pub(crate) asked: Vec<u32>,
     pub(crate) v: Vec<[f64; D]>,
     pub(crate) moved: Vec<[f64; D]>,
     /// Positions at an impact within a step.
@@ -160,7 +162,7 @@ impl Counts {
 pub enum Trouble {
     /// There are more pairs than the limit.
     TooMany {
-        /// The number found before the search ended.
+        /// The number at which the search ended.
         found: usize,
     },
     /// Surfaces that a barrier has to keep apart already meet.
@@ -177,7 +179,7 @@ pub enum Trouble {
 
 /// The contacts of a point with obstacles: a callback with the number of the point, its position at the start and the end of the
 /// step, and the search distance [m].
-pub type Obstacles<'a, const D: usize> = &'a dyn Fn(u32, &[f64; D], &[f64; D], f64, &mut dyn FnMut(Touch<D>));
+pub type Obstacles<'a, const D: usize> = &'a (dyn Fn(u32, &[f64; D], &[f64; D], f64, &mut dyn FnMut(Touch<D>)) + Sync);
 
 impl<const D: usize> Touching<D> {
     /// Discards impulses and reports at the beginning of a frame. Also discards candidates if the laws have changed.
@@ -394,7 +396,7 @@ impl<const D: usize> Touching<D> {
         self.v.clone_from(&self.after[1]);
         self.known.clear();
         self.known.resize(self.surface.points(), false);
-        self.hold_points(h, obstacles);
+        self.hold_points(0, h, obstacles);
         self.coupled.begin();
         if !self.weigh_coupled(0, &mut respond) {
             return false;
@@ -406,13 +408,24 @@ impl<const D: usize> Touching<D> {
         let at_rest = self.at_once.then_some(self.thickest[0] / h);
         self.turns.begin(self.surface.points());
         loop {
+            let threads = self.threads;
             let Touching { rows, spread, inverse_mass, coupled, v, turns, surface, laws, after, has_budget, .. } =
                 &mut *self;
             let [_, free] = &*after;
             turns.find_approach(rows, spread, (&surface.body, laws.class.len()), inverse_mass, free);
             let body = &surface.body;
-            let problem =
-                Problem { rows, spread, inverse_mass, coupled, v, turns, at_rest, has_budget: *has_budget, body };
+            let problem = Problem {
+                rows,
+                spread,
+                inverse_mass,
+                coupled,
+                v,
+                turns,
+                at_rest,
+                has_budget: *has_budget,
+                body,
+                threads,
+            };
             self.counts.turns += problem.solve() as u64;
             self.touched.clear();
             self.touched.resize(self.surface.points(), false);
@@ -421,7 +434,7 @@ impl<const D: usize> Touching<D> {
             if !self.activate() {
                 break;
             }
-            self.hold_points(h, obstacles);
+            self.hold_points(known, h, obstacles);
             if !self.weigh_coupled(known, &mut respond) {
                 return false;
             }
@@ -501,45 +514,6 @@ impl<const D: usize> Touching<D> {
         self.last.retain(|(_, along, _)| *along > 0.0);
     }
 
-    /// Adds the contacts between obstacles and the points of all present contacts: bodies must not push these points through
-    /// obstacles.
-    fn hold_points(&mut self, h: f64, obstacles: Option<Obstacles<'_, D>>) {
-        let Some(obstacles) = obstacles else { return };
-        self.asked.clear();
-        let surface = &self.surface;
-        for row in &self.rows {
-            let coupled = &self.coupled;
-            // Coupled bodies account for obstacles themselves when they solve for their end positions.
-            let asks = |p: u32| !surface.is_of_obstacle(p) && coupled.body_of(p).is_none();
-            for (p, _) in acting(&self.spread, row).filter(|(p, _)| asks(*p)) {
-                let known = &mut self.known[p as usize];
-                if !*known {
-                    *known = true;
-                    self.asked.push(p);
-                }
-            }
-        }
-        self.asked.sort_unstable();
-        for p in &self.asked {
-            let p = *p;
-            let (x0, x1) = (self.before[0][p as usize], self.after[0][p as usize]);
-            let travel = length(&subtract(&x1, &x0));
-            let reach = travel + h * length(&self.v[p as usize]) + self.margin;
-            let (rows, spread, inverse_mass) = (&mut self.rows, &self.spread, &self.inverse_mass);
-            obstacles(p, &x0, &x1, reach, &mut |touch: Touch<D>| {
-                let id = OBSTACLE_BIT | u64::from(p) << 31 | touch.surface as u64;
-                let mut row = Row::new(id, ([p; 4], [1.0, 0.0, 0.0, 0.0]), touch.normal, touch.friction);
-                row.gap = touch.gap_before;
-                row.carry = touch.velocity;
-                row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
-                row.of_obstacle = true;
-                if row.can_move(spread, inverse_mass) {
-                    rows.push(row);
-                }
-            });
-        }
-    }
-
     /// Starts from the impulses of the previous substep.
     fn start_warm(&mut self) {
         let mut k = 0;
@@ -572,6 +546,7 @@ impl<const D: usize> Touching<D> {
             + self.clearance.heap_bytes()
             + size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity() + self.inactive.capacity())
             + self.found.iter().map(Found::heap_bytes).sum::<usize>()
+            + self.turns.heap_bytes()
     }
 }
 

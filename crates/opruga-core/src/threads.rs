@@ -5,6 +5,7 @@
 //! world), and they stay awake until it returns. Work that is submitted to this module in the meantime is distributed to them.
 //! Work is distributed only if `threads` is more than one.
 
+use core::ops::Range;
 use opruga_math::Team;
 use rayon::prelude::*;
 use std::cell::RefCell;
@@ -69,9 +70,24 @@ pub fn each<T: Send>(threads: usize, pieces: &mut [T], work: impl Fn(&mut T) + S
 /// pieces that take tens of microseconds, between longer work on one thread.
 pub fn each_in_pool<T: Send>(pieces: &mut [T], work: impl Fn(&mut T) + Sync + Send) {
     match pieces {
+        [] => {}
         [piece] => work(piece),
         _ => pieces.par_iter_mut().for_each(work),
     }
+}
+
+/// Divides a list into parts for [`each_in_pool`]: one part for a single thread, otherwise four for each thread, so that threads
+/// that finish early take over work of others. Only the last part may have fewer entries than `least`. An empty list has one
+/// empty part.
+pub fn parts(length: usize, threads: usize, least: usize) -> impl Iterator<Item = Range<usize>> {
+    let size = part_size(length, threads, least);
+    (0..length.max(1)).step_by(size).map(move |first| first..length.min(first + size))
+}
+
+/// The number of entries in each of these parts, except the last one; at least 1.
+pub fn part_size(length: usize, threads: usize, least: usize) -> usize {
+    let size = if threads < 2 { length } else { (length / (4 * threads)).max(least) };
+    size.max(1)
 }
 
 /// Does the same with parts of a slice: each piece of work receives its own `length` entries.

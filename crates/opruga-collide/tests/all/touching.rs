@@ -445,18 +445,18 @@ fn carried_points_meet() {
     }
 }
 
-/// The candidates of many rings that fill a box are divided among threads.
+/// Candidates, gaps, sets of contacts, contacts with walls and passages of many rings that fill a box are divided among threads.
 #[test]
 fn threads_change_no_bit_of_many_rings() {
     let run = |threads: usize| {
-        let at = |k: i32| [0.51 * f64::from(k % 12) + 0.005 * f64::from(k / 12 % 3), 0.3 + 0.51 * f64::from(k / 12)];
-        let bodies: Vec<_> = (0..120).map(|k| (ring(36, 0.25), at(k), [0.0; 2])).collect();
+        let at = |k: i32| [0.51 * f64::from(k % 20) + 0.005 * f64::from(k / 20 % 3), 0.3 + 0.51 * f64::from(k / 20)];
+        let bodies: Vec<_> = (0..480).map(|k| (ring(36, 0.25), at(k), [0.0; 2])).collect();
         let mut toy = Toy::new(&bodies, law(0.3, 0.0));
-        (toy.gas, toy.gravity, toy.touching.threads) = (5.0, 9.81, threads);
-        toy.floor = vec![(1, 0.0, 1.0), (0, -0.26, 1.0), (0, 0.51 * 11.0 + 0.27, -1.0)];
+        (toy.gas, toy.gravity, toy.touching.threads) = (60.0, 9.81, threads);
+        toy.floor = vec![(1, 0.0, 1.0), (0, -0.26, 1.0), (0, 0.51 * 19.0 + 0.27, -1.0)];
         (0..200).for_each(|_| toy.step(1.0 / 1920.0));
         let counts = toy.touching.counts;
-        assert!(counts.candidates > 4096 * counts.steps && counts.contacts > 100 * counts.steps, "{counts:?}");
+        assert!(counts.candidates > 4096 * counts.steps && counts.contacts > 2048 * counts.steps, "{counts:?}");
         toy.touching.after.iter().flatten().flatten().map(|c| c.to_bits()).collect::<Vec<_>>()
     };
     let one = run(1);

@@ -1,0 +1,59 @@
+//! Contacts of points with obstacles, beside contacts between bodies.
+
+use crate::row::{OBSTACLE_BIT, Row};
+use crate::rows::append;
+use crate::touching::{Obstacles, Touching};
+use crate::vector::{length, subtract};
+use opruga_core::contacts::Touch;
+use opruga_core::threads;
+
+/// The least number of points whose contacts with obstacles a thread finds in one piece. So many points take some tens of microseconds.
+const LEAST_POINTS: usize = 256;
+
+impl<const D: usize> Touching<D> {
+    /// Adds the contacts between obstacles and the points of all present contacts from an index on: bodies must not push these points
+    /// through obstacles.
+    pub(crate) fn hold_points(&mut self, first: usize, h: f64, obstacles: Option<Obstacles<'_, D>>) {
+        let Some(obstacles) = obstacles else { return };
+        self.asks.resize(self.surface.points(), false);
+        for row in &self.rows[first..] {
+            let (points, weights) = row.on(&self.spread);
+            // Without branches, because nobody can predict which points have a weight.
+            points.iter().zip(weights).for_each(|(p, weight)| self.asks[*p as usize] |= *weight != 0.0);
+        }
+        self.asked.clear();
+        for p in 0..self.asks.len() {
+            let asks = std::mem::take(&mut self.asks[p]) && !std::mem::replace(&mut self.known[p], true);
+            // Coupled bodies account for obstacles themselves when they solve for their end positions.
+            if asks && !self.surface.is_of_obstacle(p as u32) && self.coupled.body_of(p as u32).is_none() {
+                self.asked.push(p as u32);
+            }
+        }
+        let parts = threads::parts(self.asked.len(), self.threads, LEAST_POINTS);
+        let mut parts: Vec<_> = parts.map(|range| (range, Vec::new())).collect();
+        parts[0].1 = std::mem::take(&mut self.rows);
+        let touching = &*self;
+        threads::each_in_pool(&mut parts, |(range, rows)| {
+            touching.asked[range.clone()].iter().for_each(|p| touching.hold_point(*p, h, obstacles, rows));
+        });
+        parts.iter_mut().for_each(|(_, rows)| append(&mut self.rows, rows));
+    }
+
+    /// Adds the contacts between obstacles and one point.
+    fn hold_point(&self, p: u32, h: f64, obstacles: Obstacles<'_, D>, rows: &mut Vec<Row<D>>) {
+        let (x0, x1) = (self.before[0][p as usize], self.after[0][p as usize]);
+        let travel = length(&subtract(&x1, &x0));
+        let reach = travel + h * length(&self.v[p as usize]) + self.margin;
+        obstacles(p, &x0, &x1, reach, &mut |touch: Touch<D>| {
+            let id = OBSTACLE_BIT | u64::from(p) << 31 | touch.surface as u64;
+            let mut row = Row::new(id, ([p; 4], [1.0, 0.0, 0.0, 0.0]), touch.normal, touch.friction);
+            row.gap = touch.gap_before;
+            row.carry = touch.velocity;
+            row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
+            row.of_obstacle = true;
+            if row.can_move(&self.spread, &self.inverse_mass) {
+                rows.push(row);
+            }
+        });
+    }
+}

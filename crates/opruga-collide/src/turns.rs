@@ -1,0 +1,523 @@
+//! Sets of contacts that points connect, and sweeps over one set.
+
+use crate::coupled::Coupled;
+use crate::impulses::{COUPLED_TOLERANCE, TOLERANCE};
+use crate::row::Row;
+use crate::spread::Spread;
+use crate::vector::{dot, length, subtract};
+use core::ops::Range;
+use opruga_core::threads;
+use opruga_math::Lane;
+
+/// The sets of rows that points connect. Also the times at which rows were last solved and at which their velocities last changed,
+/// counted in turns of rows. They are stored separately from the rows, which are large.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Turns<const D: usize> {
+    /// The turn in which the velocity of each point last changed.
+    stamps: Vec<u64>,
+    /// The points of the rows, and their last turns; 0 before the first. In a set whose points respond by themselves, points are
+    /// indices among those of the set.
+    heads: Vec<([u32; 4], u64)>,
+    now: u64,
+    /// The points of all sets whose points respond by themselves, and the first one of every set.
+    alone: Alone<D>,
+    first_alone: Vec<u32>,
+    /// For each point, another one to which rows connect it, or the point itself.
+    parent: Vec<u32>,
+    /// The number of the set to which a point is connected, by its root; and the start of the rows of each set, in the order in
+    /// which they are found.
+    number: Vec<u32>,
+    starts: Vec<u32>,
+    joined: Vec<u32>,
+    /// The position of every sorted row in the order of features.
+    order: Vec<u32>,
+    sorted: Vec<Row<D>>,
+    /// The points of every row that can move, in the order of features; and whether some points of a set do not respond by
+    /// themselves.
+    movers: Vec<[u32; 4]>,
+    mixed: Vec<bool>,
+    approach: Approach,
+}
+
+/// Points that respond by themselves, one set after the other. Threads can solve for different sets at the same time because
+/// every set has its own copies of what its rows read and write.
+#[derive(Clone, Debug, Default)]
+struct Alone<const D: usize> {
+    /// The point of every copy, and whether the rows of the set move it. Points that they do not move may have several copies.
+    points: Vec<(u32, bool)>,
+    v: Vec<[f64; D]>,
+    inverse_mass: Vec<[f64; D]>,
+    stamps: Vec<u64>,
+}
+
+/// The mean approach velocity of the contacts of connected bodies [m/s]: where one pair crashes, others may be at rest. Bodies
+/// that are not connected have no influence.
+#[derive(Clone, Debug, Default)]
+struct Approach {
+    /// For each body, another one to which it is connected, or the body itself.
+    parent: Vec<u32>,
+    /// For each root of connected bodies: first the sum of the approach velocities and the number of contacts, then the mean.
+    mean: Vec<(f64, u32)>,
+}
+
+impl Approach {
+    fn root(&self, mut body: u32) -> u32 {
+        while self.parent[body as usize] != body {
+            body = self.parent[body as usize];
+        }
+        body
+    }
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        self.parent[high as usize] = low;
+    }
+
+    /// The mean velocity of the bodies connected to one [m/s].
+    fn of(&self, body: u32) -> f64 {
+        self.mean[self.root(body) as usize].0
+    }
+}
+
+/// Whether a point of a row can move.
+#[inline(always)]
+fn moves<const D: usize>(row: &Row<D>, k: usize, inverse_mass: &[[f64; D]]) -> bool {
+    let p = row.points[k] as usize;
+    let mut any = false;
+    for d in 0..D {
+        any |= inverse_mass[p][d] != 0.0;
+    }
+    any & (row.weights[k] != 0.0)
+}
+
+/// The points of a row that can move.
+fn movable<'a, const D: usize>(
+    spread: &'a Spread,
+    row: &'a Row<D>,
+    inverse_mass: &'a [[f64; D]],
+) -> impl Iterator<Item = u32> + 'a {
+    let (points, weights) = row.on(spread);
+    let moves = |(p, w): &(&u32, &f64)| **w != 0.0 && inverse_mass[**p as usize] != [0.0; D];
+    points.iter().zip(weights).filter(moves).map(|(p, _)| *p)
+}
+
+/// The points of a head in the list of points that can move. A point may occur more than once.
+fn movers_of<'a, const D: usize>(
+    head: &'a [u32; 4],
+    spread: &'a Spread,
+    inverse_mass: &'a [[f64; D]],
+) -> impl Iterator<Item = u32> + 'a {
+    // Heads that list points list only those that can move.
+    let all = !Spread::is_elsewhere(head);
+    let own = spread.points_of::<D>(head).iter().zip(spread.weights_of::<D>(head));
+    own.filter(move |(p, w)| all || **w != 0.0 && inverse_mass[**p as usize] != [0.0; D]).map(|(p, _)| *p)
+}
+
+impl<const D: usize> Turns<D> {
+    /// Begins a step.
+    pub(crate) fn begin(&mut self, points: usize) {
+        if self.parent.len() != points {
+            self.stamps.resize(points, 0);
+            self.parent = (0..points as u32).collect();
+            self.number.resize(points, 0);
+        }
+    }
+
+    fn root(&mut self, mut point: u32) -> u32 {
+        while self.parent[point as usize] != point {
+            // Path halving, for later searches.
+            self.parent[point as usize] = self.parent[self.parent[point as usize] as usize];
+            point = self.parent[point as usize];
+        }
+        point
+    }
+
+    fn join_points(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        self.parent[high as usize] = low;
+    }
+
+    /// The start of the rows of each connected set, and the end of the last.
+    pub(crate) fn starts(&self) -> &[u32] {
+        &self.starts
+    }
+
+    /// The position of every row in the order of features.
+    pub(crate) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// The largest velocity that sweeps may leave in a row [m/s].
+    pub(crate) fn enough(
+        &self,
+        row: &Row<D>,
+        spread: &Spread,
+        inverse_mass: &[[f64; D]],
+        body: &[u32],
+        exact: bool,
+    ) -> f64 {
+        let first = movable(spread, row, inverse_mass).next();
+        let tolerance = if exact { COUPLED_TOLERANCE } else { TOLERANCE };
+        first.map_or(0.0, |p| tolerance * self.approach.of(body[p as usize]))
+    }
+
+    /// Lists the points of every row that can move. A row with fewer points repeats its first one.
+    fn find_movers(&mut self, rows: &[Row<D>], inverse_mass: &[[f64; D]]) {
+        self.movers.clear();
+        self.movers.extend(rows.iter().map(|row| {
+            if row.spread[1] > 0 {
+                return row.head();
+            }
+            // Without branches, because nobody can predict which points have a weight.
+            let (mut head, mut count) = ([0; 4], 0);
+            for k in 0..=D {
+                head[count] = row.points[k];
+                count += usize::from(moves(row, k, inverse_mass));
+            }
+            let first = head[0];
+            head.iter_mut().enumerate().for_each(|(k, p)| *p = if k < count { *p } else { first });
+            if count == 0 { Spread::NOBODY } else { head }
+        }));
+    }
+
+    /// Computes the mean approach velocities of rows, given the body of every point, the number of bodies, and the velocities
+    /// before contact [m/s].
+    pub(crate) fn find_approach(
+        &mut self,
+        rows: &[Row<D>],
+        spread: &Spread,
+        (body, bodies): (&[u32], usize),
+        inverse_mass: &[[f64; D]],
+        v: &[[f64; D]],
+    ) {
+        self.find_movers(rows, inverse_mass);
+        let Turns { approach, movers, .. } = self;
+        approach.parent.clear();
+        approach.parent.extend(0..bodies as u32);
+        approach.mean.clear();
+        approach.mean.resize(bodies, (0.0, 0));
+        for head in &*movers {
+            let mut own = movers_of(head, spread, inverse_mass).map(|p| body[p as usize]);
+            let Some(first) = own.next() else { continue };
+            own.filter(|other| *other != first).for_each(|other| approach.join(first, other));
+        }
+        for (row, head) in rows.iter().zip(&*movers) {
+            let Some(first) = movers_of(head, spread, inverse_mass).next() else { continue };
+            let u = subtract(&row.mean(spread, v), &row.carry);
+            let speed = (row.target - dot(&u, &row.normal)).larger(0.0);
+            let root = approach.root(body[first as usize]) as usize;
+            let (sum, count) = &mut approach.mean[root];
+            *sum += if row.friction > 0.0 { length(&u).larger(speed) } else { speed };
+            *count += 1;
+        }
+        for (sum, count) in approach.mean.iter_mut().filter(|(_, count)| *count > 0) {
+            *sum /= f64::from(*count);
+        }
+    }
+
+    /// Sorts rows into connected sets, each in the order of features, so that rows that are solved together are stored together.
+    /// Their approach velocities must be known.
+    pub(crate) fn join(
+        &mut self,
+        rows: &mut Vec<Row<D>>,
+        spread: &Spread,
+        inverse_mass: &[[f64; D]],
+        coupled: &Coupled<D>,
+    ) {
+        if !rows.is_sorted_by_key(|row| row.id) {
+            rows.sort_by_key(|row| row.id);
+            self.find_movers(rows, inverse_mass);
+        }
+        let movers = std::mem::take(&mut self.movers);
+        let any_coupled = coupled.count() > 0;
+        let coupled_row = |k: usize| Some(&rows[k]).filter(|row| any_coupled && row.coupled);
+        // Points that cannot move do not connect rows.
+        for (k, head) in movers.iter().enumerate() {
+            let mut begin = |p: u32| {
+                self.parent[p as usize] = p;
+                self.number[p as usize] = u32::MAX;
+            };
+            movers_of(head, spread, inverse_mass).for_each(&mut begin);
+            if let Some(row) = coupled_row(k) {
+                coupled.followers(row.on(spread), begin);
+            }
+        }
+        for (k, head) in movers.iter().enumerate() {
+            let mut own = movers_of(head, spread, inverse_mass);
+            let Some(first) = own.next() else { continue };
+            for p in own.filter(|p| *p != first) {
+                self.join_points(first, p);
+            }
+            if let Some(row) = coupled_row(k) {
+                coupled.followers(row.on(spread), |p| self.join_points(first, p));
+            }
+        }
+        // Counting sort from the back.
+        self.starts.clear();
+        self.joined.clear();
+        self.mixed.clear();
+        for (k, head) in movers.iter().enumerate() {
+            let root = movers_of(head, spread, inverse_mass).next().map_or(0, |p| self.root(p)) as usize;
+            if self.number[root] == u32::MAX {
+                self.number[root] = self.starts.len() as u32;
+                self.starts.push(0);
+                self.mixed.push(false);
+            }
+            let number = self.number[root];
+            self.starts[number as usize] += 1;
+            self.mixed[number as usize] |= Spread::is_elsewhere(head) || coupled_row(k).is_some();
+            self.joined.push(number);
+        }
+        let mut sum = 0;
+        for start in &mut self.starts {
+            sum += *start;
+            *start = sum;
+        }
+        self.order.resize(rows.len(), 0);
+        for (k, number) in self.joined.iter().enumerate().rev() {
+            let start = &mut self.starts[*number as usize];
+            *start -= 1;
+            self.order[*start as usize] = k as u32;
+        }
+        self.starts.push(sum);
+        self.sort(rows, &movers, inverse_mass);
+        self.movers = movers;
+    }
+
+    /// Puts the rows into the new order, and copies the points that respond by themselves.
+    fn sort(&mut self, rows: &mut Vec<Row<D>>, movers: &[[u32; 4]], inverse_mass: &[[f64; D]]) {
+        let Turns { heads, alone, first_alone, starts, number, order, mixed, sorted, .. } = self;
+        heads.clear();
+        sorted.clear();
+        alone.points.clear();
+        first_alone.clear();
+        for (ends, mixed) in starts.windows(2).zip(mixed) {
+            let own = &order[ends[0] as usize..ends[1] as usize];
+            let first = alone.points.len() as u32;
+            first_alone.push(first);
+            if *mixed {
+                sorted.extend(own.iter().map(|k| rows[*k as usize]));
+                heads.extend(own.iter().map(|k| (movers[*k as usize], 0)));
+                continue;
+            }
+            own.iter().flat_map(|k| &movers[*k as usize]).for_each(|p| number[*p as usize] = u32::MAX);
+            for k in own {
+                let row = &rows[*k as usize];
+                sorted.push(*row);
+                let (mut head, mut end) = ([0; 4], alone.points.len());
+                alone.points.resize(end + D + 1, (0, false));
+                for k in 0..=D {
+                    let (p, moves) = (row.points[k], moves(row, k, inverse_mass));
+                    let known = number[p as usize];
+                    let is_new = !moves | (known == u32::MAX);
+                    head[k] = if is_new { end as u32 - first } else { known };
+                    number[p as usize] = if moves { head[k] } else { known };
+                    alone.points[end] = (p, moves);
+                    end += usize::from(is_new);
+                }
+                alone.points.truncate(end);
+                heads.push((head, 0));
+            }
+        }
+        std::mem::swap(rows, sorted);
+        first_alone.push(alone.points.len() as u32);
+        alone.stamps.clear();
+        alone.stamps.resize(alone.points.len(), 0);
+        alone.inverse_mass.clear();
+        alone.inverse_mass.extend(alone.points.iter().map(|(p, _)| inverse_mass[*p as usize]));
+    }
+
+    /// A set whose points do not all respond by themselves, with the mean approach velocity of its bodies [m/s]; none for other
+    /// sets. `body` is the body of every point.
+    pub(crate) fn coupled_set<'a>(
+        &'a mut self,
+        set: usize,
+        rows: &'a mut [Row<D>],
+        (inverse_mass, v): (&'a [[f64; D]], &'a mut [[f64; D]]),
+        (spread, body): (&Spread, &[u32]),
+    ) -> Option<(Sweeps<'a, D>, f64)> {
+        if self.first_alone[set] < self.first_alone[set + 1] {
+            return None;
+        }
+        let range = self.starts[set] as usize..self.starts[set + 1] as usize;
+        let (rows, heads) = (&mut rows[range.clone()], &mut self.heads[range]);
+        let first = spread.points_of::<D>(&heads[0].0).first();
+        let approach = first.map_or(0.0, |p| self.approach.of(body[*p as usize]));
+        let (stamps, now) = (&mut self.stamps[..], &mut self.now);
+        Some((Sweeps { rows, heads, inverse_mass, v, stamps, now }, approach))
+    }
+
+    /// Solves for the sets whose points respond by themselves, with at most `most` sweeps, on the threads of the pool if there are
+    /// several. Sweeps may leave velocities of `tolerance` times the mean approach velocity; `body` is the body of every point.
+    /// Returns the number of turns.
+    pub(crate) fn solve_alone(
+        &mut self,
+        rows: &mut [Row<D>],
+        (v, body): (&mut [[f64; D]], &[u32]),
+        (most, tolerance): (usize, f64),
+        threads: usize,
+    ) -> usize {
+        let Turns { heads, alone, first_alone, starts, approach, .. } = self;
+        let Alone { points, v: own, inverse_mass, stamps } = alone;
+        own.clear();
+        own.extend(points.iter().map(|(p, _)| v[*p as usize]));
+        let mut parts = Vec::new();
+        let least = if threads < 2 { rows.len() } else { (rows.len() / (4 * threads)).max(LEAST_PART) };
+        let (mut rows, mut heads) = (rows, &mut heads[..]);
+        let (mut copies, mut stamps) = (&mut own[..], &mut stamps[..]);
+        let mut first = 0;
+        for end in 1..first_alone.len() {
+            let row_count = (starts[end] - starts[first]) as usize;
+            if row_count < least && end + 1 < first_alone.len() {
+                continue;
+            }
+            let count = (first_alone[end] - first_alone[first]) as usize;
+            let Some(rows) = rows.split_off_mut(..row_count) else { break };
+            let Some(heads) = heads.split_off_mut(..row_count) else { break };
+            let (Some(v), Some(stamps)) = (copies.split_off_mut(..count), stamps.split_off_mut(..count)) else { break };
+            parts.push(Part { sets: first..end, rows, heads, v, stamps, turns: 0 });
+            first = end;
+        }
+        threads::each_in_pool(&mut parts, |part| {
+            let [first_row, first_copy] = [&*starts, &*first_alone].map(|starts| starts[part.sets.start]);
+            for set in part.sets.clone() {
+                let of =
+                    |starts: &[u32], first: u32| (starts[set] - first) as usize..(starts[set + 1] - first) as usize;
+                let (rows, own) = (of(starts, first_row), of(first_alone, first_copy));
+                if own.is_empty() {
+                    continue;
+                }
+                let copies = first_alone[set] as usize..first_alone[set + 1] as usize;
+                let enough = tolerance * approach.of(body[points[copies.start].0 as usize]);
+                let mut sweeps = Sweeps {
+                    rows: &mut part.rows[rows.clone()],
+                    heads: &mut part.heads[rows],
+                    inverse_mass: &inverse_mass[copies],
+                    v: &mut part.v[own.clone()],
+                    stamps: &mut part.stamps[own],
+                    now: &mut part.turns,
+                };
+                let mut sweep = 0;
+                while sweep < most && sweeps.sweep_alone(sweep % 2 == 1, enough) {
+                    sweep += 1;
+                }
+            }
+        });
+        let turns = parts.iter().map(|part| part.turns as usize).sum();
+        for ((p, moves), own) in points.iter().zip(&*own) {
+            if *moves {
+                v[*p as usize] = *own;
+            }
+        }
+        turns
+    }
+
+    /// Bytes on the heap.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        8 * (self.stamps.capacity() + self.alone.stamps.capacity() + self.alone.points.capacity())
+            + 24 * self.heads.capacity()
+            + 16 * self.movers.capacity()
+            + self.mixed.capacity()
+            + 8 * D * (self.alone.v.capacity() + self.alone.inverse_mass.capacity())
+            + 4 * (self.parent.capacity()
+                + self.number.capacity()
+                + self.starts.capacity()
+                + self.first_alone.capacity())
+            + 4 * (self.joined.capacity() + self.order.capacity())
+            + size_of::<Row<D>>() * self.sorted.capacity()
+    }
+}
+
+/// The least number of rows that a thread solves for in one piece. So many rows take some tens of microseconds.
+const LEAST_PART: usize = 256;
+
+/// Some sets whose points respond by themselves.
+struct Part<'a, const D: usize> {
+    sets: Range<usize>,
+    rows: &'a mut [Row<D>],
+    heads: &'a mut [([u32; 4], u64)],
+    v: &'a mut [[f64; D]],
+    stamps: &'a mut [u64],
+    turns: u64,
+}
+
+/// Sweeps over the rows of one set.
+pub(crate) struct Sweeps<'a, const D: usize> {
+    pub(crate) rows: &'a mut [Row<D>],
+    pub(crate) heads: &'a mut [([u32; 4], u64)],
+    pub(crate) inverse_mass: &'a [[f64; D]],
+    pub(crate) v: &'a mut [[f64; D]],
+    stamps: &'a mut [u64],
+    /// The number of turns so far.
+    pub(crate) now: &'a mut u64,
+}
+
+impl<const D: usize> Sweeps<'_, D> {
+    /// Sweeps over rows whose points respond by themselves; returns whether any velocity changed by more than `enough` [m/s].
+    fn sweep_alone(&mut self, backward: bool, enough: f64) -> bool {
+        let turn = |_: &mut (), row: &mut Row<D>, points: &[u32; 4], inverse_mass: &[_], v: &mut [_]| {
+            row.solve(points, inverse_mass, v)
+        };
+        self.sweep(backward, enough, (&mut (), &Spread::default()), turn, |(), _, _| {}).0
+    }
+
+    /// Sweeps over rows some of whose points are coupled or carried; returns whether any velocity changed by more than `enough`, and
+    /// the largest change [m/s].
+    pub(crate) fn sweep_coupled(
+        &mut self,
+        backward: bool,
+        enough: f64,
+        spread: &Spread,
+        coupled: &mut Coupled<D>,
+    ) -> (bool, f64) {
+        let turn = |coupled: &mut Coupled<D>, row: &mut Row<D>, _: &[u32; 4], inverse_mass: &[_], v: &mut [_]| {
+            if row.coupled || row.spread[1] > 0 {
+                return row.solve_coupled(spread, inverse_mass, coupled, v);
+            }
+            let points = row.points;
+            row.solve(&points, inverse_mass, v)
+        };
+        let followers = |coupled: &Coupled<D>, row: &Row<D>, visit: &mut dyn FnMut(u32)| {
+            if row.coupled {
+                coupled.followers(row.on(spread), visit);
+            }
+        };
+        self.sweep(backward, enough, (coupled, spread), turn, followers)
+    }
+
+    /// Sweeps over all rows by `turn`, which returns the change of the velocity of its row [m/s]. A row is skipped as long as no
+    /// velocity of its points has changed by more than `enough` since its last turn, so the cost of a sweep depends on the number
+    /// of rows that still change. `followers` visits the points that respond besides those of the row. Returns whether any
+    /// velocity changed by more than `enough`, and the largest change [m/s].
+    #[inline(always)]
+    fn sweep<C>(
+        &mut self,
+        backward: bool,
+        enough: f64,
+        (others, spread): (&mut C, &Spread),
+        turn: impl Fn(&mut C, &mut Row<D>, &[u32; 4], &[[f64; D]], &mut [[f64; D]]) -> f64,
+        followers: impl Fn(&C, &Row<D>, &mut dyn FnMut(u32)),
+    ) -> (bool, f64) {
+        let Sweeps { rows, heads, inverse_mass, v, stamps, now } = self;
+        let (mut largest, mut changed): (f64, bool) = (0.0, false);
+        for k in 0..rows.len() {
+            let k = if backward { rows.len() - 1 - k } else { k };
+            let (head, last) = &mut heads[k];
+            let points = spread.points_of::<D>(head);
+            if *last > 0 && points.iter().all(|p| stamps[*p as usize] <= *last) {
+                continue;
+            }
+            **now += 1;
+            let change = turn(others, &mut rows[k], head, inverse_mass, v);
+            largest = change.larger(largest);
+            if change > enough {
+                changed = true;
+                points.iter().for_each(|p| stamps[*p as usize] = **now);
+                followers(others, &rows[k], &mut |p| stamps[p as usize] = **now);
+            }
+            *last = **now;
+        }
+        (changed, largest)
+    }
+}
