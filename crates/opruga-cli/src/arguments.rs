@@ -19,7 +19,7 @@ pub(crate) use verify::Verify;
     max_term_width = 110,
     after_help = "Without a command, `opruga` opens the studio if there is a screen; otherwise it runs the scene \
                   `ball`.\n\nOPRUGA_SIMD=scalar|sse2|avx2|avx512 in the environment selects the vector instructions of the kernels; the default is \
-                  the best that the processor has. The results are the same to the bit. `scalar` selects the instructions that every processor of an \
+                  the best that the processor has. The results are the same, bit for bit. `scalar` selects the instructions that every processor of an \
 architecture has: `sse2` on x86-64."
 )]
 pub(crate) struct Arguments {
@@ -39,7 +39,7 @@ pub(crate) enum Command {
         /// A scene file, or the name of a scene that comes with the program [default: ball]
         scene: Option<String>,
     },
-    /// Show a recorded run in the window: jump to any moment and continue from there
+    /// Show a recorded run in the window of Opruga Studio: jump to any moment and continue from there
     View {
         /// The recording, as `opruga run --record` writes it
         recording: std::path::PathBuf,
@@ -98,8 +98,8 @@ pub(crate) struct Mesh {
     pub(crate) out: Option<PathBuf>,
     /// Approximate length of the edges of cells [m]; required for surfaces and drawings
     ///
-    /// In space, it is the side of the cubes of a lattice whose points move to the surface; edges are 0.9 of it on average.
-    /// Parts thinner than this may be lost; a message then reports the loss.
+    /// In space, H is the side of the cubes of a lattice. The points of the lattice near the surface are moved onto it, so edges are 0.9 H long on
+    /// average. Parts thinner than H may be lost; a message then reports the loss.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub(crate) size: Option<f64>,
     /// The longest side of the whole body [m], instead of the units of the file; required for drawings
@@ -111,7 +111,7 @@ pub(crate) struct Mesh {
     /// The order of the cells: 1 has nodes at the corners only; 2 also has one in the middle of every edge
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2))]
     pub(crate) order: u32,
-    /// Repair the mesh: flip inverted cells, drop nodes that no cell uses, merge vertices at the same position; report the number of each
+    /// Repair the mesh: flip inverted cells, drop nodes that no cell uses, merge vertices at the same position; report the number of each repair
     #[arg(long)]
     pub(crate) mend: bool,
     /// The file for the picture [default: next to the mesh]
@@ -162,12 +162,12 @@ pub(crate) struct Sweep {
     pub(crate) scene: Option<String>,
     /// The values of a parameter; may be given several times
     ///
-    /// PATH=a,b,c lists them. PATH=LOW..HIGH:COUNT gives COUNT values, including both ends; with :log, neighbouring values have equal ratios; with
-    /// :whole, the values are rounded. PATH=VALUE changes the parameter for all points. If several parameters vary, the points form a grid, unless
-    /// --each or --sample is given.
+    /// PATH=a,b,c lists the values. PATH=LOW..HIGH:COUNT gives COUNT values, including both ends. With :log, neighbouring values have equal ratios;
+    /// with :whole, the values are rounded to whole numbers. PATH=VALUE changes the parameter for all points. If several parameters vary, the points
+    /// form a grid, unless --each or --sample is given.
     #[arg(long = "set", value_name = "PATH=VALUES", conflicts_with = "resume")]
     pub(crate) set: Vec<String>,
-    /// Vary one parameter at a time, while the others are as in the scene
+    /// Vary one parameter at a time; the others keep their values from the scene
     #[arg(long, conflicts_with_all = ["resume", "sample"])]
     pub(crate) each: bool,
     /// Use this many random points instead of a grid; ranges then have no COUNT
@@ -222,9 +222,10 @@ pub(crate) struct Sweep {
 /// What is drawn of a run or of a recording.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Pictures {
-    /// Pictures and exported frames per second of simulated time [default: 20]
-    /// At most 240, and never more than there are frames. There is a whole number of frames between two pictures: with frames of 1/60 s there
-    /// can be 60, 30, 20, 15, 12, … pictures per second, and the nearest rate is used.
+    /// Pictures and exported frames per second of simulated time, at most 240 [default: 20]
+    ///
+    /// The time between two pictures is a whole number of frames of the scene: frames of 1/60 s allow 60, 30, 20, 15, 12, … pictures per second. The
+    /// nearest allowed rate is used.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) fps: Option<f64>,
     /// Write no strip, video or plots
@@ -236,7 +237,7 @@ pub(crate) struct Pictures {
     /// Draw arrows: the pressure of gas (without gas, the force on nodes) and the pull of the pointer
     #[arg(long, conflicts_with = "no_pictures")]
     arrows: bool,
-    /// Draw every spring and node, even on surfaces, in crowds and under skins
+    /// Draw every spring and node, even on surfaces, under skins and where there are many of them
     #[arg(long, conflicts_with = "no_pictures")]
     springs: bool,
 }
@@ -268,8 +269,8 @@ pub(crate) struct Run {
     pub(crate) scene: Option<String>,
     /// The simulated time at which the run ends [s] [default: that of the scene]
     ///
-    /// A run consists of whole frames; if the last one ends after this time, a note reports it. A resumed run that continues from t = 5 with --seconds
-    /// 8 runs for 3 s; without --seconds, it ends where the earlier run was meant to end. 0 writes the state at the start.
+    /// A run consists of whole frames; if the last one ends after this time, a note reports when. A resumed run that continues from t = 5 with
+    /// --seconds 8 runs for 3 s; without --seconds, it ends where the earlier run was meant to end. --seconds 0 writes the state at the start.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
     #[command(flatten)]
@@ -301,38 +302,37 @@ pub(crate) struct Run {
     /// Continue from the checkpoint of an earlier run; the results are the same, bit for bit, as without the interruption
     ///
     /// The checkpoint contains the scene with the changes made by --set and --seconds, and the options --lenient and --allow-unstable. Other options
-    /// must be given again.
-    /// The output covers the rest of the run only, so it goes to a folder of its own.
+    /// must be given again. The output covers only the rest of the run, so it goes to a folder of its own.
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
     /// Real time between two checkpoints during the run [s]; 0 writes one only at the end
     ///
-    /// A run that is killed loses at most this much: `checkpoint` and `diagnostics.csv` reach up to the last checkpoint, and `checkpoint.previous` is
-    /// the one before it. --resume continues from either.
+    /// A run that is killed loses at most the work of this time: `checkpoint` and `diagnostics.csv` reach up to the last checkpoint, and
+    /// `checkpoint.previous` is the checkpoint before it. --resume continues from either.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 60.0)]
     pub(crate) checkpoint_every: f64,
     /// Record the run to this file, for `opruga replay`, which also writes its frames as VTU, glTF, PC2, MDD, OBJ or PLY
     ///
-    /// The file contains the scene, so it needs no other file, and a hash of every frame. A run that is killed loses no frame that it has finished.
-    /// --force replaces an existing file.
+    /// The file contains a hash of every frame. It also contains the scene, so it needs no other file. A run that is killed loses no frame that it
+    /// has finished. --force replaces an existing file.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
     /// Keep one state every FRAMES frames of the recording; 1 keeps all states
     ///
-    /// States between them are computed again on request, and compared by their hashes. By default, the interval is chosen so that recording
+    /// The states in between are computed again on request and checked against their hashes. By default, the interval is chosen so that recording
     /// takes less than a tenth of the time of the run; it is at most 32 frames.
     #[arg(long, value_name = "FRAMES", requires = "record", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) record_every: Option<u32>,
     /// Write a row of diagnostics.csv every FRAMES frames; 1 writes every frame
     ///
-    /// The first and the last frame always have a row. By default, every frame has a row if the table then stays below 67 MB. Otherwise
-    /// rows are left out, and a warning says how many.
+    /// The first and the last frame always have a row. By default, every frame has a row if the table then stays below 67 MB. Otherwise, only one
+    /// frame in several has a row, and a warning reports this number of frames.
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
     pub(crate) diagnostics_every: Option<u32>,
     /// Check after every frame that no surfaces cross; a run in which surfaces cross ends with exit code 1
     ///
-    /// The check is exact and shares no code with the detection of contact. It covers the bodies that touch by `[contact]`, or all bodies if that
-    /// section is missing.
+    /// The check is exact and shares no code with contact detection. It covers the bodies to which `[contact]` applies, or all bodies if that section
+    /// is missing.
     #[arg(long)]
     pub(crate) check_contact: bool,
     /// Run even if the step is above the stable limit
@@ -392,8 +392,9 @@ pub(crate) struct Modes {
 pub(crate) struct Replay {
     /// A recording: a file that `opruga run --record` has written
     pub(crate) file: PathBuf,
-    /// Recompute every frame and compare its hash, and its whole state if that was kept; exit code 1 if a frame differs
-    /// On its own, it writes nothing. With --out or another output option, it writes the output afterwards if all frames are the same.
+    /// Recompute every frame and compare its hash, and its whole state if the recording contains it; exit code 1 if a frame differs
+    ///
+    /// Without an output option, nothing is written. With --out or another output option, the output is written afterwards if all frames are the same.
     #[arg(long)]
     pub(crate) verify: bool,
     /// The simulated time at which to begin [s] [default: the first frame]

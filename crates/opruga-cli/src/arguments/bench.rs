@@ -13,7 +13,7 @@ pub(crate) enum Bench {
     Elements(BenchElements),
     /// The time that `--record` adds to the frames of a scene, from alternating runs with and without it
     Record(BenchRecord),
-    /// How long it takes to read a surface of many triangles, compared with reading the bytes of its file
+    /// The time to read a surface of many triangles, compared with the time to read the bytes of its file
     Load(BenchLoad),
 }
 
@@ -85,7 +85,7 @@ pub(crate) struct BenchElements {
     /// Measure only this material of `fem`
     #[arg(long)]
     pub(crate) material: Option<String>,
-    /// Number of hexahedra along a side of the cube, each cut into six tetrahedra
+    /// Number of hexahedra along each side of the measured cube; each hexahedron is cut into six tetrahedra
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(2..=100))]
     pub(crate) cells: u32,
     /// Print JSON
@@ -98,7 +98,7 @@ pub(crate) struct BenchVertices {
     /// Number of threads, 1 to 256; results do not depend on it
     #[arg(long, allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: u16,
-    /// Include the drawing of every frame
+    /// Include the time to draw every frame
     #[arg(long)]
     pub(crate) draw: bool,
     /// Print JSON
@@ -107,7 +107,7 @@ pub(crate) struct BenchVertices {
     /// The integrator, one of those that `opruga list` shows
     #[arg(long, default_value = "symplectic_euler")]
     pub(crate) integrator: String,
-    /// Measure only one row: `36` for one ring of 36 vertices, `27778x36` for 27,778 of them
+    /// Measure only one row: `36` for one ring of 36 vertices, `27778x36` for 27,778 such rings
     #[arg(long, value_name = "[RINGSx]VERTICES")]
     pub(crate) only: Option<String>,
     /// Processor time spent on each row [s]: more than 0, at most 600

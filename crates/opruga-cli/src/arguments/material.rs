@@ -15,7 +15,7 @@ pub(crate) struct Material {
     /// Poisson's ratio ν
     #[arg(long = "nu", value_name = "RATIO", allow_negative_numbers = true, default_value_t = 0.3)]
     pub(crate) poissons_ratio: f64,
-    /// In the plane: nothing moves across it (strain), or no stress acts across it (stress) [default: strain]
+    /// In 2D: `strain` if nothing moves across the plane, `stress` if no stress acts across it [default: strain]
     #[arg(long, value_name = "WORD")]
     pub(crate) plane: Option<String>,
     /// Set another number of the material, as in a scene, such as mooney_share=0.2; may be given several times
