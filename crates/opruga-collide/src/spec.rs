@@ -53,8 +53,8 @@ both! { HALF_SPACE_2D, HALF_SPACE_3D, "half_space", &[Role::HalfSpace],
 }
 
 const BOX_TEXT: &str = "Solid inside, or (`inside = true`) a container that keeps bodies within its walls. The box is given by two opposite corners, \
-or by its centre and size; it can then also be rotated. A node inside leaves through the nearest face; a node that moves by more than a quarter of \
-the smallest side in a step leaves through the face by which it came in.";
+or by its centre and size; in the second case, it can also be rotated. A node inside leaves through the nearest face; a node that moves by more than \
+a quarter of the smallest side in a step leaves through the face by which it came in.";
 const MIN: Field = Field::new(
     "min",
     Allowed::Vector,
@@ -82,14 +82,15 @@ collider! {
     /// The parameters of `box` in 2D.
     BOX_2D, "box", 2, Allowed::ANY, &[], "a box: solid, or a container", BOX_TEXT;
     MIN, MAX, CENTER, SIZE,
-    Field::new("rotation", Allowed::ANY, "rad", Default::Absent, "Angle by which the box is turned about its centre, counterclockwise."),
+    Field::new("rotation", Allowed::ANY, "rad", Default::Absent, "Angle by which the box is rotated about its centre, counter-clockwise."),
     INSIDE_BOX,
 }
 collider! {
     /// The parameters of `box` in 3D.
     BOX_3D, "box", 3, Allowed::Vector, &[], "a box: solid, or a container", BOX_TEXT;
     MIN, MAX, CENTER, SIZE,
-    Field::new("rotation", Allowed::Vector, "rad", Default::Absent, "Rotation vector (axis times angle) by which the box is turned about its centre."),
+    Field::new("rotation", Allowed::Vector, "rad", Default::Absent, "Rotation vector (axis times angle) by which the box is rotated about its \
+centre."),
     INSIDE_BOX,
 }
 

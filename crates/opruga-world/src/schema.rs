@@ -171,7 +171,7 @@ pub const TIME: Section = Section {
                 Allowed::POSITIVE,
                 "s",
                 Default::Number(1.0 / 60.0),
-                "The time from one picture to the next.",
+                "The length of a frame, after which the program can draw a picture, write a row of the table and run commands.",
             ),
             Field::new(
                 "substeps",
@@ -197,7 +197,8 @@ pub const PICTURE: Section = Section {
                 Allowed::Integer { least: 1, greatest: 60 },
                 "",
                 Default::Absent,
-                "The number of moments that `strip.png` shows. By default, there are as many as leave bodies large enough to see.",
+                "The number of moments that `strip.png` shows. By default, this number is as large as possible while bodies remain large enough to \
+see.",
             ),
             Field::new(
                 "low",
@@ -264,8 +265,8 @@ fall for ever. All three are off by default; warnings report how often they act.
                 "",
                 Default::Boolean(false),
                 "Whether a body that is stuck is displaced at random. A body is stuck if it is at rest with degenerate or inverted cells, or if it \
-is at rest and strained although nothing acts on it. The first displacement is 1e-4 of its size; if the body stays in this shape, displacements of a \
-hundredth and of a tenth follow. A warning reports the number of displacements.",
+is at rest and strained although nothing acts on it. The first displacement is 1e-4 of the size of the body. If the body stays in this shape, \
+displacements of a hundredth and of a tenth of its size follow. A warning reports the number of displacements.",
             ),
         ],
     ),
@@ -303,8 +304,8 @@ the shape's own coordinates, then moved to `position`.",
                 Allowed::POSITIVE,
                 "m",
                 Default::Number(1.0),
-                "Depth out of the plane in 2D, also for gas, loads and bending. In 3D it is the thickness of a sheet or the width of a square wire; \
-only `density` uses it. `density` requires it for sheets in 3D, and for wires in 2D and 3D.",
+                "Depth out of the plane in 2D, also for gas, loads and bending. In 3D, the thickness of a sheet or the width of a square wire, which \
+only `density` uses. `density` requires `thickness` for sheets in 3D, and for wires in 2D and 3D.",
             ),
             Field::new(
                 "position",
@@ -343,8 +344,8 @@ which alternate from cell to cell and favour no direction.",
                 Default::Absent,
                 "With 2, triangles and tetrahedra have another node in the middle of every edge; their finite elements then lock neither in bending \
 nor near incompressibility. The default is 2 if all cells are triangles or tetrahedra and a model of the body computes the stress of its cells, as \
-`fem` does; otherwise it is 1. `finite_volume` needs `order = 1`. Bodies with `order = 1` compute faster, but bend too stiffly and are refused above \
-ν = 0.45.",
+`fem` does; otherwise it is 1. `finite_volume` needs `order = 1`. With 1, triangles and tetrahedra need less computing time, but bend too stiffly, \
+and are refused above ν = 0.45 unless `locking` accepts them.",
             ),
         ],
     ),
@@ -366,7 +367,7 @@ nor near incompressibility. The default is 2 if all cells are triangles or tetra
         child("integrator", Holds::Integrator, false, "Its own integrator; the default is that of the scene."),
         child("models", Holds::Models, false, "The models that compute its forces."),
         contact::OF_BODY,
-        child("pin", Holds::List(&PIN), false, "Nodes that are held in place, or moved in a prescribed way."),
+        child("pin", Holds::List(&PIN), false, "Nodes that are held in place, or moved along a given path."),
         child(
             "copies",
             Holds::Table(&COPIES),
@@ -414,12 +415,12 @@ change them.",
 pub const PIN: Section = Section {
     spec: &section(
         "pin",
-        "Nodes that are held in place, or moved in a prescribed way",
+        "Nodes that are held in place, or moved along a given path",
         "Between the rows of `motion` the displacement is linear; before the first row and after the last one it is constant. A pinned node follows \
 its pin, even through obstacles: these stop its neighbours, but not the node. The work of the pin against springs and obstacles counts as work of \
 the user. If a pin catches a moving node, or if `motion` has a corner, the pin changes the velocity of that node by an impulse. With `mass = \
 \"consistent\"`, a node shares its inertia with its neighbours, so the impulse makes the neighbours recoil, by the same amount with every \
-integrator. To accelerate them gradually instead, give `motion` many rows.",
+integrator. To accelerate the nodes gradually instead, give `motion` many rows.",
         &[
             Field::new(
                 "axes",
@@ -439,7 +440,8 @@ pub const COPIES: Section = Section {
     spec: &section(
         "copies",
         "Rows, columns and layers of the same body",
-        "Copy k = i + nx·(j + ny·l) is called `name[k]` and lies at `position + first + (i, j, l)·spacing + jitter`. Copies share one mesh.",
+        "With `count = [nx, ny, nz]`, copy k = i + nx·(j + ny·l) is called `name[k]` and lies at `position + first + (i, j, l)·spacing + jitter`. \
+Copies share one mesh.",
         &[
             Field::new(
                 "spacing",
@@ -448,7 +450,13 @@ pub const COPIES: Section = Section {
                 Default::Required,
                 "The distance from copy to copy along every axis.",
             ),
-            Field::new("first", Allowed::Vector, "m", Default::Origin, "An offset of all copies."),
+            Field::new(
+                "first",
+                Allowed::Vector,
+                "m",
+                Default::Origin,
+                "An offset that is added to the position of every copy.",
+            ),
             Field::new(
                 "jitter",
                 Allowed::NOT_NEGATIVE,
@@ -471,7 +479,7 @@ pub const SELECTORS: &[Spec] = &[
     ),
     section(
         "ball",
-        "Nodes at most a radius from a centre",
+        "Nodes within a radius of a centre",
         "`{ ball = { center = [x, y], radius = r } }`",
         &[
             Field::new("center", Allowed::Vector, "m", Default::Required, "The centre."),
@@ -498,8 +506,8 @@ pub const SELECTORS: &[Spec] = &[
     section("group", "A named group of the mesh", "`{ group = \"clamped\" }`", &[]),
     section("boundary", "Nodes of the boundary", "`{ boundary = true }`", &[]),
     section("all", "Every node", "`{ all = true }`", &[]),
-    section("and", "Nodes in every one of the sets", "`{ and = [ { … }, { … } ] }`", &[]),
-    section("or", "Nodes in any one of the sets", "`{ or = [ { … }, { … } ] }`", &[]),
+    section("and", "Nodes in all of the sets", "`{ and = [ { … }, { … } ] }`", &[]),
+    section("or", "Nodes in at least one of the sets", "`{ or = [ { … }, { … } ] }`", &[]),
     section("not", "Nodes that are not in the set", "`{ not = { … } }`", &[]),
 ];
 

@@ -125,7 +125,8 @@ static POLYLINE: Spec = Spec {
 static GRID: Spec = Spec {
     kind: "grid",
     summary: "a filled rectangle or box of equal cells",
-    documentation: "Node (x, y, z) has number x + (nx+1)·(y + (ny+1)·z). Groups: left, right, bottom, top, and in space back and front.",
+    documentation: "With nx cells along x and ny along y, node (x, y, z) has number x + (nx+1)·(y + (ny+1)·z). Groups: left, right, bottom, top, and \
+in space back and front.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
@@ -138,8 +139,8 @@ static GRID: Spec = Spec {
 static QUADRILATERAL: Spec = Spec {
     kind: "quadrilateral",
     summary: "a filled quadrilateral of cells between four corners",
-    documentation: "A grid stretched over a convex quadrilateral. Node (i, j) has number i + (n+1)·j. Groups: bottom from corner 0 to 1, right \
-from 1 to 2, top from 3 to 2, left from 0 to 3.",
+    documentation: "A grid stretched over a convex quadrilateral. With n cells along the side from corner 0 to 1, node (i, j) has number i + \
+(n+1)·j. Groups: bottom from corner 0 to 1, right from 1 to 2, top from 3 to 2, left from 0 to 3.",
     dimensions: &[2],
     fields: &[
         Field::new("corners", Allowed::Points, "m", Default::Required, "Its four corners, counter-clockwise."),
@@ -157,8 +158,8 @@ from 1 to 2, top from 3 to 2, left from 0 to 3.",
 static SHEET: Spec = Spec {
     kind: "sheet",
     summary: "an open flat surface: cloth",
-    documentation: "A parallelogram of triangles with alternating diagonals. Node (i, j) has number i + (nu+1)·j. Groups: left, right (along u), \
-bottom, top (along v).",
+    documentation: "A parallelogram of triangles with alternating diagonals. With nu cells along u, node (i, j) has number i + (nu+1)·j. Groups: \
+left, right (along u), bottom, top (along v).",
     dimensions: &[3],
     fields: &[
         CORNER,
@@ -188,7 +189,7 @@ static BOX: Spec = Spec {
 static ICOSPHERE: Spec = Spec {
     kind: "icosphere",
     summary: "a closed ball surface of nearly equal triangles",
-    documentation: "10·4^s + 2 nodes: an icosahedron whose faces are cut into four s times.",
+    documentation: "An icosahedron whose faces are cut into four s times, where s is `subdivisions`. The surface has 10·4^s + 2 nodes.",
     dimensions: &[3],
     fields: &[
         Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
@@ -209,7 +210,7 @@ static ICOSPHERE: Spec = Spec {
 static TORUS: Spec = Spec {
     kind: "torus",
     summary: "a closed tube around a circle",
-    documentation: "Its axis is the z axis. Node (i, j) has number i·(nodes around the tube) + j.",
+    documentation: "Its axis is the z axis. Node (i, j) has number i·`nodes_of_tube` + j.",
     dimensions: &[3],
     fields: &[
         Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the circle."),

@@ -8,9 +8,9 @@ pub const SPEC: Spec = Spec {
     summary: "the published program of the thesis, including its errors: springs, its \"volume\", doubled pressure, ramp, pointer",
     documentation: "One step of the program in D. Križaić's thesis (2012, 3.3 and 4), in its pixels with y downwards, for use with \
 `symplectic_euler`, a step of 0.001 s, `node_mass = 1` and world gravity 0 (the model brings its own). Its floor is an ordinary collider: a \
-half-space at y = 500 with normal [0, -1], restitution 0.5, friction 0. It has no potential: energy is not conserved, and its work counts as work \
-from outside. An edge without length makes its forces infinite or not a number, as published. For the physics use `mass_spring` with `pressure`; the \
-documentation of the module describes the eleven differences (E1 to E11).",
+half-space at y = 500 with normal [0, -1], restitution 0.5, friction 0. The model has no potential: energy is not conserved, and the work of the \
+model counts as work from outside. An edge without length makes its forces infinite or not a number, as published. For correct physics, use \
+`mass_spring` with `pressure`; the documentation of the module describes the eleven differences (E1 to E11).",
     dimensions: &[2],
     fields: &[
         Field::new("stiffness", Allowed::NOT_NEGATIVE, "kg/s²", Default::Number(1600.0), "Spring constant KS."),

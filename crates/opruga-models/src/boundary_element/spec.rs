@@ -8,12 +8,12 @@ pub const SPEC: Spec = Spec {
     summary: "an elastic solid by its boundary alone: Kelvin's solution on the edges of an outline or the triangles of a surface",
     documentation: "Linear elasticity of the solid inside a closed boundary, without any mesh inside: displacements and tractions are linear on each \
 edge (triangle). A vertex has one traction for every smooth part of the boundary that meets there. The stiffness K of the boundary is dense; it is \
-made symmetric and free of forces under rigid motion, and readings report the size of both changes. The force is the gradient of U = ½ uᵀKu with u = \
-Rᵀ(x − x̄) − X, where R is the rotation nearest to the deformation of the whole body, so the body may rotate and fly; strain must be small in the \
-frame R. The mass lies on the boundary, so frequencies differ from those of a solid whose mass is spread through its volume. `exterior = true` \
-models the infinite medium around the boundary instead. This medium does not rotate: R is the identity. Limits: one solid with cavities, at most \
-2000 vertices; large strain and bending by large angles are computed by linear elasticity in one frame. Equations and measurements: \
-docs/boundary-elements.md. Source: Brebbia, Telles, Wrobel 1984, Boundary element techniques; James, Pai 1999, ArtDefo.",
+corrected so that it is symmetric and rigid motion causes no forces, and readings report the size of both corrections. The force is the gradient of \
+U = ½ uᵀKu with u = Rᵀ(x − x̄) − X, where R is the rotation nearest to the deformation of the whole body, so the body may move and rotate freely, \
+but strain must be small in the frame R. The mass lies on the boundary, so frequencies differ from those of a solid whose mass is spread through its \
+volume. `exterior = true` models the infinite medium around the boundary instead. This medium does not rotate: R is the identity. Limits: one solid \
+with cavities, at most 2000 vertices; large strain and bending by large angles are computed by linear elasticity in one frame. Equations and \
+measurements: docs/boundary-elements.md. Source: Brebbia, Telles, Wrobel 1984, Boundary element techniques; James, Pai 1999, ArtDefo.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("youngs_modulus", Allowed::POSITIVE, "Pa", Default::Required, "Young's modulus E.").starts_at(1e5),

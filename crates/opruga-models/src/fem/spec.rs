@@ -8,16 +8,16 @@ use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
 pub const SPEC: Spec = Spec {
     kind: "fem",
     summary: "an elastic solid by finite elements, with a choice of materials",
-    documentation: "Energy U = Σ V ψ(F) over the points of the cells, F = ∂x/∂X; force −∂U/∂x. Triangles and tetrahedra of first and second order, \
-quadrilaterals and hexahedra. In every material, E and ν are Young's modulus and Poisson's ratio at small strain; μ = E/2(1 + ν), λ = Eν/((1 + ν)(1 \
-− 2ν)). Quadratic triangles and tetrahedra (`order = 2` of the body, the default) lock neither in bending nor near incompressibility. In \
-quadrilaterals and hexahedra, the strains of bending and twisting follow from assumed stresses; they are exact if the cells are rectangular, up to ν \
-= 0.4999. Linear triangles and tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` accepts them; with \
-`nodal_volume`, they do not lock. In the plane the body is a slice of a long one (plane strain) or a plate that thins freely (plane stress), as deep \
-as the body's `thickness`. Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's strain; it is zero under rigid \
-motion. Heat: with `thermal_expansion` an unconstrained body expands by the factor g = 1 + α (T − T₀) and has no stress, U = Σ V g³ ψ(F/g) \
-(`linear`: ψ(ε − αΔT 1)); in plane strain it expands by the factor 1 + (1 + ν) α (T − T₀) in the plane. The command `set` can change the temperature \
-while the scene runs. Equations, sources and measurements: docs/finite-elements.md.",
+    documentation: "Energy U = Σ V ψ(F) over the integration points of the cells, F = ∂x/∂X; force −∂U/∂x. The cells are triangles and tetrahedra of \
+first or second order, quadrilaterals, or hexahedra. In every material, E and ν are Young's modulus and Poisson's ratio at small strain; μ = E/2(1 + \
+ν), λ = Eν/((1 + ν)(1 − 2ν)). Quadratic triangles and tetrahedra (`order = 2` of the body, the default) lock neither in bending nor near \
+incompressibility. In quadrilaterals and hexahedra, the strains of bending and twisting follow from assumed stresses; they are exact if the cells \
+are rectangular, up to ν = 0.4999. Linear triangles and tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` \
+accepts them; with `nodal_volume`, they do not lock. In the plane, the body is a slice of a long one (plane strain) or a plate that thins freely \
+(plane stress); its depth is `thickness` of the body. Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's \
+strain; it is zero under rigid motion. Heat: with `thermal_expansion` an unconstrained body expands by the factor g = 1 + α (T − T₀) and has no \
+stress, U = Σ V g³ ψ(F/g) (`linear`: ψ(ε − αΔT 1)); in plane strain it expands by the factor 1 + (1 + ν) α (T − T₀) in the plane. The command `set` \
+can change the temperature while the scene runs. Equations, sources and measurements: docs/finite-elements.md.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -141,7 +141,7 @@ and natural frequencies.",
             Allowed::FRACTION,
             "",
             Default::Number(0.2),
-            "C₂/(C₁ + C₂), where 2(C₁ + C₂) = μ: 0.2 is C₁ : C₂ = 4 : 1; at most ν/(1 − 2ν).",
+            "C₂/(C₁ + C₂), where 2(C₁ + C₂) = μ; 0.2 means C₁ : C₂ = 4 : 1. At most ν/(1 − 2ν) is allowed.",
         )
         .applies(&[Condition::Word("material", &["mooney_rivlin"])]),
         Field::new(
@@ -157,8 +157,8 @@ and natural frequencies.",
             "",
             Default::Text("refuse"),
             "What happens with linear triangles and tetrahedra above ν = 0.45: \"refuse\" is an error, \"accept\" accepts them although they lock, \
-and with \"nodal_volume\" they resist changes of the volumes of nodes instead of those of cells, which does not lock (only for these cells, and not \
-in plane stress).",
+and with \"nodal_volume\" they resist changes of the volumes of nodes instead of those of cells, and do not lock. \"nodal_volume\" is allowed only \
+for these cells, and not in plane stress.",
         ),
     ], roles: &[Role::OwnsCells], };
 

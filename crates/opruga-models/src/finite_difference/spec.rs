@@ -9,7 +9,7 @@ pub const SPEC: Spec = Spec {
     documentation: "The energy depends on how the metric tensor G and the curvature tensor B differ from those at rest. Both follow from differences \
 on the regular grid of the body. With ε = ½ (G − G₀), the energy of a curve (`line`, `ring`, `polyline`, closed or open) is ½ EA ε² + ½ EI (B − B₀)² \
 per length. The energy of a surface (`sheet`) is ½ Et/(1 − ν²) [(1 − ν) ε:ε + ν (tr ε)²] per area, plus the same expression in B − B₀ with Et³/12(1 \
-− ν²). A solid (`grid`) follows the law of St. Venant and Kirchhoff. EI is E t³/12 times the depth for a curve of the plane, E π t⁴/64 (a round \
+− ν²). A solid (`grid`) follows the law of St. Venant and Kirchhoff. EI is E t³/12 times the depth for a curve in the plane, and E π t⁴/64 (a round \
 wire) in space. Strains along an axis are defined on edges, shear strains in the middle of cells or faces, curvatures at nodes. The method is of \
 second order, and no checkerboard mode has zero energy. ν = 0 gives the uncoupled tensors of the paper. Forces are the exact gradient; the paper \
 neglects the rotation of the normal. Optionally, a curve in space resists changes of its Frenet torsion with the stiffness GJ = EI/(1 + ν) of a \
@@ -30,7 +30,7 @@ Platt, Barr, Fleischer 1987, Elastically deformable models. Equations and limits
             Allowed::POSITIVE,
             "m",
             Default::Absent,
-            "Thickness t of a curve or a surface, diameter of a wire in space; a solid has none.",
+            "Thickness t of a surface or of a curve in the plane, or diameter of a wire in space; a solid has none.",
         )
         .starts_at(0.02),
         Field::new(
@@ -45,7 +45,7 @@ Platt, Barr, Fleischer 1987, Elastically deformable models. Equations and limits
             Allowed::Boolean,
             "",
             Default::Boolean(false),
-            "Whether a curve resists a change of its Frenet torsion; it must be curved at every inner node.",
+            "Whether a curve resists a change of its Frenet torsion; the curve must then be curved at every inner node.",
         )
         .applies(&[Condition::Dimension(3)]),
         Field::new(

@@ -9,11 +9,12 @@ pub const SPEC: Spec = Spec {
     summary: "an elastic solid by finite volumes: tractions on the faces of the dual cell of each node",
     documentation: "The force on a node is the traction P N of the first Piola–Kirchhoff stress, summed over the faces of its dual cell: those \
 between the middles of edges, sides and cells. On triangles and tetrahedra F is constant, and forces, energy and Hessian are those of linear finite \
-elements (`fem` with `order = 1`). On quadrilaterals and hexahedra F is taken at the middle of each dual face; forces are then not a gradient, their \
-tangent is not symmetric, and only explicit integrators and `equilibrium` can step them. The ledger contains no elastic energy for such bodies. \
-Materials, E and ν, plane strain and plane stress have the same meaning as in `fem`. Limits: triangles and tetrahedra lock in bending and above ν = \
-0.45, where they are refused unless `locking` accepts them; the model has no damping of its own (use `world.drag`). Equations and measurements: \
-docs/finite-volumes.md. Source: Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003, Finite volume methods for the simulation of skeletal muscle.",
+elements (`fem` with `order = 1`). On quadrilaterals and hexahedra F is taken at the middle of each dual face; forces are then not the gradient of \
+an energy, their tangent is not symmetric, and only explicit integrators and `equilibrium` can step them. The ledger contains no elastic energy for \
+such bodies. Materials, E and ν, plane strain and plane stress have the same meaning as in `fem`. Limits: triangles and tetrahedra lock in bending \
+and above ν = 0.45, where they are refused unless `locking` accepts them; the model has no damping of its own (use `world.drag`). Equations and \
+measurements: docs/finite-volumes.md. Source: Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003, Finite volume methods for the simulation of skeletal \
+muscle.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -44,7 +45,7 @@ docs/finite-volumes.md. Source: Teran, Blemker, Ng-Thow-Hing, Fedkiw 2003, Finit
             Allowed::FRACTION,
             "",
             Default::Number(0.2),
-            "C₂/(C₁ + C₂), where 2(C₁ + C₂) = μ: 0.2 is C₁ : C₂ = 4 : 1; at most ν/(1 − 2ν).",
+            "C₂/(C₁ + C₂), where 2(C₁ + C₂) = μ; 0.2 means C₁ : C₂ = 4 : 1. At most ν/(1 − 2ν) is allowed.",
         )
         .applies(&[Condition::Word("material", &["mooney_rivlin"])]),
         Field::new(

@@ -42,7 +42,7 @@ ring of springs alone resists neither bending nor a change of its enclosed area.
             Allowed::Choice(&["boundary", "all", "shear"]),
             "",
             Default::Text("all"),
-            "Which edges carry springs: those of the boundary, all, or all and the diagonals of grid cells.",
+            "Which edges carry springs: those of the boundary, all edges, or all edges and the diagonals of grid cells.",
         ),
         Field::new(
             "rest_scale",

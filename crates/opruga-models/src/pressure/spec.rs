@@ -13,12 +13,12 @@ pub const SPEC: Spec = Spec {
 on every node is (P − P_a) ∂V/∂x: half of the force on each adjacent edge in 2D, a third of the force on each adjacent triangle in 3D. V is the \
 enclosed area times thickness in 2D and the enclosed volume in 3D, by the divergence theorem. If the sides of quadratic cells or of hexahedra are \
 curved, V includes this curvature, so that a uniform pressure causes a uniform stress. Holes count as negative because of their orientation. Every \
-closed boundary that lies in no other one is a chamber of its own with the same parameters. In a solid body the gas belongs in the cavities: with \
-`inside = \"cavities\"`, each cavity is a chamber of its own. For each body NAME, `diagnostics.csv` has the columns `NAME.volume` [m³] and \
-`NAME.nRT` [J], which are sums over all chambers, and `NAME.pressure` [Pa], the mean pressure weighted by volume. nRT is P V, also for an adiabatic \
-gas, whose temperature changes. A body with several chambers also has `NAME.chamber1.volume`, `NAME.chamber1.pressure`, `NAME.chamber1.nRT`, \
-`NAME.chamber2.volume` and so on. Chambers are numbered in the order in which their first facets appear in the shape. Below V_s = \
-max(`smallest_volume` V₀, the volume of `largest_pressure`) the pressure keeps the value P(V_s), even when the volume passes zero and the body is \
+closed boundary that does not lie inside another one is a separate chamber; all chambers have the same parameters. In a solid body, the gas belongs \
+in the cavities: with `inside = \"cavities\"`, each cavity is a separate chamber. For each body NAME, `diagnostics.csv` has the columns \
+`NAME.volume` [m³] and `NAME.nRT` [J], which are sums over all chambers, and `NAME.pressure` [Pa], the mean pressure weighted by volume. nRT is P V, \
+also for an adiabatic gas, whose temperature changes. A body with several chambers also has `NAME.chamber1.volume`, `NAME.chamber1.pressure`, \
+`NAME.chamber1.nRT`, `NAME.chamber2.volume` and so on. Chambers are numbered in the order in which their first facets appear in the shape. Below V_s \
+= max(`smallest_volume` V₀, the volume of `largest_pressure`) the pressure keeps the value P(V_s), even when the volume passes zero and the body is \
 inverted. U is then still a function of V with a continuous slope, so no energy is created. The smaller V_s is, the shorter the passage through zero \
 is. A step that does not resolve the passage loses a few per cent of the energy; the ledger shows the loss. If V_s is much smaller than the default, \
 use shorter steps: a step that jumps from a thousandth of the volume to the other side of zero feels a force a thousand times as large, and each \
@@ -62,7 +62,7 @@ a solid.",
             Allowed::Choice(&["isothermal", "adiabatic"]),
             "",
             Default::Text("isothermal"),
-            "Whether temperature or heat stays constant.",
+            "Whether the temperature of the gas stays constant (`isothermal`), or no heat enters or leaves it (`adiabatic`).",
         ),
         Field::new(
             "gamma",
@@ -92,7 +92,8 @@ pressure as e^(−λt); if it is lower than the ambient pressure, gas flows in. 
             Allowed::CurveNotNegative,
             "",
             Default::Absent,
-            "T/T₀ over time: `[[t, factor], …]`, linear between its points.",
+            "Factor T/T₀ over time by which nRT is multiplied, where T₀ is the temperature for which `nRT` or `pressure` is given: `[[t, factor], \
+…]`, linear between its points.",
         ),
         Field::new(
             "largest_pressure",

@@ -8,7 +8,7 @@ const PUBLISHED: Condition = Condition::Word("scheme", &["as_published"]);
 /// The parameters of `shape_matching`.
 pub const SPEC: Spec = Spec {
     kind: "shape_matching",
-    summary: "clusters of nodes that are pulled towards their rest shape, rotated or fitted to the present positions of the nodes",
+    summary: "clusters of nodes that are pulled towards their rest shape, which is rotated or fitted to the present positions",
     documentation: "Energy U = (1 − β) U_R + β U_A. Both parts are ½ κ Σ m |x − g|² over the nodes of every cluster, where g is the goal of a node. \
 U_R is the minimum over all rotations and translations of the rest shape, U_A the minimum over all linear or quadratic maps of it. The force is the \
 gradient, and the Hessian is exact. κ is a stiffness per mass. Motions that no map of the cluster can follow oscillate with the angular frequency \
@@ -43,7 +43,8 @@ Meshless deformations based on shape matching.",
             Allowed::FRACTION,
             "",
             Default::Number(0.0),
-            "Share β of the energy of the fitted map: with 0 the body keeps its shape, with 1 any fitted map may strain it.",
+            "Share β of the energy of the fitted map: with 0, every strain of a cluster costs energy; with 1, strains that a fitted map can follow \
+cost none.",
         ),
         Field::new(
             "fit",

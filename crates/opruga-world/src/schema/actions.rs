@@ -47,7 +47,7 @@ pub const LOADS: &[Section] = &[
                     Allowed::ANY,
                     "N",
                     Default::Required,
-                    "The force on every node; a negative value points away from the point.",
+                    "The force on every node; if it is negative, the force points away from the point.",
                 ),
                 Field::new("center", Allowed::Vector, "m", Default::Required, "The point, the same for all copies."),
                 CURVE,
@@ -86,8 +86,8 @@ pub const LOADS: &[Section] = &[
         spec: &section(
             "body_force",
             "A force per volume at rest",
-            "It is spread over the cells whose nodes are all selected, by their shape functions: the force on a node is the value times the integral \
-of its function over the volume; in 2D the volume is the area times the body's `thickness`.",
+            "It is spread over the cells whose nodes are all selected: the force on a node is the value times the integral of the shape function of \
+the node over the volume of these cells. In 2D, the volume is the area times the body's `thickness`.",
             &[Field::new("value", Allowed::Vector, "N/m³", Default::Required, "The force per volume."), CURVE],
         ),
         children: LOAD_CHILDREN,
@@ -213,8 +213,9 @@ by ten times the size of the body.",
         spec: &section(
             "change",
             "Give a body other models or another integrator while it moves",
-            "Positions and velocities do not change. The first model of a kind keeps what the body's model of that kind remembers, such as the \
-amount of its gas; a kind that the body did not have begins as at the start of a scene. Fields that are not given do not change.",
+            "Positions and velocities do not change. The first new model of a kind takes over what the body's previous model of that kind remembers, \
+such as the amount of its gas. A model of a kind that the body did not have begins as at the start of a scene. Fields that are not given do not \
+change.",
             &[AT],
         ),
         children: &[
@@ -257,15 +258,15 @@ pub const PROBE: Section = Section {
     spec: &section(
         "probe",
         "Columns of diagnostics.csv that follow nodes",
-        "Positions and velocities are means over the nodes, reactions are sums. A reaction is the force of pins: mass times acceleration minus the \
-forces of the models and the weight on pinned nodes. The acceleration of a pin is computed from its motion over the previous frame and the next one. \
-The impulse of a pin that catches a moving node is not included. `contact` is the sum of the normal forces and friction of obstacles in the next \
-substep; obstacles exert none on pinned nodes. With `[contact]`, it also contains the forces of other bodies, and of corners and edges of obstacles, \
-in the previous substep. `stress` is Cauchy's stress and `volume_ratio` is J: the value at a node is the mean over the finite elements around it, \
-weighted by their volume at rest. The mean over the nodes is written, together with the von Mises stress of this mean. Columns are NAME.x, NAME.y \
-(position), NAME.vx … (velocity), NAME.rx … (reaction), NAME.cx … (contact), NAME.sxx, syy, szz, sxy, in 3D syz, szx, and von_mises (stress, szz in \
-2D across the plane), NAME.volume_ratio. They are NaN while the body does not exist; stress and volume ratio are also NaN while no model of the body \
-computes them.",
+        "Positions and velocities are means over the nodes; reactions are sums. A reaction is the force that pins exert on pinned nodes: mass times \
+acceleration, minus the forces of models and loads, minus the weight. The acceleration of a pin is computed from its motion over the previous frame \
+and the next one. The impulse of a pin that catches a moving node is not included. `contact` is the sum of the normal forces and friction of \
+obstacles in the next substep; obstacles exert no such forces on pinned nodes. With `[contact]`, it also contains the forces of other bodies, and of \
+corners and edges of obstacles, in the previous substep. `stress` is Cauchy's stress and `volume_ratio` is J: the value at a node is the mean over \
+the finite elements around it, weighted by their volume at rest. The mean over the nodes is written, together with the von Mises stress of this \
+mean. Columns are NAME.x, NAME.y (position), NAME.vx … (velocity), NAME.rx … (reaction), NAME.cx … (contact), NAME.sxx, syy, szz, sxy, in 3D also \
+syz and szx, and von_mises (stress; in 2D, szz acts across the plane), and NAME.volume_ratio. They are NaN while the body does not exist; stress and \
+volume ratio are also NaN while no model of the body computes them.",
         &[Field::new(
             "name",
             Allowed::Text,

@@ -52,8 +52,8 @@ surfaces, but at most half of the shortest edge.",
                 Allowed::POSITIVE,
                 "m/s",
                 Default::Number(0.5),
-                "The speed at which bodies that overlap are moved apart. Only positions are changed; the work that this does against forces is \
-entered as `work_correction`.",
+                "The speed at which bodies that overlap are moved apart. Only positions are changed; the work of these changes against forces is \
+entered in the ledger as `work_correction`.",
             ),
             Field::new("self", Allowed::Boolean, "", Default::Boolean(true), "Whether bodies touch themselves."),
             Field::new(
@@ -121,7 +121,7 @@ pub const BODY_CONTACT: Section = Section {
                 Allowed::Choice(&["skin", "cells"]),
                 "",
                 Default::Text("skin"),
-                "The surface with which a body filled by a lattice touches other bodies: `skin` is the surface that the lattice carries and that is \
+                "Which surface of a body that a lattice fills touches other bodies: `skin` is the surface that the lattice carries and that is \
 drawn; `cells` is the boundary of its cells, which lies outside the skin.",
             ),
             Field::new("touch", Allowed::Boolean, "", Default::Boolean(true), "Whether it touches anything at all."),

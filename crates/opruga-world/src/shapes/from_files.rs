@@ -9,9 +9,9 @@ const SPACING: Field = Field::new(
     "m",
     Default::Required,
     "The approximate distance between nodes, before `scale`. An outline has a corner where it turns by more than 45° within this distance. Between \
-corners, it is divided into equal pieces whose length along the outline is as close to this as possible; a whole outline has at least three pieces. \
-Finer detail is left out; its amount is reported if the area changes by more than 5 %, or if the file has more than four points per node. With \
-`filling = \"lattice\"`, this is the side of the squares, and the outline keeps all of its points.",
+corners, it is divided into equal pieces whose length along the outline is as close to `spacing` as possible; a whole outline has at least three \
+pieces. Finer detail is left out; a warning reports the loss if the area changes by more than 5 %, or if the file has more than four points per \
+node. With `filling = \"lattice\"`, `spacing` is the side of the squares, and the outline keeps all of its points.",
 );
 const SIZE: Field =
     Field::new("size", Allowed::POSITIVE, "m", Default::Required, "The longer side of its bounding box.");
@@ -47,9 +47,9 @@ const OVERLAP: Field = Field::new(
     "",
     Default::Text("refuse"),
     "What happens if outlines cross or touch: \"refuse\" is an error, \"union\" keeps what any part covers, \"even_odd\" keeps what an odd number of \
-outlines enclose; the number of joined outlines is reported. Areas that touch only at points stay separate there. An outline inside another one is a \
-hole, and an outline inside a hole is an area again, even if they belong to different elements of a drawing; with \"union\", everything that any \
-element paints is inside.",
+outlines enclose; the number of joined outlines is reported. Areas that touch only at points are not joined at these points. An outline inside \
+another one is a hole, and an outline inside a hole is an area again, even if they belong to different elements of a drawing; with \"union\", \
+everything that any element paints is inside.",
 );
 const DROP_BELOW: Field = Field::new(
     "drop_below",
