@@ -123,7 +123,7 @@ opruga::math::messages! {
     /// Errors of the output of a command.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum OutputError {
-        "write.failed" #[error("stdout cannot be written: {reason}")]
+        "write.failed" #[error("the program cannot write to stdout: {reason}")]
         Stdout { reason: String },
         "interrupted" #[error("interrupted; the files are closed")]
         Interrupted {},
@@ -170,7 +170,7 @@ opruga::math::messages! {
             counted(*frames, "frame", "frames"), number(*until), if *frames == 1 { "is" } else { "are" },
             counted(*lost, "byte", "bytes"), if *lost == 1 { "it is" } else { "them are" })]
         NoEnd { frames: u64, until: f64, lost: u64 },
-        "recording.program" #[error("{program} wrote the recording; this is {now}")]
+        "recording.program" #[error("{program} wrote the recording, but this program is {now}")]
         OtherProgram { program: String, now: &'static str },
         "scene.changed" #[error("{file} has changed since the run was recorded; the recording uses its own copy")]
         SceneChanged { file: String },

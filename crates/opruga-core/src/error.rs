@@ -51,7 +51,7 @@ pub fn what_was_left(range: Option<f64>) -> String {
         None => "the range of finite numbers".into(),
         Some(range) => {
             format!(
-                "the range in which rounding is small compared with its elements, {} m around the origin",
+                "the range of {} m around the origin, in which rounding is small compared with the size of the elements,",
                 number(range)
             )
         }

@@ -44,7 +44,7 @@ messages! {
     /// Why no stable step can be given.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Unstable {
-        "step.not_finite" #[error("the forces around the state are not finite, so no stable step can be computed")]
+        "step.not_finite" #[error("the forces near the present state are not finite, so no stable step can be computed")]
         Forces {},
     }
 }

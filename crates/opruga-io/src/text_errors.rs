@@ -33,7 +33,7 @@ messages! {
         Byte { byte: String },
         "scene.empty" #[error("the scene is empty")] #[hint("`opruga new NAME` writes a scene to begin with")]
         Empty {},
-        "scene.depth" #[error("tables and arrays are nested more than {most} deep")] #[allowed("at most {most} levels")]
+        "scene.depth" #[error("tables and arrays are nested more than {most} levels deep")] #[allowed("at most {most} levels")]
         Depth { most: usize },
         "scene.too_large" #[error("the text has more values, keys and lines than fit into the memory of its reader")]
         #[allowed("at most {values} values in lists, or {lines} lines with a key")] #[hint("large shapes belong in mesh files")]
@@ -64,7 +64,7 @@ messages! {
         Failed { reason: String },
         "read.failed" #[error("there is no file `{name}`")] #[value("{name}")] #[allowed("{known}")]
         NotHeld { name: String, known: String },
-        "read.failed" #[error("there is no file `{name}`")] #[value("{name}")] #[allowed("a scene without a folder cannot name files")]
+        "read.failed" #[error("there is no file `{name}`")] #[value("{name}")] #[allowed("none: a scene without a folder cannot name files")]
         NoFolder { name: String },
         "read.failed" #[error("the file `{name}` does not exist")] #[value("{name}")] #[hint("files are looked up in `{folder}`")]
         NotThere { name: String, folder: String },
@@ -75,7 +75,7 @@ messages! {
         "read.changed" #[error("the file changed while it was being read")] #[hint("try again once it is saved")]
         Changed {},
         "shape.outside" #[error("`{name}` is outside the folder of the scene")] #[value("{name}")]
-        #[allowed("a file in the folder of the scene or below it, named with /")]
+        #[allowed("a file in the folder of the scene or below it, with / in its path")]
         #[hint("`--allow-outside` lets a scene read files from anywhere")]
         Outside { name: String },
     }

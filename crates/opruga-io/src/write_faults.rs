@@ -14,7 +14,7 @@ messages! {
     pub enum WriteFault {
         "write.exists" #[error("the file already exists")] #[hint("--force replaces it")]
         FileExists {},
-        "write.exists" #[error("the folder already contains {file}")] #[hint("use --force to replace them, or choose another folder")]
+        "write.exists" #[error("the folder already contains {file}")] #[hint("use --force to replace it, or choose another folder")]
         HoldsFile { file: String },
         "write.exists" #[error("the folder already contains {count} files, among them {file}")]
         #[hint("use --force to replace them, or choose another folder")]

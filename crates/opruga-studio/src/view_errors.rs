@@ -7,7 +7,7 @@ opruga::math::messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub enum ViewError {
         /// A program controlled the run, and its actions are not part of the scene.
-        "recording.led" #[error("a program controlled this run, and a scene file cannot express that")] #[hint("`opruga replay` shows it")]
+        "recording.led" #[error("a program controlled this run, and a scene file cannot express that")] #[hint("`opruga replay` shows the run")]
         Led {},
         /// The scene is not text.
         "recording.scene" #[error("the scene inside is not UTF-8 text")]

@@ -258,7 +258,7 @@ words! {
     set_down: "The body is put back at rest, in its new shape", "Tijelo je postavljeno iznova, u mirovanju, u novom obliku";
     recorded: "recorded commands", "snimljene naredbe";
     drawn_by: "The graphics interface and its device", "Čime se crta, i na kojem uređaju";
-    in_the_scene: "It can be set only in the scene file", "Zadaje se samo u datoteci prizora";
+    in_the_scene: "This can be set only in the scene file", "Zadaje se samo u datoteci prizora";
     yes: "yes", "da";
     no: "no", "ne";
     unsaid: "default", "inače";

@@ -58,13 +58,13 @@ messages! {
         Threads { reason: String },
         "part.path" #[error("the name is taken")]
         Taken {},
-        "part.path" #[error("the command begins at {at} s, and the world is at {now} s")]
+        "part.path" #[error("the command must begin now, at {now} s, but it begins at {at} s")]
         NotNow { at: f64, now: f64 },
         "part.path" #[error("there is no such command")]
         NoCommand {},
         "part.path" #[error("only a drag has a path")]
         NoDrag {},
-        "part.path" #[error("each row of its path must contain a later time and a point, all of them finite numbers")]
+        "part.path" #[error("each row of its path must contain a time later than that of the row before, and a point; all numbers must be finite")]
         Row {},
         "part.path" #[error("it begins at {at} s and cannot end at {until} s")]
         CannotEnd { at: f64, until: f64 },
@@ -78,7 +78,7 @@ messages! {
         ModelsUnrecorded {},
         "part.path" #[error("this cannot be recorded")]
         Unrecorded {},
-        "part.path" #[error("it cannot be written in a scene")]
+        "part.path" #[error("a scene file cannot express it")]
         NoForm {},
         "part.path" #[error("the scene has another dimension")]
         OtherDimension {},

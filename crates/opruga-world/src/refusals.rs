@@ -62,7 +62,7 @@ messages! {
         "modes.memory" #[error("{count} modes of a body with {axes} free coordinates take about {bytes} bytes")] #[allowed("at most {most} bytes")]
         #[hint("compute fewer modes")]
         ModesMemory { count: usize, axes: usize, bytes: String, most: String },
-        "modes.indefinite" #[error("the stiffness of this state has no natural frequencies")]
+        "modes.indefinite" #[error("this state has no natural frequencies, because its stiffness is not finite or is far from positive definite")]
         Indefinite {},
         "contact.implicit" #[error("bodies with `{integrator}` cannot touch bodies with `{other}`: one integrator finds a state of rest, the other follows a motion")]
         #[allowed("integrators that all find states of rest, or all follow motions")]
@@ -125,7 +125,7 @@ messages! {
         #[allowed("forces, stiffnesses and their ratios to the masses of nodes below 1e300")]
         #[hint("the largest number of its models is `{field}` = {} of `{kind}`, and its lightest node has {} kg", number(*value), number(*lightest))]
         NoEstimateOf { cause: AnyMessage, field: String, value: f64, kind: String, lightest: f64 },
-        "run.model" #[error("obstacles push nodes through surfaces from which a barrier keeps them apart")] #[hint("use smaller steps, or finer surfaces")]
+        "run.model" #[error("obstacles push nodes through surfaces, although a barrier should prevent this")] #[hint("use smaller steps, or finer surfaces")]
         Pushed {},
         "run.model" #[error("cell {cell} is inverted (volume ratio {}) while a barrier keeps bodies apart", number(*ratio))]
         #[hint("use a material that resists inversion, such as `neo_hookean`, or smaller steps")]

@@ -126,25 +126,25 @@ messages! {
     /// The position of a node for which obstacles leave no space.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Lay {
-        "part.lay" #[error("was {} m inside the first", number(*depth))]
+        "part.lay" #[error("was {} m inside the first obstacle", number(*depth))]
         Inside { depth: f64 },
-        "part.lay" #[error("was where they meet")]
+        "part.lay" #[error("was where the obstacles meet")]
         Between {},
     }
 
     /// What frees a body that starts inside an obstacle.
     #[derive(Clone, Debug, PartialEq)]
     pub enum Remedy {
-        "part.remedy" #[error("a shift by ({shift}) m would free it")]
+        "part.remedy" #[error("a shift by ({shift}) m would free the body")]
         Moved { shift: String },
-        "part.remedy" #[error("no shift along the surfaces around it would free it")]
+        "part.remedy" #[error("no shift along the surrounding surfaces would free the body")]
         Nowhere {},
     }
 
     /// The cell whose volume differs most from its volume at rest.
     #[derive(Clone, Debug, PartialEq)]
     pub enum WorstCell {
-        "part.worst_cell" #[error("; now the cell whose volume has changed most is {cell} of body `{body}`, J = {ratio:.4}")]
+        "part.worst_cell" #[error("; the cell whose volume has changed most is now cell {cell} of body `{body}`, with J = {ratio:.4}")]
         Cell { cell: u32, body: String, ratio: f64 },
     }
 
@@ -172,23 +172,23 @@ messages! {
         "step.not_converged" #[error("a step was accepted although Newton's method had not converged (`when_not_converged = \"accept\"`)")]
         Accepted {},
         "step.halved"
-        #[error("a step of {} s (in statics, the load and the motion of pins that it adds) was halved, repeatedly if needed, down to {} s, 1/{parts} of it, because Newton's method did not converge over the whole step or a model is undefined there (`when_not_converged = \"halve\"`, or real time). The result is as good as with such short steps, but took longer", number(*h), number(*shortest))]
+        #[error("a step of {} s (in statics, the load and the motion of pins that it adds) was halved, repeatedly if needed, down to {} s, 1/{parts} of it, because Newton's method did not converge over the whole step or a model is undefined in a state within it (`when_not_converged = \"halve\"`, or real time). The result is as good as with such short steps, but took longer", number(*h), number(*shortest))]
         #[hint("more substeps (in statics, more `load_steps` or frames) avoid the failed attempts")]
         Halved { h: f64, shortest: f64, parts: u64 },
         "step.cut_off"
-        #[error("a real-time step used up its budget, or needed so many products that slow motions may have a large residual: the residual forces would move single nodes by up to {} m. The body is too stiff or too slender for the step; use more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`", number(*left))]
+        #[error("a real-time step used up its budget, or needed so many products with the matrix that slow motions may have a large residual: the residual forces would move single nodes by up to {} m. The body is too stiff or too slender for the step; use more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`", number(*left))]
         CutOff { left: f64 },
         "statics.blurred"
-        #[error("an equilibrium was found in which forces are as small as their rounding errors, but the residual could still move nodes by up to {} m. Positions have sixteen digits, which is too few for such a slender body, such thin cells or such a distant origin. Smaller details of the result are meaningless", number(*error_estimate))]
+        #[error("an equilibrium was found in which forces are as small as their rounding errors, but the residual could still move nodes by up to {} m. Positions have sixteen digits, which is too few for a body so slender, for cells so thin or for positions so far from the origin. Smaller details of the result are meaningless", number(*error_estimate))]
         #[hint("use cells that are shorter relative to their thickness, or move the scene to the origin")]
         Estimated { error_estimate: f64 },
         "conditioning"
-        #[error("a body is so stiff for its mass that the rounding of its positions to sixteen digits causes forces of up to {} times the load of a node in a step. Its motion as a whole is balanced separately and is correct. The positions of its nodes are correct except for the last digit, but its stresses are meaningless", number(*times))]
+        #[error("a body is so stiff for its mass that the rounding of its positions to sixteen digits causes forces of up to {} times the largest load on a node in a step. Its motion as a whole is balanced separately and is correct. The positions of its nodes are correct except for the last digit, but its stresses are meaningless", number(*times))]
         #[hint("use larger cells or a less stiff body, or move the scene closer to the origin")]
         Conditioning { times: f64 },
         "step.disturbed"
         #[error("a body at rest in a degenerate, inverted or folded shape was disturbed at random, by 1e-4 of its size, then by a hundredth and by a tenth")]
-        #[hint("a body that has left such a shape swings until something damps it, soonest with `backward_euler` or with `damping` of its material")]
+        #[hint("a body that has left such a shape swings until its motion is damped; `backward_euler` and `damping` of the material damp it fastest")]
         Disturbed {},
         "step.odd_rest"
         #[error("a body stayed at rest in a degenerate, inverted or folded shape, in an equilibrium that disturbances of up to a tenth of its size did not end{}", if_any(worst))]
@@ -257,7 +257,8 @@ fn at_rest(count: u64, body: &str) -> String {
             "body `{body}` has come to rest with more energy in its cells than the forces account for: parts of it have {shapes}. It"
         ),
         _ => format!(
-            "{count} bodies have come to rest with more energy in their cells than the forces account for: they have {shapes}. The first, body `{body}`,"
+            "{count} bodies have come to rest with more energy in their cells than the forces account for: parts of them have {shapes}. The first, \
+body `{body}`,"
         ),
     }
 }

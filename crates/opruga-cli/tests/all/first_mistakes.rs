@@ -33,7 +33,7 @@ fn a_body_that_begins_inside_an_obstacle_is_told_of() {
     let line = all.lines().find(|l| l.contains("contact.starts_inside")).unwrap_or_else(|| panic!("it is told: {all}"));
     assert!(line.contains("body `it` begins inside obstacle 0 (half_space)"), "{line}");
     assert!(
-        line.contains(", up to 0.1 m deep (node ") && line.contains("a shift by (0, 0.1) m would free it"),
+        line.contains(", up to 0.1 m deep (node ") && line.contains("a shift by (0, 0.1) m would free the body"),
         "{line}"
     );
     // The run reports it once, before it begins, and counts it.

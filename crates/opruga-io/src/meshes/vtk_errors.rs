@@ -72,7 +72,7 @@ messages! {
         Encoding { byte: usize },
         "vtu.syntax" #[error("this is not well-formed XML: {reason}")] #[value("XML")] #[hint("the file is cut off, or is not a VTU file")]
         Xml { reason: String },
-        "vtu.syntax" #[error("the file holds `{kind}`")] #[value("{kind}")] #[allowed("<VTKFile type=\"UnstructuredGrid\">")]
+        "vtu.syntax" #[error("the file contains `{kind}`")] #[value("{kind}")] #[allowed("<VTKFile type=\"UnstructuredGrid\">")]
         Kind { kind: String },
         "vtu.compressor" #[error("data compressed by `{name}` cannot be read")] #[value("{name}")]
         #[allowed("vtkZLibDataCompressor, or none")] #[hint("choose another compressor in ParaView")]
@@ -99,7 +99,7 @@ messages! {
         Reach { cell: usize, start: i128, end: i128, most: usize },
         "vtu.syntax" #[error("`{number}` is not a whole number")] #[value("{number}")] #[allowed("a whole number")]
         NotWhole { number: f64 },
-        "vtu.syntax" #[error("`{word}` is not a number of its array")] #[value("{word}")] #[allowed("{range}")]
+        "vtu.syntax" #[error("`{word}` is not a number that its array can contain")] #[value("{word}")] #[allowed("{range}")]
         NotOfArray { word: String, range: super::errors::NumberRange },
         "vtu.size" #[error("there is no appended data")] #[value("appended")] #[allowed("<AppendedData>")] #[hint("the file is cut off")]
         NothingAppended {},

@@ -31,7 +31,7 @@ opruga_math::messages! {
         NoFrames { frame: u64 },
         /// It does not contain the state of that frame, which must be computed from an earlier one.
         "recording.not_kept" #[error("the recording keeps one state every {every} frames, but not that of frame {frame}")] #[value("{frame}")]
-        #[allowed("every {every}th frame, and the last")]
+        #[allowed("one frame in {every}, and the last frame")]
         NotKept { frame: u64, every: u64 },
         /// The system could not read it.
         "read.failed" #[error("the recording cannot be read: {reason}")]

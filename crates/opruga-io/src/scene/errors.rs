@@ -99,7 +99,7 @@ messages! {
         Counts { dimension: usize },
         "part.scene_allowed" #[error("exactly one of {fields}")]
         OneOf { fields: String },
-        "part.scene_allowed" #[error("none, there is nothing to change")]
+        "part.scene_allowed" #[error("none: there is nothing to change")]
         NothingToChange {},
         "part.scene_allowed" #[error("the scene has no bodies")]
         NoBodies {},
@@ -132,7 +132,7 @@ messages! {
         Sections { name: String },
         "part.scene_hint" #[error("write {name} = [ {{ … }} ]")]
         Inline { name: String },
-        "part.scene_hint" #[error("`{table}.kind` was set to `{kind}`, but the other fields were kept; --set {table}={kind} uses its defaults")]
+        "part.scene_hint" #[error("`{table}.kind` was set to `{kind}`, but the other fields were kept; --set {table}={kind} uses the defaults of this kind")]
         KindSet { table: String, kind: &'static str },
         "part.scene_hint" #[error("`{table}.kind` was set to `{kind}`, but the other fields were kept; --set '{table}={{kind=\"{kind}\"{needed}}}' replaces them")]
         KindSetWith { table: String, kind: &'static str, needed: String },

@@ -12,7 +12,7 @@ messages! {
         UnknownId { id: String },
         "svg.same_id" #[error("two elements have the id `{id}`")] #[value("{id}")] #[allowed("ids that differ")]
         SameId { id: String },
-        "svg.unsupported" #[error("the drawing is stretched more one way than the other")] #[value("preserveAspectRatio=\"none\"")]
+        "svg.unsupported" #[error("the drawing is stretched more in one direction than in the other")] #[value("preserveAspectRatio=\"none\"")]
         #[allowed("a width and a height in proportion to the `viewBox`")]
         Stretched {},
         "svg.unsupported" #[error("the language to use is unknown")] #[value("systemLanguage")]
@@ -20,7 +20,7 @@ messages! {
         Language {},
         "svg.unsupported" #[error("`{property}` cannot be read")] #[value("{value}")] #[hint("apply it in the drawing program")]
         Property { property: String, value: String },
-        "svg.depth" #[error("elements are nested more than {deepest} deep")] #[value("{element}")] #[allowed("at most {deepest} levels")]
+        "svg.depth" #[error("elements are nested more than {deepest} levels deep")] #[value("{element}")] #[allowed("at most {deepest} levels")]
         Depth { deepest: usize, element: String },
         "svg.unsupported" #[error("<{element}> has no outline here")] #[value("{element}")]
         #[hint("turn text into paths in the drawing program, or use a shape of `kind = \"text\"` in a scene")]
@@ -126,7 +126,7 @@ messages! {
         SeveralLayers { count: usize, known: String, setting: Setting },
         "map.syntax" #[error("a position has {count} numbers")] #[value("{count}")] #[allowed("two or three numbers")]
         Position { count: usize },
-        "map.depth" #[error("collections are nested more than {deepest} deep")] #[allowed("at most {deepest} levels")]
+        "map.depth" #[error("collections are nested more than {deepest} levels deep")] #[allowed("at most {deepest} levels")]
         Depth { deepest: usize },
         "map.syntax" #[error("type `{kind}` cannot be read")] #[value("{kind}")]
         #[allowed("FeatureCollection, Feature, GeometryCollection, Polygon, MultiPolygon, Topology")]

@@ -39,7 +39,7 @@ messages! {
         "gltf.tree" #[error("node {node} has two parents, or is its own parent")] #[value("{node}")] #[allowed("one parent for every node")]
         #[hint("give each instance its own node, with the same mesh")]
         Parents { node: usize },
-        "gltf.depth" #[error("nodes are nested more than {deepest} deep, or contain themselves")] #[value("{node}")] #[allowed("at most {deepest} levels")]
+        "gltf.depth" #[error("nodes are nested more than {deepest} levels deep, or contain themselves")] #[value("{node}")] #[allowed("at most {deepest} levels")]
         Depth { deepest: usize, node: usize },
         "gltf.unsupported" #[error("primitives of mode {mode} cannot be read")] #[value("{mode}")] #[allowed("4 (triangles)")]
         Mode { mode: u32 },
@@ -51,7 +51,7 @@ messages! {
         Corners { corners: usize },
         "gltf.unsupported" #[error("sparse accessors cannot be read")] #[value("sparse")]
         Sparse {},
-        "gltf.syntax" #[error("the accessor holds {kind} of type {component}")] #[value("{kind} of type {component}")]
+        "gltf.syntax" #[error("the accessor contains {kind} of type {component}")] #[value("{kind} of type {component}")]
         #[allowed("{wanted} of type {components}")]
         Accessor { kind: String, component: u32, wanted: &'static str, components: String },
         "gltf.unsupported" #[error("the accessor has no bufferView")] #[value("none")]

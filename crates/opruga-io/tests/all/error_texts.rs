@@ -370,7 +370,7 @@ scene.toml:20:8: error[scene.unknown_name]: there is no body `bell`
         ),
         (
             "[[[[".repeat(40),
-            r#"scene.toml:1:2: error[scene.depth]: tables and arrays are nested more than 128 deep
+            r#"scene.toml:1:2: error[scene.depth]: tables and arrays are nested more than 128 levels deep
  1 | [[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[
    |  ^
   = allowed: at most 128 levels"#,

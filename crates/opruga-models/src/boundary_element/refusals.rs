@@ -9,10 +9,10 @@ use opruga_mesh::MeshError;
 terms! {
     /// Why the equations of a boundary have no solution.
     pub enum NoSolution = "part.no_solution" {
-        Singular = "G is singular",
+        Singular = "the matrix of the tractions is singular",
         NotFinite = "the stiffness is not finite",
-        NegativeOfMany = "the stiffness has negative eigenvalues and more than 1000 vertices",
-        ManyNegative = "more than a twentieth of the stiffness has negative eigenvalues",
+        NegativeOfMany = "the stiffness has negative eigenvalues, which can be removed only with at most 1000 vertices",
+        ManyNegative = "the negative eigenvalues make up more than a twentieth of the stiffness",
     }
 }
 

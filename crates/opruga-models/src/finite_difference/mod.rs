@@ -110,8 +110,8 @@ opruga_math::messages! {
     pub enum FiniteDifferenceWarning {
         /// Edges are crushed or folded.
         "finite_difference.folded"
-        #[error("edges of a curve or a surface are shorter than 0.58 of their length at rest, where their law softens, or are folded back on their neighbours; they may not recover (counted in the last state)")]
-        #[hint("use lower loads, or shorter steps before it folds; springs (`mass_spring`) resist any compression")]
+        #[error("edges of a curve or a surface are folded back on their neighbours, or are shorter than 0.58 of their length at rest, so that their law softens; they may not recover (counted in the last state)")]
+        #[hint("use lower loads, or shorter steps before the body folds; springs (`mass_spring`) resist any compression")]
         Folded {},
     }
 }

@@ -214,8 +214,8 @@ impl Language {
             ),
             Report::WindowLost(file) => either!(
                 self,
-                "The last window was lost, probably because of its graphics driver. Your work is saved in {file}. The scene continues here from the \
-last saved moment",
+                "The previous window was lost, probably because of the graphics driver. Your work is saved in {file}. The scene continues here from \
+the last saved moment",
                 "Posljednji prozor je izgubljen, vjerojatno s grafičkim upravljačkim programom. Učinjeno je spremljeno u {file} i \
                  nastavlja se ovdje: vrijeme stoji na zadnjem sačuvanom trenutku"
             ),

@@ -130,7 +130,7 @@ fn a_way_that_a_model_refuses_is_gone_in_halves_where_that_is_asked_for() {
     assert_eq!((world.solver_work().halved, world.solver_work().deepest), (1, 1));
     let warnings = world.warnings();
     let halved = warnings.iter().find(|warning| warning.code == "step.halved").expect("a warning");
-    assert!(halved.count == 1 && halved.message.contains("or a model is undefined there"), "{halved:?}");
+    assert!(halved.count == 1 && halved.message.contains("or a model is undefined in a state within it"), "{halved:?}");
     let (wanted, force) = (1.8 * STIFFNESS * 0.5 * (1.8 * 1.8 - 1.0), tension(&mut world));
     assert!((force / wanted - 1.0).abs() < 1e-9, "{force} N, {wanted} N");
 }

@@ -99,7 +99,7 @@ fn plates_that_meet_are_told_with_time_and_pair() {
         frames(&mut world, 120);
         let warning = world.warnings().into_iter().find(|w| w.code == "contact.no_room").expect("a warning");
         assert!((30..=32).contains(&warning.count), "{warning:?}");
-        assert!(warning.message.contains("was where they meet"), "{}", warning.message);
+        assert!(warning.message.contains("was where the obstacles meet"), "{}", warning.message);
     }
     // Pinned nodes are where the pins put them, which is not a fault of the plates.
     let mut held = press(
