@@ -19,8 +19,8 @@ pub(crate) use verify::Verify;
     max_term_width = 110,
     after_help = "Without a command, `opruga` opens the studio if there is a screen; otherwise it runs the scene \
                   `ball`.\n\nOPRUGA_SIMD=scalar|sse2|avx2|avx512 in the environment selects the vector instructions of the kernels; the default is \
-                  the best that the processor has. The results are the same, bit for bit. `scalar` selects the instructions that every processor of an \
-architecture has: `sse2` on x86-64."
+                  the best that the processor has. The results are the same, bit for bit. `scalar` selects the instructions that every processor of \
+an architecture has: `sse2` on x86-64."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -394,7 +394,8 @@ pub(crate) struct Replay {
     pub(crate) file: PathBuf,
     /// Recompute every frame and compare its hash, and its whole state if the recording contains it; exit code 1 if a frame differs
     ///
-    /// Without an output option, nothing is written. With --out or another output option, the output is written afterwards if all frames are the same.
+    /// Without an output option, nothing is written. With --out or another output option, the output is written afterwards if all frames are the
+    /// same.
     #[arg(long)]
     pub(crate) verify: bool,
     /// The simulated time at which to begin [s] [default: the first frame]

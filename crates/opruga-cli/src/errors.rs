@@ -141,9 +141,9 @@ opruga::math::messages! {
     /// Why a check of a run has failed.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CheckFault {
-        "contact.crossed" #[error("at t = {} s {crossing}", number(*time))]
+        "contact.crossed" #[error("at t = {} s, {crossing}", number(*time))]
         Crossed { time: f64, crossing: Crossing },
-        "contact.crossed" #[error("at t = {} s {crossing}; {pairs} pairs of bodies in all", number(*time))]
+        "contact.crossed" #[error("at t = {} s, {crossing}; in all, {pairs} pairs of bodies cross", number(*time))]
         CrossedByPairs { time: f64, crossing: Crossing, pairs: usize },
     }
 }
@@ -166,7 +166,7 @@ opruga::math::messages! {
         "checkpoint.failed" #[error("no checkpoint was written at t = {} s: {path}: {cause}", number(*time))]
         NoCheckpoint { time: f64, path: String, cause: AnyMessage },
         "recording.open"
-        #[error("the recording has no end: its run was killed or is still running; {} up to t = {} s {} complete, {} after {} not a complete frame",
+        #[error("the recording has no end: its run was killed or is still running; {} up to t = {} s {} complete, and {} after {} not a complete frame",
             counted(*frames, "frame", "frames"), number(*until), if *frames == 1 { "is" } else { "are" },
             counted(*lost, "byte", "bytes"), if *lost == 1 { "it is" } else { "them are" })]
         NoEnd { frames: u64, until: f64, lost: u64 },
@@ -174,7 +174,7 @@ opruga::math::messages! {
         OtherProgram { program: String, now: &'static str },
         "scene.changed" #[error("{file} has changed since the run was recorded; the recording uses its own copy")]
         SceneChanged { file: String },
-        "pictures.thinned" #[error("pictures of {nodes} nodes would take {mebibytes} MiB; one frame in {every} is kept")]
+        "pictures.thinned" #[error("pictures of {nodes} nodes would need {mebibytes} MiB, so only one frame in {every} has a picture")]
         PicturesThinned { nodes: usize, mebibytes: u64, every: u64 },
     }
     /// Notes about a call.

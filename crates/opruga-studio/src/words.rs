@@ -71,7 +71,7 @@ words! {
     play: "Play", "Pokreni";
     pause: "Pause", "Zaustavi";
     step: "Step", "Korak";
-    step_hint: "One frame", "Jedna sličica";
+    step_hint: "Advance by one frame", "Jedna sličica";
     reset: "Reset", "Na početak";
     reset_hint: "Go back to the start and discard everything you have done since", "Na početak, bez svega što je u međuvremenu učinjeno";
     replay: "Replay", "Ponovi snimku";

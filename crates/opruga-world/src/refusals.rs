@@ -59,7 +59,7 @@ messages! {
         AllHeld {},
         "modes.no_mass" #[error("node {node} has no mass")] #[allowed("masses above 0 where a node can move")]
         NoMassOfNode { node: usize },
-        "modes.memory" #[error("{count} modes of a body with {axes} free coordinates take about {bytes} bytes")] #[allowed("at most {most} bytes")]
+        "modes.memory" #[error("{count} modes of a body with {axes} free coordinates need about {bytes} bytes")] #[allowed("at most {most} bytes")]
         #[hint("compute fewer modes")]
         ModesMemory { count: usize, axes: usize, bytes: String, most: String },
         "modes.indefinite" #[error("this state has no natural frequencies, because its stiffness is not finite or is far from positive definite")]
@@ -87,10 +87,10 @@ messages! {
         Reach { reach: f64, shortest: f64 },
         "contact.unfold" #[error("`unfold` displaces bodies at random, possibly into other bodies")] #[parameters("unfold")] #[allowed("`unfold = false` in a scene with `[contact]`")]
         Unfold {},
-        "limit.memory" #[error("the bodies of the scene take about {all} bytes, of which `{body}` takes {largest}")] #[allowed("at most {most} bytes")]
+        "limit.memory" #[error("the bodies of the scene need about {all} bytes, of which `{body}` needs {largest}")] #[allowed("at most {most} bytes")]
         #[hint("use a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
         SceneMemory { all: String, body: String, largest: String, most: u64 },
-        "limit.memory" #[error("the bodies of the scene take about {all} bytes, of which `{body}` takes {largest}")]
+        "limit.memory" #[error("the bodies of the scene need about {all} bytes, of which `{body}` needs {largest}")]
         #[allowed("the memory that is available to this program")]
         #[hint("use a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
         MachineMemory { all: String, body: String, largest: String },

@@ -21,7 +21,8 @@ pub(crate) struct Verify {
     /// Replace an existing report
     #[arg(long, requires = "report")]
     pub(crate) force: bool,
-    /// Multiply the shear modulus of every solid and the stiffness of every spring and hinge by FACTOR, 0.5 to 2, to see which cases detect the change
+    /// Multiply the shear modulus of every solid and the stiffness of every spring and hinge by FACTOR, 0.5 to 2, to see which cases detect this
+    /// change
     #[arg(long, value_name = "FACTOR", allow_negative_numbers = true, default_value_t = 1.0, conflicts_with = "list")]
     pub(crate) stiffer: f64,
     /// Number of threads, 1 to 256; results do not depend on it [default: one per core]

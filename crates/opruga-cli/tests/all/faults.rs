@@ -261,7 +261,7 @@ fn limits_are_checked_before_memory_is_taken() {
             scene(
                 "shape = { kind = \"ring\", radius = 1, vertices = 50000 }\ncopies = { count = [3000], spacing = [1, 1] }",
             ),
-            "error[limit.memory]: the scene would take at least about 18028000000 bytes",
+            "error[limit.memory]: the scene would need at least about 18028000000 bytes",
         ),
         (
             scene(

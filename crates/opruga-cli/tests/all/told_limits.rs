@@ -63,7 +63,8 @@ fn pictures_that_need_more_memory_than_allowed_are_thinned_with_a_warning_before
     let told = std::io::BufRead::lines(stderr).map_while(Result::ok).find(|line| line.contains("[pictures.thinned]"));
     child.kill().expect("the program still runs");
     child.wait().expect("it ends");
-    let says = "warning[pictures.thinned]: pictures of 2000 nodes would take 1373 MiB; one frame in 2 is kept";
+    let says =
+        "warning[pictures.thinned]: pictures of 2000 nodes would need 1373 MiB, so only one frame in 2 has a picture";
     assert_eq!(told.as_deref(), Some(says));
 }
 

@@ -81,10 +81,10 @@ macro_rules! solvers {
     () => {
         "The solver of the linear equations in each iteration. Conjugate gradients, with or without a matrix, give the same bits on every processor. \
 If they would need more than a thousand products with a matrix, for example for a nearly incompressible solid, a complete factor of the matrix \
-replaces them if it fits into 100 MB. This factor is computed in a fixed order. The sparse Cholesky factor gives the same bits only on processors of \
-the same class. \"auto\" uses the Cholesky factor for bodies in the plane with 200 nodes or more and for bodies in space with 200 to 3000 nodes. \
-\"matrix_free\" stores no matrix and needs several times as many products; with quadratic cells, these products take dozens of times as long. Use it \
-for bodies whose matrix does not fit into memory."
+replaces them if it fits into 100 MB. This factor is computed in a fixed order, so it also gives the same bits on every processor. The sparse \
+Cholesky factor gives the same bits only on processors of the same class. \"auto\" uses the Cholesky factor for bodies in the plane with 200 nodes \
+or more and for bodies in space with 200 to 3000 nodes. \"matrix_free\" stores no matrix and needs several times as many products; with quadratic \
+cells, these products take dozens of times as long. Use it for bodies whose matrix does not fit into memory."
     };
 }
 
@@ -153,16 +153,16 @@ pub(crate) const ACCURACY: Field = Field::new(
     "",
     Default::Text("exact"),
     "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: three iterations, which start from \
-the motion of the previous step. Each iteration uses the factor of a matrix, or at most 1000 products with it; the matrix is kept as long as the \
+the motion of the previous step. Each iteration uses the factor of a matrix, or at most 1000 products with the matrix, which is kept as long as the \
 steps converge with it. Up to a fifth of the unbalanced forces may remain as a residual, and the following steps correct it. `bdf2` damps slow \
 motions little, so it aims at a residual of a thousandth, and at most a twentieth may remain. If the residual would create energy, for example when \
 a soft body strikes the floor, the step is solved exactly, which takes several times as long. With a barrier between bodies, iterations that the \
-barrier cuts short do not count towards the budget, and at most a twentieth may remain. Clamped cubes and beams that swing under their weight were \
-compared with exact steps of the same length: amplitudes agree within 3 % and periods within 1 %, and the final state of rest agrees with statics \
-within 1 %. Steps that exceed these bounds on the residual are counted in a warning (`step.cut_off`), which reports the size of the residual. Do not \
-use the setting for results that are compared with others, for slender bodies of many thousand nodes, or for motions that depend on small \
-differences, such as buckling. `implicit_midpoint`, which damps nothing, and `newmark`, which remembers the residual in its acceleration, would \
-accumulate residuals, so they refuse the setting.",
+barrier cuts short do not count towards the budget, and at most a twentieth may remain. For clamped cubes and beams that swing under their weight, \
+the results agree with those of exact steps of the same length: amplitudes within 3 % and periods within 1 %. The final state of rest agrees with \
+statics within 1 %. Steps that exceed these bounds on the residual are counted in a warning (`step.cut_off`), which reports the size of the \
+residual. Do not use the setting for results that are compared with others, for slender bodies of many thousand nodes, or for motions that depend on \
+small differences, such as buckling. `implicit_midpoint`, which damps nothing, and `newmark`, which remembers the residual in its acceleration, \
+would accumulate residuals, so they refuse the setting.",
 );
 
 /// Integrators with which residuals of steps would accumulate.

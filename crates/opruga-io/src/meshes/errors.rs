@@ -160,10 +160,10 @@ messages! {
         #[allowed("faces, edges and corners of the cells, or a one-dimensional body")]
         NoPartOfCell { element: ElementName, index: u64 },
         "mesh.degenerate_element" #[error("{element} {index} has almost no area for its size")] #[value("{area}")]
-        #[allowed("more than {least} of its longest edge squared")]
+        #[allowed("more than {least} times its longest edge squared")]
         NoArea { element: ElementName, index: u64, area: String, least: String },
         "mesh.degenerate_element" #[error("{element} {index} has almost no volume for its size")] #[value("{volume}")]
-        #[allowed("more than {least} of its longest edge cubed")]
+        #[allowed("more than {least} times its longest edge cubed")]
         NoVolume { element: ElementName, index: u64, volume: String, least: String },
         "mesh.inverted" #[error("{element} {index} folds over itself{}", among(*count, *cells))] #[value("{measure}")] #[allowed("{order}")]
         Folded { element: ElementName, index: u64, count: usize, cells: usize, measure: String, order: CornerOrder },

@@ -10,11 +10,11 @@ opruga_math::messages! {
         Bodies { count: String, most: u64 },
         "limit.nodes" #[error("the scene has {count} nodes or more")] #[value("{count}")] #[allowed("at most {most} nodes")]
         Nodes { count: String, most: u64 },
-        "limit.memory" #[error("the scene would take at least about {count} bytes")] #[value("{count}")] #[allowed("at most {most} bytes")]
+        "limit.memory" #[error("the scene would need at least about {count} bytes")] #[value("{count}")] #[allowed("at most {most} bytes")]
         Memory { count: String, most: u64 },
         "limit.nodes" #[error("the mesh would have {count} nodes or more")] #[value("{count}")] #[allowed("at most {most} nodes")]
         MeshNodes { count: String, most: u64 },
-        "limit.memory" #[error("the mesh would take at least about {count} bytes")] #[value("{count}")] #[allowed("at most {most} bytes")]
+        "limit.memory" #[error("the mesh would need at least about {count} bytes")] #[value("{count}")] #[allowed("at most {most} bytes")]
         MeshMemory { count: String, most: u64 },
     }
 }

@@ -55,7 +55,7 @@ messages! {
         "mesh.duplicate_element" #[error("triangles {first} and {second} have the same corners")] #[value("{second}")] #[hint("leave one of them out")]
         SameCorners { first: u32, second: u32 },
         "mesh.degenerate_face" #[error("triangle {triangle} has almost no area for its size")] #[value("{area}")]
-        #[allowed("an area above {least} of its longest edge squared")]
+        #[allowed("an area above {least} times its longest edge squared")]
         NoArea { triangle: u32, area: String, least: String },
         "mesh.degenerate_face" #[error("triangle {triangle} has two corners at the same vertex if vertices within {distance} m are joined")]
         #[value("{distance}")] #[hint("use a smaller {weld}, or leave the triangle out")]
@@ -76,7 +76,7 @@ messages! {
         #[value("{loops}")] #[allowed("a closed surface")]
         Open { loops: usize, positions: String },
         "mesh.dimension" #[error("a closed surface is flat: it encloses no volume")] #[value("{volume}")]
-        #[allowed("a volume above 1e-12 of its extent cubed")]
+        #[allowed("a volume above 1e-12 times its extent cubed")]
         Flat { volume: String },
         "mesh.non_manifold" #[error("parts of the surface are joined only at a vertex: {positions}")] #[value("{count}")]
         #[allowed("triangles that form one fan around every vertex")] #[hint("move the parts apart, or give each a vertex of its own")]
@@ -104,11 +104,11 @@ messages! {
     pub(crate) enum SurfaceNotice {
         "mesh.concave_face" #[error("{count} of {} {} concave; they were divided along diagonals that lie inside", polygons(*faces), are(*count))] #[value("{count}")]
         Concave { count: usize, faces: usize },
-        "mesh.bent_face" #[error("{count} of {} {} not flat (by up to {off} of their size); they were divided along the better diagonals", polygons(*faces), are(*count))]
+        "mesh.bent_face" #[error("{count} of {} {} not flat (with a deviation of up to {off} of their size); they were divided along the better diagonals", polygons(*faces), are(*count))]
         #[value("{count}")]
         BentFaces { count: usize, faces: usize, off: String },
         "mesh.sliver"
-        #[error("{count} of {} {}; the thinnest is triangle {thinnest}, with an area of {} of its longest edge squared", counted(*triangles as u64, "triangle", "triangles"), if *count == 1 { "is a sliver" } else { "are slivers" }, number(*area))]
+        #[error("{count} of {} {}; the thinnest is triangle {thinnest}, with an area of {} times its longest edge squared", counted(*triangles as u64, "triangle", "triangles"), if *count == 1 { "is a sliver" } else { "are slivers" }, number(*area))]
         #[value("{count}")] #[allowed("areas of at least {least}")] #[hint("{remesh} makes nearly equilateral triangles")]
         Slivers { count: usize, triangles: usize, thinnest: usize, area: f64, least: String, remesh: Setting },
         "mesh.unreferenced" #[error("{} left out", counted(*count as u64, "vertex that no triangle uses is", "vertices that no triangle uses are"))] #[value("{count}")]

@@ -341,7 +341,7 @@ scene.toml:20:8: error[scene.unknown_name]: there is no body `bell`
                 "{HEAD}{}copies = {{ count = [1000], spacing = [1, 1] }}\n",
                 BALL.replace("vertices = 8", "vertices = 100000")
             ),
-            r#"scene.toml:12:10: error[limit.memory]: the scene would take at least about 24051600000 bytes
+            r#"scene.toml:12:10: error[limit.memory]: the scene would need at least about 24051600000 bytes
  12 | copies = { count = [1000], spacing = [1, 1] }
     |          ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
   = allowed: at most 8589934592 bytes"#,

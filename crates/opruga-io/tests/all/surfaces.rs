@@ -148,7 +148,11 @@ fn polygons_are_cut_inside_and_concave_and_bent_ones_counted() {
     let (_, notices) = surface("a.obj", lifted(0.4).as_bytes()).expect("a bent cube");
     let told: Vec<_> = notices.iter().map(|n| (n.about.code, n.about.value.as_deref())).collect();
     assert_eq!(told, [("mesh.bent_face", Some("1"))], "{}", notices[0]);
-    assert!(notices[0].about.message.contains("is not flat (by up to 0.1 of their size)"), "{}", notices[0]);
+    assert!(
+        notices[0].about.message.contains("is not flat (with a deviation of up to 0.1 of their size)"),
+        "{}",
+        notices[0]
+    );
     assert!(surface("a.obj", lifted(0.01).as_bytes()).expect("a cube").1.is_empty());
     let error = refused("a.obj", lifted(3.0).as_bytes());
     assert!(error.code == "mesh.degenerate_face" && error.line.is_some(), "{error}");

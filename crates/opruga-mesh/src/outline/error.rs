@@ -37,7 +37,7 @@ messages! {
         TooFine { spacing: f64, nodes: u64 },
         /// The boxes of edges overlap too often.
         "limit.comparisons" #[error("{edges} edges run past one another so closely that more than {most} pairs would have to be compared")]
-        #[value("{edges}")] #[allowed("edges of which at most {most} pairs lie side by side")] #[hint("draw the outline with fewer points")]
+        #[value("{edges}")] #[allowed("at most {most} pairs of edges that lie side by side")] #[hint("draw the outline with fewer points")]
         NotCompared { edges: u64, most: u64 },
         /// The resulting mesh is refused.
         "scene.shape" #[error("{error}")]

@@ -49,7 +49,7 @@ messages! {
         /// A facet without a normal.
         "model.degenerate_facet"
         #[error("facet {facet} is degenerate: its measure is {} and one of its edges is {} m long", number(*measure), number(*edge))]
-        #[allowed("a measure above 1e-10 of the edge (in space, of its square)")]
+        #[allowed("a measure above 1e-10 times the length of the edge (in space, times its square)")]
         Degenerate { facet: usize, measure: f64, edge: f64 },
         /// Nodes that are not on the surface.
         "model.inner_nodes"
@@ -70,7 +70,7 @@ messages! {
         NestedExterior { facet: u32 },
         /// More vertices than dense matrices allow.
         "limit.memory"
-        #[error("the boundary has {nodes} vertices, whose dense matrices take about {} bytes during their assembly", number(*bytes))]
+        #[error("the boundary has {nodes} vertices, whose dense matrices need about {} bytes during their assembly", number(*bytes))]
         #[allowed("at most {most} vertices")]
         #[hint("use a coarser surface (`spacing`), or fill it and use `fem`")]
         TooMany { nodes: usize, bytes: f64, most: usize },

@@ -23,7 +23,7 @@ messages! {
         /// A cell that has no volume or is inverted.
         "model.inverted_cell"
         #[error("cell {cell} has no volume or is inverted at rest: det ∂X/∂ξ = {} for a cell {} m long", number(*determinant), number(*size))]
-        #[allowed("more than 1e-12 of its length squared (in space, cubed)")]
+        #[allowed("more than 1e-12 times its length squared (in space, cubed)")]
         InvertedCell { cell: usize, determinant: f64, size: f64 },
         /// Linear cells near incompressibility.
         "model.locking"

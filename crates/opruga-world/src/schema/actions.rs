@@ -202,8 +202,8 @@ by ten times the size of the body.",
                     Allowed::Text,
                     "",
                     Default::Required,
-                    "The parameter: `body.NAME.models.KIND.field` (`NAME` of a body with copies: all of them), `body.NAME.integrator.field`, \
-`integrator.field`, `world.field`, `contact.field`, `collider.NUMBER.field` or `time.substeps`.",
+                    "The parameter: `body.NAME.models.KIND.field` (the `NAME` of a body with copies means all of them), \
+`body.NAME.integrator.field`, `integrator.field`, `world.field`, `contact.field`, `collider.NUMBER.field` or `time.substeps`.",
                 ),
             ],
         ),

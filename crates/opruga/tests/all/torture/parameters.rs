@@ -70,8 +70,8 @@ fn parameters_that_make_no_sense() {
         (
             ring(16, "{ kind = \"mass_spring\", stiffness = 1e300 }", ""),
             "step.not_finite: body `b`: stability: the forces near the present state are not finite, so no stable step can be computed; allowed: \
-             forces, stiffnesses and their ratios to the masses of nodes below 1e300; hint: the largest number of its models is `stiffness` = 1e300 of \
-             `mass_spring`, and its lightest node has 0.0416667 kg",
+             forces, stiffnesses and their ratios to the masses of nodes below 1e300; hint: the largest number of its models is `stiffness` = 1e300 \
+             of `mass_spring`, and its lightest node has 0.0416667 kg",
         ),
         // 58: pins that prescribe two positions of a node
         (
