@@ -29,7 +29,7 @@ pub(crate) fn asked_to_stop() -> &'static AtomicBool {
             std::thread::spawn(|| {
                 std::thread::sleep(PATIENCE);
                 if !SILENT.load(Ordering::SeqCst) {
-                    eprintln!("the run ends after the present step; asked once more, it ends at once");
+                    eprintln!("the run ends after the present step; a second interrupt ends it at once");
                 }
             });
         });

@@ -168,7 +168,7 @@ impl Job<'_> {
                 if self.call.json {
                     print_data(&format!("{verified}\n"))?;
                 } else if writes {
-                    eprintln!("the run differs from the recorded one, so nothing is written; without --verify it is");
+                    eprintln!("the run differs from the recorded one, so nothing is written; without --verify, the output is written");
                 }
                 Ok(u8::from(!same))
             }
@@ -237,7 +237,7 @@ impl Job<'_> {
                     ),
                 };
                 eprintln!(
-                    "{}: {count} computed again and compared {states}: the same to the bit; state {same}",
+                    "{}: {count} computed again and compared {states}: the same, bit for bit; state hash {same}",
                     self.source.name
                 );
             }

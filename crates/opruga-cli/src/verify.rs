@@ -57,7 +57,7 @@ pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failu
     }
     let failed = rows.iter().any(|row| !row.pass);
     if failed && !call.json {
-        eprintln!("docs/verification.md explains why cases that are known to fail do so");
+        eprintln!("docs/verification.md explains the failures that are known");
     }
     Ok(u8::from(failed))
 }
