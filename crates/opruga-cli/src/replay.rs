@@ -168,7 +168,9 @@ impl Job<'_> {
                 if self.call.json {
                     print_data(&format!("{verified}\n"))?;
                 } else if writes {
-                    eprintln!("the run differs from the recorded one, so nothing is written; without --verify, the output is written");
+                    eprintln!(
+                        "the run differs from the recorded one, so nothing is written; without --verify, the output is written"
+                    );
                 }
                 Ok(u8::from(!same))
             }

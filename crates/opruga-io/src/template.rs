@@ -19,7 +19,7 @@ title = "TITLE"
 
 [time]
 seconds = 4.0              # how long the scene lasts
-frame = 0.016666666666666666 # from one picture to the next
+frame = 0.016666666666666666 # the length of a frame
 substeps = 32              # steps of the integrator in a frame: h = frame / substeps
 
 [world]

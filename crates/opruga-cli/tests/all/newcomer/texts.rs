@@ -88,6 +88,6 @@ fn other_words_of_the_field_lead_to_ours() {
     std::fs::write(folder.path().join("i.toml"), implicit).expect("a file");
     let output = opruga(folder.path(), &["check", "i.toml", "--set", "integrator.kind=heun"]);
     assert_eq!(code(&output), 2);
-    assert!(said(&output).contains("--set integrator=heun uses its defaults"), "{}", said(&output));
+    assert!(said(&output).contains("--set integrator=heun uses the defaults of this kind"), "{}", said(&output));
     assert_eq!(code(&opruga(folder.path(), &["check", "i.toml", "--set", "integrator=verlet"])), 0);
 }
