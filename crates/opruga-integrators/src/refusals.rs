@@ -60,7 +60,7 @@ messages! {
         Free { motions: AnyMessage, count: usize },
         /// A body that its linear forces let rotate for ever.
         "static.rigid_modes"
-        #[error("nothing prevents {motions}: {}. The forces of this body are linear, so a moment would rotate it for ever, and unlike a pendulum, its weight does not bring it back. It has no equilibrium unless it is held", modes(*count))]
+        #[error("nothing prevents {motions}: {}. The forces of this body are linear, so a moment would rotate it for ever, and its weight does not bring it back, unlike that of a pendulum. It has no equilibrium unless it is held", modes(*count))]
         #[hint("pin as many axes of nodes as there are rigid modes, or use a material for large rotations, such as `neo_hookean`")]
         Endless { motions: AnyMessage, count: usize },
         /// A piece that nothing holds.

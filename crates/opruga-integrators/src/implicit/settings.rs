@@ -157,12 +157,12 @@ the motion of the previous step. Each iteration uses the factor of a matrix, or 
 steps converge with it. Up to a fifth of the unbalanced forces may remain as a residual, and the following steps correct it. `bdf2` damps slow \
 motions little, so it aims at a residual of a thousandth, and at most a twentieth may remain. If the residual would create energy, for example when \
 a soft body strikes the floor, the step is solved exactly, which takes several times as long. With a barrier between bodies, iterations that the \
-barrier cuts short do not count towards the budget, and at most a twentieth may remain. For clamped cubes and beams that swing under their weight, \
-the results agree with those of exact steps of the same length: amplitudes within 3 % and periods within 1 %. The final state of rest agrees with \
-statics within 1 %. Steps that exceed these bounds on the residual are counted in a warning (`step.cut_off`), which reports the size of the \
-residual. Do not use the setting for results that are compared with others, for slender bodies of many thousand nodes, or for motions that depend on \
-small differences, such as buckling. `implicit_midpoint`, which damps nothing, and `newmark`, which remembers the residual in its acceleration, \
-would accumulate residuals, so they refuse the setting.",
+barrier cuts short do not count towards the budget, and at most a twentieth may remain. Steps that exceed these bounds on the residual are counted \
+in a warning (`step.cut_off`), which reports the size of the residual. For clamped cubes and beams that swing under their weight, the results agree \
+with those of exact steps of the same length: amplitudes within 3 % and periods within 1 %. The final state of rest agrees with statics within 1 %. \
+Do not use the setting for results that are compared with others, for slender bodies of many thousand nodes, or for motions that depend on small \
+differences, such as buckling. `implicit_midpoint`, which damps nothing, and `newmark`, which remembers the residual in its acceleration, would \
+accumulate residuals, so they refuse the setting.",
 );
 
 /// Integrators with which residuals of steps would accumulate.

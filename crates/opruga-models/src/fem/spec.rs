@@ -9,12 +9,12 @@ pub const SPEC: Spec = Spec {
     kind: "fem",
     summary: "an elastic solid by finite elements, with a choice of materials",
     documentation: "Energy U = Σ V ψ(F) over the integration points of the cells, F = ∂x/∂X; force −∂U/∂x. The cells are triangles and tetrahedra of \
-first or second order, quadrilaterals, or hexahedra. In every material, E and ν are Young's modulus and Poisson's ratio at small strain; μ = E/2(1 + \
+first or second order, quadrilaterals and hexahedra. In every material, E and ν are Young's modulus and Poisson's ratio at small strain; μ = E/2(1 + \
 ν), λ = Eν/((1 + ν)(1 − 2ν)). Quadratic triangles and tetrahedra (`order = 2` of the body, the default) lock neither in bending nor near \
 incompressibility. In quadrilaterals and hexahedra, the strains of bending and twisting follow from assumed stresses; they are exact if the cells \
 are rectangular, up to ν = 0.4999. Linear triangles and tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` \
 accepts them; with `nodal_volume`, they do not lock. In the plane, the body is a slice of a long one (plane strain) or a plate that thins freely \
-(plane stress); its depth is `thickness` of the body. Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's \
+(plane stress); its depth is the `thickness` of the body. Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's \
 strain; it is zero under rigid motion. Heat: with `thermal_expansion` an unconstrained body expands by the factor g = 1 + α (T − T₀) and has no \
 stress, U = Σ V g³ ψ(F/g) (`linear`: ψ(ε − αΔT 1)); in plane strain it expands by the factor 1 + (1 + ν) α (T − T₀) in the plane. The command `set` \
 can change the temperature while the scene runs. Equations, sources and measurements: docs/finite-elements.md.",

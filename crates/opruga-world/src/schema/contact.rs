@@ -121,7 +121,7 @@ pub const BODY_CONTACT: Section = Section {
                 Allowed::Choice(&["skin", "cells"]),
                 "",
                 Default::Text("skin"),
-                "Which surface of a body that a lattice fills touches other bodies: `skin` is the surface that the lattice carries and that is \
+                "If a lattice fills the body, the surface that touches other bodies: `skin` is the surface that the lattice carries and that is \
 drawn; `cells` is the boundary of its cells, which lies outside the skin.",
             ),
             Field::new("touch", Allowed::Boolean, "", Default::Boolean(true), "Whether it touches anything at all."),
