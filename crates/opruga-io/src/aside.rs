@@ -9,7 +9,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The ending of files while they are being written.
+/// The ending of a file's name while the file is being written.
 const WRITING: &str = ".writing";
 
 /// The temporary name of a file while the writer with this number writes it.
@@ -25,13 +25,13 @@ pub(crate) fn aside_name(name: &OsStr) -> OsString {
     name_of(name, std::process::id().into())
 }
 
-/// The final name of a file that has a name of [`aside_name`]; none for other files.
+/// The final name of a file whose temporary name has the form of [`aside_name`]; none for other names.
 fn name_within(aside: &str) -> Option<&str> {
     let (name, process) = aside.strip_prefix('.')?.strip_suffix(WRITING)?.rsplit_once('.')?;
     (!process.is_empty() && process.bytes().all(|b| b.is_ascii_digit())).then_some(name)
 }
 
-/// Whether a name is one of [`aside_name`].
+/// Whether a name has the form of [`aside_name`].
 pub(crate) fn is_aside(name: &str) -> bool {
     name_within(name).is_some()
 }
@@ -55,7 +55,7 @@ pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, Fi
                     return Ok((aside, file));
                 }
             }
-            // Another writer has the same number, such as another thread, or a process in another container.
+            // Another writer, such as another thread or a process in another container, has the same number.
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists && !remove_if_dead(&aside) => writer += 1,
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
             Err(e) => return Err(e),
@@ -63,7 +63,7 @@ pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, Fi
     }
 }
 
-/// Removes the temporary files that killed processes left in a folder for a file with this name; without a name, those for all files.
+/// Removes the temporary files that killed processes left in a folder for a file with this name. If there is no name, removes those for all files.
 pub(crate) fn remove_the_dead(folder: &Path, name: Option<&OsStr>) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for found in entries.filter_map(|entry| entry.file_name().into_string().ok()) {
@@ -74,8 +74,8 @@ pub(crate) fn remove_the_dead(folder: &Path, name: Option<&OsStr>) {
     }
 }
 
-/// Removes a file that no process holds, and returns whether it is gone. If the file system has no locks, it is unknown whether the file is held, so
-/// it is kept.
+/// Removes a file that no process has locked, and returns whether it is gone. The file is kept if the file system has no locks, because a process may
+/// still be writing it.
 fn remove_if_dead(aside: &Path) -> bool {
     match File::open(aside) {
         Ok(file) => match file.try_lock() {

@@ -19,7 +19,7 @@ pub fn decode(letters: &[u8]) -> Option<Vec<u8>> {
     decode_up_to(letters, usize::MAX).map(|found| found.0)
 }
 
-/// Decodes at least `most` bytes from the beginning of the letters, if they hold that many. Also returns the number of letters read.
+/// Decodes letters from the beginning until there are at least `most` bytes, or until the letters end. Also returns the number of letters read.
 pub(crate) fn decode_up_to(letters: &[u8], most: usize) -> Option<(Vec<u8>, usize)> {
     let mut out = Vec::with_capacity(usize::min(most.saturating_add(3), letters.len() / 4 * 3 + 3));
     let mut taken = 0;
@@ -30,7 +30,7 @@ pub(crate) fn decode_up_to(letters: &[u8], most: usize) -> Option<(Vec<u8>, usiz
         taken += group.len();
         let filled = group.iter().rev().take_while(|letter| **letter == b'=').count();
         let own = &group[..group.len() - filled];
-        // A single letter holds no byte. Only the last group may be incomplete.
+        // A single letter does not hold a whole byte. Only the last group may be incomplete.
         if own.len() < 2 || (group.len() < 4 && taken < letters.len()) {
             return None;
         }

@@ -59,8 +59,8 @@ fn at_end(bytes: &[u8], open: usize, until: usize) -> Unclosed {
     Unclosed { open, wanted: if bytes[open] == b'[' { ']' } else { '}' }, until }
 }
 
-/// Whether a line is the head of a table, such as `[time]` or `[[body]]`. The only bare words that a list may hold are `true`, `false`, `inf` and
-/// `nan`.
+/// Whether a line is the head of a table, such as `[time]` or `[[body]]`. A line such as `[true]` is a list: `true`, `false`, `inf` and `nan` are the
+/// only bare words that a list may hold.
 fn is_head(line: &str) -> bool {
     let line = line.split('#').next().unwrap_or(line).trim();
     let inner = line.strip_prefix('[').and_then(|l| l.strip_suffix(']'));

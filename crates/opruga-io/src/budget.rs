@@ -79,14 +79,14 @@ pub(crate) const RULES: Limit = Limit { code: "limit.rules", most: 1 << 26, what
 /// its meshes count, too.
 pub(crate) const INSTANCES: Limit = Limit { code: "limit.instances", most: 1 << 22, what: Counted::Vertices };
 
-/// Numbers in the arrays of a compressed file, besides [`NUMBERS_PER_BYTE`] for each of its bytes.
+/// Numbers in the arrays of a compressed file, in addition to [`NUMBERS_PER_BYTE`] numbers for each of its bytes.
 pub(crate) const NUMBERS: Limit = Limit { code: "limit.numbers", most: 1 << 20, what: Counted::Numbers };
 
-/// The numbers that a file may have for each of its bytes. A compressed mesh has about one or two, or a thousand if they are zero.
+/// The numbers that a file may have for each of its bytes. A compressed mesh has about one or two numbers per byte, or about a thousand if the
+/// numbers are zero.
 pub(crate) const NUMBERS_PER_BYTE: u64 = 8;
 
-/// Values of cells, numbers of nodes, and cells in groups. The count is the number of names times the number of cells, even if a file omits most
-/// values.
+/// Values of cells and nodes, and cells in groups. The count is the number of names times the number of cells, even if a file omits most values.
 pub(crate) const VALUES: Limit = Limit { code: "limit.values", most: 1 << 25, what: Counted::Values };
 
 /// The largest number of omitted parts that are listed; the rest are only counted.

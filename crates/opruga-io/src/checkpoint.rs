@@ -26,7 +26,7 @@ const HEAD: usize = 32;
 pub struct Checkpoint {
     /// The text of the scene as it was read, so that the checkpoint needs no other file. Overrides belong in the payload.
     pub scene: String,
-    /// The state, in the form of the world that wrote it.
+    /// The bytes of the state, in the encoding of the world that wrote it.
     pub payload: Vec<u8>,
 }
 

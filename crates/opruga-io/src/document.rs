@@ -107,7 +107,7 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
     let count = problems.len();
     for problem in problems.into_iter().take(MOST_SHOWN) {
         let span = problem.span().unwrap_or(0..0);
-        // Everything that is read as part of an unclosed list is wrong, but this is only one mistake.
+        // An unclosed bracket causes errors in all text after it. It is a single mistake, so only one error is reported.
         if let Some(open) = open.filter(|open| span.start >= open.open) {
             if !std::mem::replace(&mut reported, true) {
                 let (line, until) = (source.position(open.open).0, source.position(open.until).0);
@@ -115,7 +115,8 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
                     ']' => TextError::OpenList { line },
                     _ => TextError::OpenTable { line },
                 };
-                // The first error of the parser is at the missing bracket, or where the next part begins.
+                // If the parser reports its first error before the next part, the bracket is missing there. Otherwise the location is that of the
+                // open bracket.
                 let location = if span.start < open.until { span.start } else { open.open };
                 let bracket = open.wanted;
                 let hint = match location == open.open {
@@ -131,7 +132,7 @@ pub(crate) fn parse(source: &Source<'_>) -> (Option<Node>, Vec<SceneError>) {
             errors.push(duplicate(source, &root, span.start, span.end));
             continue;
         }
-        // Errors in the lines after an error follow from it, up to the next valid line.
+        // An error also causes errors in the lines after it, up to the next valid line. They are not reported.
         let line = source.position(span.start).0;
         let structure = FOLLOW.iter().any(|what| problem.message().starts_with(what));
         let follows = broken_line.is_some_and(|before| line == before || line == before + 1 && structure);
@@ -183,7 +184,7 @@ fn duplicate(source: &Source<'_>, root: &Node, start: usize, end: usize) -> Scen
     source.mark(error.path(word), start, end)
 }
 
-/// Finds the last location before a byte at which a key of this name is written.
+/// Finds the last key of this name that is written before a byte.
 fn last_before(node: &Node, word: &str, before: usize, best: &mut Option<usize>) {
     match &node.data {
         Data::Table(entries) => {

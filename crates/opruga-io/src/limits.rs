@@ -36,7 +36,7 @@ impl Limits {
             file_bytes: 64 << 20,
             shape_bytes: 256 << 20,
             depth: 128,
-            // Reading them takes at most 300 MB and two seconds, whatever they are.
+            // Reading this many values takes at most 300 MB and two seconds, whatever the values are.
             values: 1 << 20,
             bodies: 4_000_000,
             nodes: 200_000_000,

@@ -95,7 +95,7 @@ impl OutputFolder {
             Err(fs::TryLockError::Error(e)) if e.kind() == io::ErrorKind::Unsupported => {}
             Err(fs::TryLockError::Error(e)) => return Err(cannot(Doing::Locked, &e)),
         }
-        // Files that were being written when an earlier owner of the lock was killed.
+        // Removes the files that were being written when an earlier owner of the lock was killed.
         remove_the_dead(path, None);
         for entry in fs::read_dir(path).map_err(|e| cannot(Doing::Read, &e))?.flatten() {
             if entry.file_name().to_str().is_some_and(|name| name.ends_with(TRIAL)) {
@@ -110,7 +110,7 @@ impl OutputFolder {
                 .collect();
             names.sort();
             if let Some(first) = names.first() {
-                // No file of this process may remain in a folder that belongs to someone else, nor may the lock of a process that was killed.
+                // A folder that is refused must not keep the lock file, whether this process made it or a killed process left it.
                 let _ = fs::remove_file(path.join(LOCK));
                 let file = crate::problem::visible(first);
                 return Err(WriteError::of(
@@ -183,7 +183,7 @@ impl Together<'_> {
     }
 
     /// Does the same as [`Together::write`], but keeps the replaced file, if there is one, under a second name, where it replaces an older file. At
-    /// every moment, even after a crash, both names are complete files.
+    /// every moment, even after a crash, both names refer to complete files.
     ///
     /// # Errors
     /// `write.failed`.

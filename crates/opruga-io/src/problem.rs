@@ -209,7 +209,7 @@ impl SceneError {
             changed |= replaced != *message;
             *message = replaced;
         }
-        // Texts that were set beside the message stay if nothing in it has another name.
+        // If no name or setting in the message changes, texts that were set in addition to it are kept.
         if !changed {
             return self;
         }
@@ -315,7 +315,7 @@ pub fn in_words(translation: Option<&Translation>, message: &dyn Message) -> Str
     translation.map_or_else(|| message.to_string(), |translation| translation.text_or_english(message))
 }
 
-/// A warning of a world for people.
+/// The text of a warning of a world, for people.
 pub fn warning_text(warning: &Warning, translation: Option<&Translation>) -> String {
     let known = translation.zip(warning.about.as_ref()).and_then(|(own, about)| own.in_full(&**about));
     let message = known.unwrap_or_else(|| warning.message.clone());

@@ -233,7 +233,7 @@ fn mesh_file<'n>(root: &'n Node, path: &str) -> Option<&'n str> {
     body.get("shape")?.get("file")?.text()
 }
 
-/// The location of the last part of a path that is written, or of a parameter in it; none if no part of it is written.
+/// The location of the last part of a path that occurs in the scene, or of a parameter in that part; none if no part occurs.
 fn location(root: &Node, path: &str, parameters: &[String]) -> Option<Location> {
     let (mut node, mut location) = (root, None);
     for part in path.split('.') {
@@ -256,7 +256,7 @@ fn location(root: &Node, path: &str, parameters: &[String]) -> Option<Location> 
     named.or_else(changed).or(location)
 }
 
-/// A table is located at its key, any other value at the value itself.
+/// A table or a list is located at its key, any other value at the value itself.
 fn shown_at(entry: &Entry) -> Location {
     match entry.value.data {
         Data::Table(_) | Data::Array(_) => entry.location,

@@ -284,15 +284,15 @@ pub struct Failing<W> {
 }
 
 impl<W: Write> Failing<W> {
-    /// Lets `bytes` bytes through; then the disk is full.
+    /// Makes a writer that lets `bytes` bytes through and then reports that no space is left.
     pub fn after(bytes: u64, inner: W) -> Failing<W> {
         Failing { inner, left: bytes, system: None, at_sync: false }
     }
-    /// Lets `bytes` bytes through; then the system reports the error with this number, such as 5 for a drive that is gone.
+    /// Makes a writer that lets `bytes` bytes through and then reports the system error with this number, such as 5 for a drive that is gone.
     pub fn with(bytes: u64, system: i32, inner: W) -> Failing<W> {
         Failing { system: Some(system), ..Failing::after(bytes, inner) }
     }
-    /// Takes every byte, and fails when it is synced.
+    /// Makes a writer that takes every byte, and fails when it is synced.
     pub fn at_sync(system: i32, inner: W) -> Failing<W> {
         Failing { at_sync: true, ..Failing::with(u64::MAX, system, inner) }
     }

@@ -160,7 +160,7 @@ fn vtk(out: &mut dyn Write, title: &str, time: f64, shapes: &[Shape<'_>]) -> io:
     let points: usize = shapes.iter().map(|s| s.positions.len()).sum();
     let all = || elements.iter().enumerate().flat_map(|(body, e)| e.all.iter().map(move |e| (body, e)));
     let (count, size) = all().fold((0, 0), |(count, size), (_, e)| (count + 1, size + 1 + e.1.len()));
-    // The second line may have 256 bytes.
+    // The second line may have at most 256 bytes.
     let title: String = line(title).chars().filter(char::is_ascii).collect();
     writeln!(out, "# vtk DataFile Version 3.0\n{title}\nASCII\nDATASET UNSTRUCTURED_GRID")?;
     writeln!(out, "FIELD FieldData 1\nTIME 1 1 double\n{time:e}")?;

@@ -8,7 +8,7 @@ use crate::text_errors::{Measured, TextError};
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The memory that a parser takes for a value in a list, in units of the memory for a line or a word. Measured with `toml` 1.2, a line or a word
-/// takes 50 bytes, a value in a list 200, a line with a key 490, and a table made by a dotted key 600. Without lines and words in the count, 30
+/// takes 50 bytes, a value in a list 200, a line with a key 490, and a table made by a dotted key 600. When lines and words were not counted, 30
 /// million empty lines took 1.4 GB (test: `torture.rs`, `the_memory_of_a_parser_is_bounded`).
 const PIECES: u64 = 4;
 /// The memory for the table of a dotted key, in the same units.
@@ -146,8 +146,8 @@ impl<'a> Source<'a> {
     }
 
     /// Scans the text once, with knowledge of strings and comments. Counts the depth of nested tables and arrays (by brackets and by dots in keys)
-    /// and the memory that a parser would take for the text, before the parser allocates or recurses. `value` says that the text is a value and not a
-    /// whole scene.
+    /// and the memory that a parser would take for the text, before the parser allocates or recurses. `value` is true if the text is a value and not
+    /// a whole scene.
     fn check_nesting(&self, limits: &Limits, value: bool) -> Result<(), SceneError> {
         let too_deep = |at: usize| self.mark(SceneError::of(TextError::Depth { most: limits.depth }), at, at + 1);
         let bytes = self.text.as_bytes();

@@ -121,7 +121,7 @@ pub struct Summary {
     pub bodies: usize,
     /// The number of nodes.
     pub nodes: usize,
-    /// The number of elements: springs, edges of the gas, triangles …
+    /// The number of edges between nodes, in all bodies.
     pub elements: usize,
     /// The kinds of the models in use.
     pub models: Vec<String>,
@@ -220,11 +220,12 @@ pub struct SolverSummary {
     pub halved: u64,
     /// Number of steps with `accuracy = "real_time"` that may be less accurate than this setting promises.
     pub cut_off: u64,
-    /// The largest residual of such a step, as the displacement that it would cause if only one node could move [m].
+    /// The largest residual of the steps counted in `cut_off`, as the displacement that it would cause if only one node could
+    /// move [m].
     pub largest_left: f64,
     /// How often a body at rest in a degenerate shape was displaced at random (`[world] unfold = true`).
     pub disturbed: u64,
-    /// How often such a displacement had no effect.
+    /// How often a displacement counted in `disturbed` had no effect.
     #[serde(rename = "odd_rests")]
     pub stayed_degenerate: u64,
 }

@@ -4,7 +4,7 @@ use crate::scene::errors::ValueKind;
 use opruga_math::{messages, terms};
 
 terms! {
-    /// Things that have a size.
+    /// The kinds of input whose size is limited.
     pub(crate) enum Measured = "part.measured" { Scene = "the scene", File = "the file" }
 }
 

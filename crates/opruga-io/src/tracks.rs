@@ -1,6 +1,7 @@
 //! Whole runs in one file: point caches of Blender and others (PC2, MDD), and glTF with one morph target per frame.
 //!
-//! A point cache contains only positions, for a mesh with the same nodes in the same order, which the OBJ series contains. glTF includes its surface.
+//! A point cache contains only positions. It needs a mesh with the same nodes in the same order, such as a frame of the OBJ series. A glTF file
+//! includes the surface.
 
 use opruga_mesh::triangle_parts;
 use opruga_world::AnyBody;
@@ -59,7 +60,7 @@ impl Track {
         12 * self.positions.len()
     }
 
-    /// Writes a PC2 point cache: beginning with its first frame, one sample per frame of `length` seconds.
+    /// Writes a PC2 point cache that begins at frame 0 and has one sample per frame.
     ///
     /// # Errors
     /// The errors of the writer.

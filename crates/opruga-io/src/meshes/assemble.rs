@@ -286,7 +286,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Groups of nodes and of cells, values of cells.
+    /// Copies the groups of nodes and of cells, and the values of cells, to the mesh.
     fn groups<const D: usize>(&self, mesh: &mut Mesh<D>, dimension: usize, order: &[u32]) {
         let mut cell_of = vec![u32::MAX; self.found.items.len()];
         order.iter().zip(0..).for_each(|(item, cell)| cell_of[*item as usize] = cell);

@@ -114,7 +114,7 @@ pub fn read<'a>(name: &'a str, bytes: &'a [u8], open: &mut Open<'_>) -> Result<M
         "vtk" => vtk::read(&mut scanner)?,
         "vtu" => {
             let found = vtu::read(name, bytes)?;
-            // Positions refer to the text before the appended data; they are the same in the file.
+            // Positions in the text before the appended data are the same as in the file.
             scanner.binary = core::str::from_utf8(bytes).is_err();
             found
         }

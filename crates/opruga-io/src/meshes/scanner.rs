@@ -33,7 +33,7 @@ impl<'a> Scanner<'a> {
         Scanner { file, bytes, at, binary: false, big_endian: false, comment }
     }
 
-    /// Adds the position, from one byte to another, to an error: line and column of a text, the byte of a binary file.
+    /// Adds the position of the bytes between `from` and `to` to an error: line and column in a text, the first byte in a binary file.
     pub(super) fn mark(&self, error: SceneError, from: usize, to: usize) -> SceneError {
         if self.binary {
             return SceneError { byte: Some(from), file: self.file.to_string(), ..error };
@@ -50,7 +50,7 @@ impl<'a> Scanner<'a> {
         self.at(SceneError::of(message), from)
     }
 
-    /// An error at that position with the code of a format.
+    /// An error at the word or number that begins at a byte, with the code of a format.
     pub(super) fn error_of(&self, code: &'static str, error: ScanError, from: usize) -> SceneError {
         self.at(SceneError { code, ..SceneError::of(error) }, from)
     }

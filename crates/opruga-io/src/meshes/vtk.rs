@@ -167,7 +167,7 @@ impl Reader<'_, '_> {
             };
             return Err(self.scanner.ends(SYNTAX, wanted));
         }
-        // The length of binary numbers is known.
+        // Binary numbers have a known length, so a truncated file is detected without a line end.
         if self.binary { Ok(()) } else { self.scanner.last_line_ends(SYNTAX) }
     }
 

@@ -22,7 +22,7 @@ const SYNTAX: &str = "vtu.syntax";
 /// The largest ratio, approximately, by which zlib can compress data.
 const MOST_COMPRESSED: u64 = 1100;
 
-/// The properties of arrays that the head of the file gives.
+/// The properties that the head of the file gives for all arrays.
 struct Reader<'a> {
     scanner: &'a Scanner<'a>,
     big_endian: bool,
@@ -346,7 +346,7 @@ impl Reader<'_> {
         if out.len() as u64 == count { Ok(out) } else { Err(self.wrong_count(array, out.len() as u64, count)) }
     }
 
-    /// Returns the bytes of a binary array: a header with sizes, then the data, both as raw bytes or as letters.
+    /// Returns the bytes of a binary array: a header with sizes, then the data. Both are either raw bytes or letters.
     fn unpack(
         &self,
         array: Node<'_, '_>,

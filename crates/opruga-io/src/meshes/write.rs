@@ -96,7 +96,7 @@ pub fn write<const D: usize>(mesh: &Mesh<D>, ending: &str) -> Result<Written, Sc
     }
 }
 
-/// The endings of the files that a mesh of this ending is written to.
+/// The endings of the files to which a mesh is written if this ending is requested.
 pub fn endings(ending: &str) -> Vec<&str> {
     match ending {
         "node" | "ele" => vec!["node", "ele"],
@@ -366,7 +366,8 @@ fn linear<const D: usize>(mesh: &Mesh<D>, format: &'static str) -> Result<(), Sc
     Err(SceneError::of(MeshWriteError::SecondOrder { format, cells: quadratic }))
 }
 
-/// One number per cell: the number of its group, from 1; 0 without one. For a cell in several groups it is the first group by name.
+/// One number per cell: the number of its group, from 1; 0 if the cell is in no group. For a cell in several groups, it is the number of the first
+/// one by name.
 fn references<const D: usize>(mesh: &Mesh<D>, left_out: &mut Vec<LeftOut>) -> Vec<usize> {
     let mut out = vec![0; mesh.cells.len()];
     for (k, cells) in mesh.cell_groups.values().enumerate().rev() {
@@ -433,7 +434,7 @@ fn mfem<const D: usize>(mesh: &Mesh<D>) -> Result<Written, SceneError> {
             Kind::Tetrahedron => 4,
             _ => 5,
         };
-        // Attributes count from 1: cells without a group get the number after the last group.
+        // Attributes count from 1, so cells without a group get the number after that of the last group.
         let attribute = if reference == 0 { mesh.cell_groups.len() + 1 } else { reference };
         let _ = writeln!(out, "{attribute} {geometry} {}", listed(nodes, 0));
     }

@@ -12,12 +12,13 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// The length of the part of a run that a power failure may lose.
+/// The time between two syncs. A power failure loses at most this much of a run.
 const SYNCED: Duration = Duration::from_secs(5);
 
 /// A recording that is being written. Each chunk goes to the system before the next one begins. A chunk is a frame whose state is kept, an action of
-/// a program, or the frames without states up to a call of the owner. A process that is killed loses at most the last chunk, which was incomplete or
-/// was just being passed on. A power failure loses the last five seconds.
+/// a program, or a sequence of frames without states. Such a sequence ends at a call of [`RecordingFile::flush`] or before the next chunk of another
+/// kind. A process that is killed loses at most the last chunk, which was incomplete or was just being written. A power failure loses at most the
+/// last five seconds.
 pub struct RecordingFile {
     path: PathBuf,
     folder: PathBuf,
@@ -95,8 +96,8 @@ impl RecordingFile {
         })
     }
 
-    /// Adds the next frame, whose state is not kept, with its hash. It goes to the system with [`RecordingFile::flush`], or with the next frame whose
-    /// state is kept.
+    /// Adds the next frame, whose state is not kept, with its hash. It goes to the system with [`RecordingFile::flush`], or before the next action or
+    /// the next frame whose state is kept.
     ///
     /// # Errors
     /// [`WriteError`] if the file could not be written, now or earlier, or if a frame is out of order; the earlier frames are intact.

@@ -164,8 +164,8 @@ impl<R: Read + Seek> Recording<R> {
         Ok(fits.then_some(payload))
     }
 
-    /// The state of a frame that is kept ([`Recording::kept`]). If frames are read in order, each is read once; otherwise, reading starts at the last
-    /// complete state.
+    /// The state of a frame, if the recording contains it ([`Recording::kept`]). If frames are read in order, each chunk is read once; otherwise,
+    /// reading starts at the last complete state.
     ///
     /// # Errors
     /// [`RecordingError`] if the state of that frame is not kept, or if a chunk before it that must be read is damaged.

@@ -202,7 +202,8 @@ fn actions<const D: usize>(
     })
 }
 
-/// What a drag grabs: a node or the nearest one, and whether it is a point of a facet.
+/// What a drag grabs: the number of a node, or none for the nearest one; and whether it grabs a point of a facet instead of a
+/// node.
 fn grabbed_node(reader: &mut Reader<'_>, node: &Node, path: &str) -> Option<(Option<u32>, bool)> {
     const WORDS: [&str; 2] = ["nearest", "nearest_facet"];
     let Some(value) = node.get("node") else { return Some((None, false)) };

@@ -286,7 +286,8 @@ fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>
             (None, Some(shape)) => shapes::node_count(shape, D),
             (None, None) => 0.0,
         };
-        // At most one node for every point of a grid with half the spacing.
+        // If there are nodes at the midpoints of edges, there is at most one node for every point of a grid with half the
+        // spacing.
         let filling = draft.shape.as_ref().and_then(|shape| shape.text("filling"));
         let of_mesh = draft.shape.as_ref().is_some_and(|shape| shape.spec().has_role(Role::CellsFromFile));
         let filled = matches!(filling, Some("triangles" | "tetrahedra")) || (D == 3 && filling == Some("lattice"));
@@ -375,7 +376,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     }
     let mesh: Mesh<D> = shape::mesh(reader, shape, draft.loaded.as_ref(), &transform, &shape_location)?;
     if mesh.positions.iter().flatten().any(|x| x.abs() > LONGEST) {
-        // The lengths of the shape itself are within the limit.
+        // The lengths of the shape itself are within the limit, so the scale, if there is one, is at fault.
         let key = if draft.node.get("scale").is_some() { "scale" } else { "shape" };
         let node = draft.node.get(key).unwrap_or(draft.node);
         let error = SceneError::of(BodyError::MadeVast { field: key, value: node.shown() });

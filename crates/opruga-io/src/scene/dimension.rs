@@ -101,12 +101,12 @@ fn wrong_in_both(reader: &mut Reader<'_>, root: &Node, key: &str) {
     let about = |error: &SceneError| (error.code, error.line, error.column, error.path.clone(), error.message.clone());
     for error in plane {
         let Some(other) = space.iter().find(|other| about(other) == about(&error)) else { continue };
-        // What is allowed may differ between the two.
+        // What is allowed may differ between the two dimensions.
         let (allowed, hint) = (error.allowed == other.allowed, error.hint == other.hint);
         let mut error = error;
         error.allowed = error.allowed.filter(|_| allowed);
         error.hint = error.hint.filter(|_| hint);
-        // It already has its location.
+        // The error already has its location.
         reader.report(Location::Bytes(0, 0), error);
     }
 }

@@ -66,7 +66,7 @@ pub struct Options {
     pub files: Files,
 }
 
-/// What the reader made of a scene.
+/// The result of reading a scene.
 #[derive(Debug)]
 pub struct Reading {
     /// The complete scene if there are no errors. Otherwise the scene without commands and probes, and without the bodies, obstacles, loads and pins
@@ -88,7 +88,7 @@ impl Reading {
         self.errors.iter().all(|error| {
             let parts: Vec<&str> = error.path.split('.').collect();
             let holds = matches!(parts[0], "load" | "collider" | "world") || parts.contains(&"pin");
-            // An unknown section may have been meant as one of them. If errors are only counted, their subjects are unknown.
+            // An unknown section may be a misspelt section of this kind. Errors that are only counted may be about anything.
             let unknown = error.code == "scene.unknown_field" && parts.len() == 1;
             !holds && !unknown && error.code != "scene.more"
         })

@@ -27,7 +27,7 @@ struct Lost {
     /// The words that would be allowed; none if the message lists them.
     allowed: Option<String>,
     nearest: Option<String>,
-    /// Whether the path is that of the kind of a part, which a command cannot change.
+    /// Whether the path names the kind of a part, which a command cannot change.
     is_kind: bool,
 }
 
@@ -72,7 +72,7 @@ pub(crate) fn check<const D: usize>(
     }
 }
 
-/// A list of whole numbers is at first read as a list of numbers.
+/// Converts a list to whole numbers if the parameter needs them. Lists are at first read as lists of real numbers.
 fn suited(value: Value, range: &Allowed) -> Value {
     match (range, &value) {
         (Allowed::Integers, Value::Numbers(x))

@@ -178,7 +178,7 @@ impl<'a> Reader<'a> {
         self.fields_of(None, node, path, section, tag)
     }
 
-    /// Does the same for a table that describes the kind of a part, or for a section of the format.
+    /// Does the same as `fields` for a table that describes the kind of a part, or for a section of the format.
     fn fields_of(
         &mut self,
         part: Option<Part>,

@@ -13,9 +13,9 @@ use std::sync::Arc;
 
 /// The initial motion of a body.
 pub(super) struct Velocities<const D: usize> {
-    /// Of the centre of mass [m/s].
+    /// The velocity of the centre of mass [m/s].
     pub(super) linear: [f64; D],
-    /// About the centre of mass [rad/s]: one number in 2D, three in 3D.
+    /// The angular velocity about the centre of mass [rad/s]: one number in 2D, three in 3D.
     pub(super) angular: Vec<f64>,
     /// ∂v/∂x, row by row [1/s].
     pub(super) gradient: [[f64; D]; D],

@@ -15,7 +15,7 @@ use opruga_math::message::Setting;
 /// Reads a PNG picture.
 ///
 /// # Errors
-/// `png.syntax`, `limit.pixels` before the pixels are read, `limit.outlines`, `limit.points`, `shape.no_area` if none of them is inside.
+/// `png.syntax`, `limit.pixels` before the pixels are read, `limit.outlines`, `limit.points`, `shape.no_area` if no pixel is inside.
 pub(super) fn read<'a>(bytes: &[u8], shape: &Values) -> Result<Drawing<'a>, SceneError> {
     let inside = shape.text("inside").unwrap_or("dark");
     let threshold = shape.number("threshold").unwrap_or(0.5);
@@ -119,7 +119,7 @@ impl Lines {
     fn squares(&mut self, above: &[f32], below: &[f32]) {
         let (w, y, threshold) = (above.len(), self.rows - 1, self.threshold);
         let inside = |value: f32| f64::from(value) > threshold;
-        // Numbers of grid lines: 2·corner to the right of it, 2·corner + 1 below it.
+        // Numbers of grid lines: 2·corner for the line to the right of a corner, 2·corner + 1 for the line below it.
         let line = |x: usize, y: usize, down: usize| 2 * (y * w + x) as u64 + down as u64;
         let crossing = |a: f32, b: f32| (threshold - f64::from(a)) / (f64::from(b) - f64::from(a));
         for x in 0..w - 1 {
@@ -158,7 +158,7 @@ impl Lines {
                     let [a, b, c, d] = values.map(f64::from);
                     let mean = 0.25 * (a + b + c + d);
                     let joined = mean > threshold;
-                    // Corners 0 and 2 are separate, or corners 1 and 3 are connected; or vice versa.
+                    // The second value is true if the two steps cut off corners 0 and 2, and false if they cut off corners 1 and 3.
                     let pairs = match (code == 5, (code == 5) != joined) {
                         (true, true) => [(left, top), (right, bottom)],
                         (false, true) => [(top, left), (bottom, right)],

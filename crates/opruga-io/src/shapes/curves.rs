@@ -42,7 +42,7 @@ pub(super) fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// x′ = a x + c y + e, y′ = b x + d y + f.
+/// An affine map with the coefficients a, b, c, d, e, f: x′ = a x + c y + e, y′ = b x + d y + f.
 pub(super) type Affine = [f64; 6];
 
 /// The identity map.
@@ -61,7 +61,7 @@ pub(super) fn mapped(map: &Affine, [x, y]: Point) -> Point {
 }
 
 impl Curves {
-    /// An empty drawing, to be drawn for a part.
+    /// An empty drawing for a part.
     pub(super) fn of_part(part: u32) -> Curves {
         Curves { part, ..Curves::default() }
     }
@@ -72,23 +72,23 @@ impl Curves {
         self.at = to;
     }
 
-    /// A straight line.
+    /// Draws a straight line.
     pub(super) fn line_to(&mut self, to: Point) {
         self.push(Segment::Line(to), to);
     }
 
-    /// A cubic Bézier curve.
+    /// Draws a cubic Bézier curve.
     pub(super) fn cubic_to(&mut self, first: Point, second: Point, to: Point) {
         self.push(Segment::Cubic(first, second, to), to);
     }
 
-    /// A quadratic Bézier curve, converted to a cubic one.
+    /// Draws a quadratic Bézier curve, converted to a cubic one.
     pub(super) fn quadratic_to(&mut self, control: Point, to: Point) {
         let third = |p: Point, q: Point| [p[0] + (q[0] - p[0]) * 2.0 / 3.0, p[1] + (q[1] - p[1]) * 2.0 / 3.0];
         self.cubic_to(third(self.at, control), third(to, control), to);
     }
 
-    /// A whole polygon.
+    /// Draws a whole polygon.
     pub(super) fn polygon(&mut self, points: &[Point]) {
         let Some((first, rest)) = points.split_first() else { return };
         self.move_to(*first);
@@ -110,7 +110,7 @@ impl Curves {
         self.contours.last().map_or([0.0; 2], |contour| contour.start)
     }
 
-    /// Adds curves under a map.
+    /// Adds the images of curves under a map.
     pub(super) fn append(&mut self, other: Curves, map: &Affine) {
         self.contours.extend(other.contours.into_iter().map(|contour| {
             Contour {

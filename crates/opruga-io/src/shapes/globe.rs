@@ -31,8 +31,8 @@ pub(super) struct LaidOut {
     pub(super) cut: usize,
 }
 
-/// Lays polygons out, each with its data. `stitched` says that the format omits cuts along the antimeridian, as topologies do; a step of exactly one
-/// turn then means no motion.
+/// Lays polygons out, each with its data. If `stitched` is set, the format omits cuts along the antimeridian, as topologies do, and a step of exactly
+/// one turn means no motion.
 pub(super) fn lay_out<T>(polygons: &mut Vec<(Polygon, T)>, stitched: bool) -> LaidOut {
     let mut done = LaidOut::default();
     for (polygon, _) in &mut *polygons {
@@ -44,7 +44,7 @@ pub(super) fn lay_out<T>(polygons: &mut Vec<(Polygon, T)>, stitched: bool) -> La
                     done.polar += usize::from(winding != 0.0);
                     *ring = if winding == 0.0 { centred(flat) } else { closed_along_the_pole(&flat, winding) };
                 }
-                // Holes follow their outline.
+                // A hole that does not cross the antimeridian moves with its outline.
                 None => {
                     if let (Some([low, high]), Some(first)) = (around, ring.first()) {
                         let turns = turns_into(first[0], low, high);
@@ -207,8 +207,8 @@ fn shared(borders: &[(usize, f64, [f64; 2], bool)]) -> Vec<usize> {
     for meridian in order.chunk_by(|a, b| turn(a.1) == turn(b.1)) {
         let side = |west: bool| meridian.iter().filter(move |border| border.3 == west);
         for west in [false, true] {
-            // For the other side: the latitude at which each border begins, and how far north the borders reach that begin at
-            // this latitude or farther south.
+            // For each border of the other side: the latitude at which it begins, and the northernmost latitude of all borders that begin there or
+            // farther south.
             let (mut reach, mut others) = (f64::NEG_INFINITY, Vec::new());
             for border in side(!west) {
                 reach = larger(reach, border.2[1]);

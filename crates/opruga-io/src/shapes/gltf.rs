@@ -268,7 +268,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         if !indices.len().is_multiple_of(3) {
             return Err(self.refuse(raw, GltfError::Corners { corners: indices.len() }));
         }
-        // The transforms of nodes are not rounded by the file.
+        // The rounding is estimated before the transforms of nodes are applied, because the file does not round their results.
         let stored = Stored::of(&rows, indices.chunks_exact(3), true);
         self.found.stored = Some(self.found.stored.unwrap_or_default().worse(stored));
         let start = span(self.source, raw.get()).0 as u32;
@@ -328,7 +328,7 @@ impl<'a> Reader<'a, '_, '_, '_> {
         if within().is_none() {
             return bad(GltfError::Rows { rows: accessor.count, each, bytes: bytes.len() });
         }
-        // Its description is parsed again, too.
+        // The description of the accessor is parsed again, too.
         self.draw(accessor.count + (raw.get().len() + view_raw.get().len()) as u64 / 64, raw)?;
         let start = (view.offset + accessor.offset) as usize;
         let rows = (0..accessor.count as usize).map(|k| {

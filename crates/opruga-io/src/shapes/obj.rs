@@ -73,13 +73,13 @@ impl<'a> Line<'a> {
         self.text.split_inclusive('\n').flat_map(|piece| statement(piece).0.split_ascii_whitespace())
     }
 
-    /// The range of a part of it in the file.
+    /// The range of a part of the line in the file.
     fn range(&self, part: &str) -> (usize, usize) {
         let from = self.start + (part.as_ptr() as usize - self.text.as_ptr() as usize);
         (from, from + part.len())
     }
 
-    /// An error at a part of it; the part is the value.
+    /// An error at a part of the line; the part is the value.
     fn refuse(&self, part: &str, error: impl Into<AnyMessage>) -> SceneError {
         self.mark(part, SceneError::of(error))
     }
@@ -89,7 +89,7 @@ impl<'a> Line<'a> {
         self.source.mark(error.value(visible(part)), from, to)
     }
 
-    /// An error at a part of it; the whole statement is the value.
+    /// An error at a part of the line; the whole statement is the value.
     fn refuse_whole(&self, part: &str, error: ObjError) -> SceneError {
         self.refuse(part, error).value(visible(statement(self.text).0.trim()))
     }

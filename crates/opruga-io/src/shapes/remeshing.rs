@@ -62,7 +62,7 @@ fn coarsest(mesh: &Mesh<3>, length: f64) -> Result<f64, f64> {
     let (mut tried, mut next) = (length, length);
     for _ in 0..TRIED {
         next *= SHORTER;
-        // Rounded as it will be written.
+        // The length is rounded as it will be written.
         let shown = format!("{next:.1e}").parse().unwrap_or(next);
         if shown >= tried {
             continue;

@@ -229,7 +229,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         Ok((after(map, &self.transform(node)?), fill))
     }
 
-    /// The error that a property of an element cannot be read.
+    /// The error for a property of an element that cannot be read.
     pub(super) fn not_read(&self, node: Node<'_, '_>, word: &str, value: &str) -> SceneError {
         self.error(node, SvgError::Property { property: word.into(), value: visible(value) })
     }

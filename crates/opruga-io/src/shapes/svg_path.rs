@@ -9,9 +9,9 @@ pub(super) struct Pen<'c> {
     pub(super) at: Point,
     /// The last control point, and whether its curve was cubic.
     control: Option<(Point, bool)>,
-    /// Whether a subpath has a start.
+    /// Whether a subpath has begun.
     begun: bool,
-    /// Whether lines have been drawn from it that are not closed yet.
+    /// Whether lines of this subpath have been drawn but not closed yet.
     drawing: bool,
     /// The number of subpaths that were left open.
     pub(super) open: usize,
@@ -34,14 +34,14 @@ impl<'c> Pen<'c> {
     pub(super) fn draw(&mut self, segment: PathSegment) {
         let from = self.at;
         let point = |abs: bool, x: f64, y: f64| if abs { [x, y] } else { [from[0] + x, from[1] + y] };
-        // A smooth curve mirrors the control point of the previous curve if that is of the same kind.
+        // A smooth curve mirrors the control point of the previous curve if both curves are of the same kind.
         let mirrored = |cubic: bool| match self.control {
             Some((p, kind)) if kind == cubic => [2.0 * from[0] - p[0], 2.0 * from[1] - p[1]],
             _ => from,
         };
         let mut control = None;
         let mut draws = true;
-        // After a close, the next subpath begins where the last one began.
+        // After a subpath has been closed, the next one begins at the same point.
         if !self.begun && !matches!(segment, PathSegment::MoveTo { .. } | PathSegment::ClosePath { .. }) {
             self.curves.move_to(from);
             self.begun = true;

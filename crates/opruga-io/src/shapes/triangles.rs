@@ -35,7 +35,7 @@ pub(super) struct Triangles {
     pub(super) locations: Locations,
     /// Named sets of vertices.
     pub(super) groups: BTreeMap<String, Vec<u32>>,
-    /// The rounding in the file, if positions are not those in the file.
+    /// The rounding in the file, if the positions above are not those in the file.
     pub(super) stored: Option<Stored>,
     /// Whether coordinates have 4 bytes.
     pub(super) single: bool,
@@ -311,7 +311,7 @@ fn weld(
     Ok(())
 }
 
-/// Makes all triangles face outward, and closes open surfaces or keeps them open, as the scene says.
+/// Makes all triangles face outward, and closes open surfaces or keeps them open, as the scene asks.
 fn orient(
     mesh: &mut Mesh<3>,
     found: &Triangles,
