@@ -1,5 +1,5 @@
-//! Loops that measure the speed of the machine, for comparison with other loops. They are compiled with this crate, like
-//! kernels, whatever program calls them.
+//! Loops that measure the speed of the machine, for comparison with other loops. They are compiled with this crate, as kernels
+//! are, and not with the program that calls them.
 
 use crate::{Pack, Simd, WIDTH, Work};
 

@@ -8,7 +8,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 /// the same way everywhere, which makes their bits equal.
 pub const WIDTH: usize = 8;
 
-/// `f64`, or eight of them: one formula serves the scalar reference and the vector path.
+/// One `f64`, or eight: one formula serves the scalar reference and the vector path.
 ///
 /// Branches are written as [`Lane::select`], so that both sides are always evaluated, and the operations (and so the bits) do not
 /// depend on the width.
@@ -44,9 +44,9 @@ pub trait Lane:
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Whether the mask is true anywhere.
     fn any(mask: Self::Mask) -> bool;
-    /// Natural logarithm (own series, the same bits everywhere); the argument must be positive and normal.
+    /// Natural logarithm, with the same bits everywhere; fast if the argument is positive and normal.
     fn ln(self) -> Self;
-    /// Exponential function (own series, the same bits everywhere).
+    /// Exponential function, with the same bits everywhere.
     fn exp(self) -> Self;
 
     /// The smaller of the two; `other` if `self` is NaN.

@@ -1,4 +1,5 @@
-//! Numbers of Opruga: one formula over `f64` or eight of them, with the same bits for every set of vector instructions.
+//! Numbers of Opruga: a formula is written once for one `f64` or eight, and gives the same bits with every set of vector
+//! instructions.
 
 pub mod calibration;
 mod column;

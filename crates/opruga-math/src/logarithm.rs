@@ -5,7 +5,7 @@ use crate::lane::Lane;
 /// ln 2 in two parts, such that the product of the first part and any exponent is exact.
 const LN_2: [f64; 2] = [6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10];
 
-/// Coefficients of (ln(1 + f) − f + f²/2 − …) in s = f/(2 + f) (fdlibm, `e_log.c`).
+/// Coefficients of r in ln(1 + f) = s (2 + r), in even powers of s = f/(2 + f), from s² on (fdlibm, `e_log.c`).
 const LOGARITHM: [f64; 7] = [
     6.666_666_666_666_735e-1,
     3.999_999_999_940_942e-1,
@@ -16,7 +16,8 @@ const LOGARITHM: [f64; 7] = [
     1.479_819_860_511_658_6e-1,
 ];
 
-/// ln(m 2ᵏ) for √½ ≤ m < √2, with the operations of `libm::log` in the same order, so that lanes have the same bits.
+/// The logarithm ln(m 2ᵏ) for √½ ≤ m < √2, with the operations of `libm::log` in the same order, so that lanes have the same
+/// bits.
 #[inline(always)]
 pub(crate) fn logarithm_of_parts<S: Lane>(mantissa: S, exponent: S) -> S {
     let c = |k: usize| S::splat(LOGARITHM[k]);

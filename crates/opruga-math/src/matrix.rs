@@ -23,7 +23,7 @@ pub fn identity<S: Lane, const D: usize>() -> Matrix<S, D> {
     out
 }
 
-/// s A.
+/// The product s A of a number and a matrix.
 #[inline(always)]
 pub fn scaled<S: Lane, const D: usize>(a: &Matrix<S, D>, s: S) -> Matrix<S, D> {
     let mut out = zeros();
@@ -35,7 +35,7 @@ pub fn scaled<S: Lane, const D: usize>(a: &Matrix<S, D>, s: S) -> Matrix<S, D> {
     out
 }
 
-/// A + s B.
+/// The sum A + s B.
 #[inline(always)]
 pub fn plus<S: Lane, const D: usize>(a: &Matrix<S, D>, s: S, b: &Matrix<S, D>) -> Matrix<S, D> {
     let mut out = zeros();
@@ -47,7 +47,7 @@ pub fn plus<S: Lane, const D: usize>(a: &Matrix<S, D>, s: S, b: &Matrix<S, D>) -
     out
 }
 
-/// A B.
+/// The product A B.
 #[inline(always)]
 pub fn product<S: Lane, const D: usize>(a: &Matrix<S, D>, b: &Matrix<S, D>) -> Matrix<S, D> {
     let mut out = zeros();
@@ -63,7 +63,7 @@ pub fn product<S: Lane, const D: usize>(a: &Matrix<S, D>, b: &Matrix<S, D>) -> M
     out
 }
 
-/// A Bᵀ.
+/// The product A Bᵀ.
 #[inline(always)]
 pub fn product_transposed<S: Lane, const D: usize>(a: &Matrix<S, D>, b: &Matrix<S, D>) -> Matrix<S, D> {
     let mut out = zeros();
@@ -79,7 +79,7 @@ pub fn product_transposed<S: Lane, const D: usize>(a: &Matrix<S, D>, b: &Matrix<
     out
 }
 
-/// Aᵀ B.
+/// The product Aᵀ B.
 #[inline(always)]
 pub fn transposed_product<S: Lane, const D: usize>(a: &Matrix<S, D>, b: &Matrix<S, D>) -> Matrix<S, D> {
     let mut out = zeros();
@@ -95,7 +95,7 @@ pub fn transposed_product<S: Lane, const D: usize>(a: &Matrix<S, D>, b: &Matrix<
     out
 }
 
-/// A : B = Σ aᵢⱼ bᵢⱼ.
+/// The inner product A : B = Σ aᵢⱼ bᵢⱼ.
 #[inline(always)]
 pub fn inner<S: Lane, const D: usize>(a: &Matrix<S, D>, b: &Matrix<S, D>) -> S {
     let mut sum = S::zero();
@@ -107,7 +107,7 @@ pub fn inner<S: Lane, const D: usize>(a: &Matrix<S, D>, b: &Matrix<S, D>) -> S {
     sum
 }
 
-/// tr A.
+/// The trace tr A.
 #[inline(always)]
 pub fn trace<S: Lane, const D: usize>(a: &Matrix<S, D>) -> S {
     let mut sum = a[0][0];
@@ -139,7 +139,7 @@ pub fn cofactor<S: Lane, const D: usize>(a: &Matrix<S, D>) -> Matrix<S, D> {
     out
 }
 
-/// det A from A and its cofactors.
+/// The determinant det A, from A and its cofactors.
 #[inline(always)]
 pub fn determinant_by<S: Lane, const D: usize>(a: &Matrix<S, D>, cofactors: &Matrix<S, D>) -> S {
     let mut sum = a[0][0] * cofactors[0][0];
@@ -149,7 +149,7 @@ pub fn determinant_by<S: Lane, const D: usize>(a: &Matrix<S, D>, cofactors: &Mat
     sum
 }
 
-/// det A.
+/// The determinant det A.
 #[inline(always)]
 pub fn determinant<S: Lane, const D: usize>(a: &Matrix<S, D>) -> S {
     determinant_by(a, &cofactor(a))

@@ -55,7 +55,7 @@ impl fmt::Display for Setting {
     }
 }
 
-/// The functions that replace the parts of a message that have another name for its reader.
+/// The functions that replace settings and names in a message, for readers to whom they have other names.
 pub struct Replacing<'r> {
     /// The replacement of a setting.
     pub setting: &'r dyn Fn(&Setting) -> Setting,

@@ -22,20 +22,21 @@ const WELL_DETERMINED: f64 = 0.02;
 /// The relative change of f below which it has converged, because the next change would be the square of this one.
 const FOUND: f64 = 1e-9;
 
-/// The largest number of iterations. If the rotation is well determined, ten are enough, and three for strains of some per cent.
+/// The largest number of iterations. If the rotation is well determined, ten are enough. For strains of a few per cent, three are
+/// enough.
 const MOST_ITERATIONS: usize = 12;
 
-/// The rotation nearest to a matrix: R of F = R S with det R = 1, S symmetric and the largest possible tr S.
+/// The rotation nearest to a matrix F: the R in F = R S for which det R = 1, S is symmetric and tr S is as large as possible.
 ///
-/// F may be degenerate or inverted. If R is not unique (S has two smallest stretches of opposite sign), the result is the
-/// rotation of the singular vectors. If F has no direction at all, it is the unit matrix.
+/// F may be degenerate or inverted. If R is not unique (the two smallest stretches of S add up to zero), the result in space is
+/// the rotation of the singular vectors, and in the plane the unit matrix.
 #[inline(always)]
 pub fn nearest_rotation<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Matrix<S, D> {
     const { assert!(D == 2 || D == 3) }
     if D == 2 { in_the_plane(f) } else { in_space(f) }
 }
 
-/// In the plane (F₀₀ + F₁₁, F₁₀ − F₀₁) is the direction of R.
+/// In the plane, the vector (F₀₀ + F₁₁, F₁₀ − F₀₁) has the direction of the first column of R.
 #[inline(always)]
 fn in_the_plane<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Matrix<S, D> {
     let mut along = [S::zero(); D];
@@ -203,7 +204,7 @@ mod tests {
         }
     }
 
-    /// Each of eight matrices side by side has the same bits as alone.
+    /// Each of eight matrices side by side gives the same bits as it gives alone.
     #[test]
     fn neighbours_in_the_lanes_change_no_bits() {
         use crate::lane::{Pack, Register, WIDTH};

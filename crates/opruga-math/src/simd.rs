@@ -115,8 +115,8 @@ pub trait Work {
     fn run<P: Pack>(self) -> Self::Output;
 }
 
-// These are separate functions, so that callers stay small, and crates that need the same work use the version that one of them
-// has compiled.
+// These are separate functions, so that callers stay small. Crates that need the same work use the version that one of them has
+// compiled.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
 #[inline(never)]

@@ -29,13 +29,13 @@ impl<S: Lane, const D: usize> Singular<S, D> {
     }
 }
 
-/// The largest number of sweeps over all pairs of columns; six bring any 3×3 matrix to rounding.
+/// The largest number of sweeps over all pairs of columns; six make any 3×3 matrix as accurate as rounding permits.
 const MOST_SWEEPS: usize = 12;
 
 /// Columns whose cosine is less than this count as orthogonal.
 const ORTHOGONAL: f64 = 1e-16;
 
-/// Lengths below this have no direction.
+/// Vectors shorter than this have no direction.
 const NO_LENGTH: f64 = 1e-100;
 
 /// Decomposes a matrix.

@@ -2,7 +2,7 @@
 
 use crate::lane::Lane;
 
-/// The largest number of sweeps; seven bring a 4×4 matrix to rounding.
+/// The largest number of sweeps; seven make a 4×4 matrix as accurate as rounding permits.
 const MOST_SWEEPS: usize = 12;
 
 /// An off-diagonal entry below this fraction of the diagonal entries of its row and column counts as zero.
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn eigenvalues_of_a_known_matrix() {
-        // The second difference: 2 − 2 cos(kπ/5).
+        // The matrix of second differences, whose eigenvalues are 2 − 2 cos(kπ/5).
         let mut a = [[0.0; 4]; 4];
         for i in 0..4 {
             a[i][i] = 2.0;

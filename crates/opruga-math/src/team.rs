@@ -48,9 +48,8 @@ impl core::fmt::Debug for Task {
     }
 }
 
-// SAFETY: only the leader writes the task, while no piece is taken; others read it while they have a piece. Taking a piece
-// happens after the write, and completing it happens before the next one, by the orderings of the atomics in `take` and
-// `hand_out`.
+// SAFETY: only the leader writes the task, while no piece is taken; others read it while they have a piece. The orderings of the
+// atomics in `take` and `hand_out` ensure that a piece is taken after the write and completed before the next write.
 #[allow(unsafe_code)]
 unsafe impl Sync for Task {}
 // SAFETY: the work it refers to can be called from every thread.
@@ -215,7 +214,7 @@ impl Team {
                 // SAFETY: a piece was taken, so the work exists until that piece counts as done.
                 #[allow(unsafe_code)]
                 let work = unsafe { (*self.work.0.get()).map(|work| &*work) };
-                // Otherwise a thread that waits for this piece would wait for ever for a thread that has ended.
+                // If a panic ended this thread, a thread that waits for this piece would wait for ever.
                 let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| work.map(|work| work(piece))));
                 if outcome.is_err() {
                     self.failed.store(true, Ordering::Relaxed);

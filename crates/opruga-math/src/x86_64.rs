@@ -154,13 +154,14 @@ const FRACTION: i64 = (1 << 52) - 1;
 const WHOLE: i64 = 0x4330_0000_0000_0000;
 const BIAS: f64 = 4_503_599_627_370_496.0 + 1023.0;
 
-/// Converts a count of at most eight, because only small signed integers are converted by one instruction everywhere.
+/// Converts a count of at most eight. It is converted as a small signed integer, because every processor has one instruction for
+/// this.
 #[inline(always)]
 fn few(count: usize) -> f64 {
     f64::from(count.min(8) as i32)
 }
 
-/// 0, 1, 2, 3: a comparison with a count gives the mask of its first lanes.
+/// The indices of the lanes. A comparison with a count gives the mask of that many first lanes.
 const LANE_INDICES: [f64; 4] = [0.0, 1.0, 2.0, 3.0];
 
 register! {
@@ -268,7 +269,7 @@ unsafe fn split_avx512(x: __m512d) -> (__m512d, __m512d) {
     (_mm512_castsi512_pd(mantissa), _mm512_sub_pd(_mm512_castsi512_pd(exponent), _mm512_set1_pd(BIAS)))
 }
 
-/// Four numbers at each of four addresses, as four registers.
+/// Reads four numbers at each of four addresses; the k-th register has the k-th numbers.
 ///
 /// # Safety
 /// The processor must have AVX2, and four numbers must lie at every address.
@@ -278,7 +279,7 @@ unsafe fn rows_avx2(at: [*const f64; 4]) -> [__m256d; ROW] {
     // SAFETY: the caller guarantees four numbers at every address.
     let (a, b, c, d) =
         unsafe { (_mm256_loadu_pd(at[0]), _mm256_loadu_pd(at[1]), _mm256_loadu_pd(at[2]), _mm256_loadu_pd(at[3])) };
-    // Numbers 0 and 2 of two rows each, numbers 1 and 3.
+    // `even` and `more_even` have numbers 0 and 2 of two rows each, `odd` and `more_odd` numbers 1 and 3.
     let (even, odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
     let (more_even, more_odd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
     [
@@ -289,7 +290,7 @@ unsafe fn rows_avx2(at: [*const f64; 4]) -> [__m256d; ROW] {
     ]
 }
 
-/// Four numbers at each of eight addresses, as four registers.
+/// Reads four numbers at each of eight addresses; the k-th register has the k-th numbers.
 ///
 /// # Safety
 /// The processor must have AVX-512, and four numbers must lie at every address.
@@ -305,7 +306,8 @@ unsafe fn rows_avx512(at: [*const f64; 8]) -> [__m512d; ROW] {
             _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(_mm256_loadu_pd(at[3])), _mm256_loadu_pd(at[7])),
         )
     };
-    // Numbers 0 and 2 of rows 0 1 4 5 and 2 3 6 7, numbers 1 and 3.
+    // `even` has numbers 0 and 2 of rows 0 1 4 5, `more_even` those of rows 2 3 6 7; `odd` and `more_odd` have numbers 1 and 3 of
+    // these rows.
     let (even, odd) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
     let (more_even, more_odd) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
     let low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
@@ -318,14 +320,14 @@ unsafe fn rows_avx512(at: [*const f64; 8]) -> [__m512d; ROW] {
     ]
 }
 
-/// Four registers as four rows of four numbers.
+/// Writes four registers as four rows of four numbers.
 ///
 /// # Safety
 /// The processor must have AVX2, and there must be space for sixteen numbers.
 #[inline]
 #[target_feature(enable = "avx,avx2")]
 unsafe fn to_rows_avx2(a: __m256d, b: __m256d, c: __m256d, d: __m256d, to: *mut f64) {
-    // First and second half of rows 0 and 2, and of rows 1 and 3.
+    // The first halves of rows 0 and 2, and of rows 1 and 3; then their second halves.
     let (even, odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
     let (even_end, odd_end) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
     // SAFETY: the caller guarantees space for sixteen numbers.
@@ -337,17 +339,17 @@ unsafe fn to_rows_avx2(a: __m256d, b: __m256d, c: __m256d, d: __m256d, to: *mut 
     }
 }
 
-/// Four registers as eight rows of four numbers.
+/// Writes four registers as eight rows of four numbers.
 ///
 /// # Safety
 /// The processor must have AVX-512, and there must be space for 32 numbers.
 #[inline]
 #[target_feature(enable = "avx,avx2,avx512f,avx512dq,avx512vl")]
 unsafe fn to_rows_avx512(a: __m512d, b: __m512d, c: __m512d, d: __m512d, to: *mut f64) {
-    // First and second half of rows 0 2 4 6, and of rows 1 3 5 7.
+    // The first halves of rows 0 2 4 6, and of rows 1 3 5 7; then their second halves.
     let (even, odd) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
     let (even_end, odd_end) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
-    // Rows 0 1, 2 3, …: two rows of a pair of halves after the other.
+    // Joins the halves of rows: `low` takes the first two rows of a pair of registers, `high` the last two.
     let low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
     let high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
     let (rows_02, rows_46) =

@@ -87,7 +87,7 @@ impl Survey {
         }
         links.iter_mut().for_each(|own| own.sort_unstable());
 
-        // Flood-fill each component from its lowest facet; `against` compares with that facet.
+        // Flood-fill each component from its lowest facet; `against` is true for facets with the opposite orientation to that facet.
         let mut component = vec![NONE; facets.len()];
         let mut against = vec![false; facets.len()];
         let mut minority = Vec::new();

@@ -3,8 +3,8 @@
 use crate::crossings::{Crossings, MOST_LISTED};
 use robust::{Coord, orient2d};
 
-/// Pairs of edges that cross, touch or overlap, except at nodes that they share. On which side of an edge a point lies is determined exactly for the
-/// given coordinates.
+/// Pairs of edges that cross, touch or overlap, except at nodes that they share. The side of an edge on which a point lies is determined exactly for
+/// the given coordinates.
 ///
 /// # Source
 /// J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", Discrete and Computational Geometry 18

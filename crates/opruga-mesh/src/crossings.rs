@@ -19,7 +19,7 @@ const MOST_COMPARED: u64 = 2000;
 pub struct Crossings {
     /// Pairs of facets, lower number first, ascending; at most a thousand.
     pub pairs: Vec<[u32; 2]>,
-    /// Whether all facets were compared; otherwise there were too many pairs, or too many boxes overlap.
+    /// Whether all facets were compared; otherwise there were too many pairs or too many overlapping boxes.
     pub complete: bool,
 }
 
@@ -101,7 +101,8 @@ struct SortedFacet {
 }
 
 /// The rounding error of a product of a normal and a difference: two differences, six products and three sums for the normal, then one difference,
-/// three products and two sums. Each has an error of half of 2⁻⁵², and none is larger than six products of largest components.
+/// three products and two sums. Each operation has a relative error of at most half of 2⁻⁵², and no intermediate result is larger than six products
+/// of largest components.
 const ERROR: f64 = 64.0 * f64::EPSILON;
 
 impl Sorted {
@@ -234,7 +235,7 @@ fn reaches_in_plane(segment: &[[f64; 3]; 2], triangle: &[[f64; 3]; 3]) -> bool {
         let apart = |x: f64, y: f64| x > 0.0 && y > 0.0 || x < 0.0 && y < 0.0;
         !apart(orient2d(p, q, from), orient2d(p, q, to)) && !apart(orient2d(from, to, p), orient2d(from, to, q))
     };
-    // Collinear segments that do not overlap pass the second test, but neither of their ends is then inside.
+    // A side that is collinear with the segment but does not overlap it passes `crosses`, so one such side is not enough.
     within(p) || within(q) || [(a, b), (b, c), (c, a)].into_iter().filter(|(from, to)| crosses(*from, *to)).count() > 1
 }
 

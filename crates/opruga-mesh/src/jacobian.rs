@@ -1,6 +1,6 @@
 //! The minimum of det ∂x/∂ξ over a whole cell.
 //!
-//! The determinant of the map of a cell is a polynomial in its reference coordinates ξ. In the Bernstein basis
+//! The determinant of the map of a cell is a polynomial in its reference coordinates ξ. In the Bernstein basis it has these coefficients:
 //!
 //! | cell | degree | coefficients |
 //! |---|---|---|
@@ -10,10 +10,10 @@
 //! | quadratic tetrahedron | 3 | 20 |
 //! | hexahedron | 2 along each axis | 27 |
 //!
-//! its values are between the smallest and the largest coefficient, and the values at the vertices are coefficients. If all coefficients are
+//! Its values are between the smallest and the largest coefficient, and the values at the vertices are coefficients. If all coefficients are
 //! positive, the cell is nowhere inverted. A negative value proves that it is inverted somewhere. Otherwise the cell is bisected (de Casteljau),
 //! which brings the coefficients closer to the values: the gap falls with the square of the size. A piece without negative coefficients needs no
-//! further bisection. After [`MOST_PIECES`] the minimum of J is known to be between two bounds.
+//! further bisection. After [`MOST_PIECES`] pieces the bisection ends, and the minimum is known to lie between two bounds.
 //!
 //! # Source
 //! A. Johnen, J.-F. Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements", Journal of Computational Physics 233 (2013).
@@ -22,10 +22,11 @@ use crate::quadratic::{TETRAHEDRON_EDGES, TRIANGLE_SIDES};
 use std::collections::VecDeque;
 
 /// The maximum number of pieces of a cell that are examined. A quadratic cell that is nearly degenerate in a tenth of its size at one corner needs
-/// about ten. If a cell needs more than the maximum, its minimum of J is within about a thousandth of zero, relative to its maximum of J.
+/// about ten. If a cell needs more than the maximum, its smallest determinant differs from zero by at most about a thousandth of its largest one.
 const MOST_PIECES: usize = 512;
 
-/// The error of a coefficient, in units of the rounding error of a position times the derivative by that position: it is a sum of about ten products.
+/// The error of a coefficient, in units of the rounding error of a position times the derivative by that position. A coefficient is a sum of about
+/// ten products.
 const ROUNDINGS: f64 = 16.0;
 
 /// The minimum of det ∂x/∂ξ over a cell [m², m³]. This is twice the area of a straight triangle, six times the volume of a straight tetrahedron, or
@@ -38,8 +39,7 @@ pub struct LeastJacobian {
     pub found: f64,
     /// The position of that value: barycentric coordinates for triangles and tetrahedra, coordinates from 0 to 1 along the axes for boxes.
     pub at: [f64; 4],
-    /// The error due to rounding of the positions. At a corner whose neighbours all lie on one obstacle, the value consists of
-    /// rounding errors.
+    /// The error due to rounding of the positions. At a corner whose neighbours all lie on one obstacle, the value consists only of rounding errors.
     pub rounding: f64,
 }
 
@@ -107,7 +107,7 @@ pub fn least_jacobian<const D: usize>(nodes: &[[f64; D]]) -> Option<LeastJacobia
     Some(least)
 }
 
-/// det ∂x/∂ξ of a cell at a point, in the coordinates of [`LeastJacobian::at`] [m², m³].
+/// The determinant det ∂x/∂ξ of a cell at a point, in the coordinates of [`LeastJacobian::at`] [m², m³].
 pub fn jacobian_at<const D: usize>(nodes: &[[f64; D]], at: [f64; 4]) -> Option<f64> {
     Some(Net::of(nodes)?.value(at))
 }
@@ -201,7 +201,7 @@ fn less<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
 }
 
 impl Net {
-    /// det ∂x/∂ξ over a whole cell.
+    /// The determinant det ∂x/∂ξ over a whole cell.
     fn of<const D: usize>(nodes: &[[f64; D]]) -> Option<Net> {
         match (D, nodes.len()) {
             (2, 3) | (3, 4) => Some(Net::constant(nodes)),
@@ -223,8 +223,8 @@ impl Net {
         Net::simplex(D + 1, 0, vec![determinant(&sides)])
     }
 
-    /// For a quadratic simplex ∂x/∂ξₖ is linear. The coefficient of a product of D linear functions is the mean over all ways to distribute the
-    /// corners of its index over the factors.
+    /// The determinant of a quadratic simplex. Each ∂x/∂ξₖ is linear. The index of a coefficient of a product of D linear functions names D corners.
+    /// They are assigned to the factors in every possible way, and the coefficient is the mean of the products of the factors at their corners.
     fn quadratic<const D: usize, const E: usize>(nodes: &[[f64; D]], edges: &[[usize; 2]; E]) -> Net {
         let corners = D + 1;
         // ∂x/∂λᵢ at corner c: (4 δ − 1) xᵢ + 4 xᵢ꜀.
@@ -262,7 +262,7 @@ impl Net {
         Net { basis: Basis::Box { axes, degree }, coefficients, corners: vec![[0.0; 4], [1.0; 4]] }
     }
 
-    /// The coefficients are the determinants at the corners, because det ∂x/∂ξ is bilinear.
+    /// The determinant of a quadrilateral. The coefficients are the values at the corners, because det ∂x/∂ξ is bilinear.
     fn quadrilateral<const D: usize>(nodes: &[[f64; D]]) -> Net {
         // The first axis runs from corner 0 to 1 below and 3 to 2 above, the second from 0 to 3 and 1 to 2.
         let first = [less(&nodes[1], &nodes[0]), less(&nodes[2], &nodes[3])];
@@ -271,7 +271,8 @@ impl Net {
         Net::boxed(2, 1, vec![at(0, 0), at(1, 0), at(0, 1), at(1, 1)])
     }
 
-    /// Along each axis, ∂x/∂ξ is bilinear in the other two. So bᵢ = Σ det / Π (2 over i) over the ways to distribute an index over the two factors.
+    /// The determinant of a hexahedron. Each ∂x/∂ξₖ is bilinear in the other two coordinates, so two of the three columns depend on each coordinate.
+    /// A coefficient is therefore bᵢ = Σ det / Π (2 over i), summed over all ways to distribute its index along each axis over these two columns.
     fn hexahedron<const D: usize>(nodes: &[[f64; D]]) -> Net {
         let corner = |x: usize, y: usize, z: usize| &nodes[[0, 1, 3, 2][x + 2 * y] + 4 * z];
         let mut coefficients = vec![0.0; 27];

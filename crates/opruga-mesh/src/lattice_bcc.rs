@@ -22,8 +22,10 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
+    /// Returns the lattice around a surface, with cubes of side `spacing` [m].
+    ///
     /// # Errors
-    /// [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`] for a filling or a box of too many nodes.
+    /// [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`] if the filling or the box would have too many nodes.
     pub(crate) fn around(surface: &Mesh<3>, spacing: f64) -> Result<Lattice, MeshError> {
         crate::mesh::positive(Quantity::Spacing, spacing)?;
         let estimate = surface.lattice_estimate(spacing) as u64;
@@ -31,7 +33,7 @@ impl Lattice {
             return Err(MeshError::TooManyNodes { nodes: estimate, most: MAXIMUM_NODES });
         }
         let (low, high) = surface.bounds();
-        // A slanted needle has few nodes in a large box.
+        // A slanted needle has few nodes, but a large box with many cubes.
         let cubes: f64 = (0..3).map(|d| (high[d] - low[d]) / spacing + 3.0).product();
         if cubes > MOST_CUBES {
             let nodes = if cubes < 1e18 { 2 * cubes as u64 } else { u64::MAX };

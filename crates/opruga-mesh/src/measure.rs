@@ -80,7 +80,8 @@ impl<const D: usize> Mesh<D> {
         Ok(masses)
     }
 
-    /// Adds to every node its share of the measure of the elements that have mass, each multiplied by a weight that depends on its number.
+    /// Adds to every node its share of the measure of the elements that have mass, each multiplied by a weight that depends on the number of the
+    /// element.
     fn share_out(&self, shares: &mut [f64], weight: impl Fn(usize) -> f64) -> Result<(), MeshError> {
         let mut number = 0;
         self.visit_measures(|element, nodes, measure| {

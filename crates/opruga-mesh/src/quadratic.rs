@@ -82,7 +82,7 @@ pub(crate) fn tetrahedron_jacobian(nodes: &[Point; 10], at: [f64; 4]) -> f64 {
     6.0 * tetrahedron_volume(by[0], by[1], by[2], by[3])
 }
 
-/// ∂x/∂λᵢ for every corner i: (4 λᵢ − 1) xᵢ + 4 Σ λⱼ xᵢⱼ.
+/// The derivatives ∂x/∂λᵢ for every corner i: (4 λᵢ − 1) xᵢ + 4 Σ λⱼ xᵢⱼ.
 fn derivatives<const N: usize, const C: usize, const E: usize>(
     nodes: &[Point; N],
     edges: &[[usize; 2]; E],
@@ -103,12 +103,12 @@ fn derivatives<const N: usize, const C: usize, const E: usize>(
     out
 }
 
-/// det ∂x/∂λ at the six nodes of a quadratic triangle, as areas [m²]; negative if the triangle folds over there.
+/// The determinant det ∂x/∂λ at the six nodes of a quadratic triangle, as areas [m²]; negative if the triangle folds over there.
 pub(crate) fn triangle_areas(nodes: &[Point; 6]) -> [f64; 6] {
     core::array::from_fn(|node| 0.5 * triangle_jacobian(nodes, coordinates(node, &TRIANGLE_SIDES)))
 }
 
-/// det ∂x/∂λ at the ten nodes of a quadratic tetrahedron, as volumes [m³]; negative if it folds over there.
+/// The determinant det ∂x/∂λ at the ten nodes of a quadratic tetrahedron, as volumes [m³]; negative if the tetrahedron folds over there.
 pub(crate) fn tetrahedron_volumes(nodes: &[Point; 10]) -> [f64; 10] {
     core::array::from_fn(|node| tetrahedron_jacobian(nodes, coordinates(node, &TETRAHEDRON_EDGES)) / 6.0)
 }

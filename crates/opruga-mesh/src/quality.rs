@@ -9,7 +9,7 @@ pub struct CellMeasure {
     /// Its signed area [m²] or volume [m³].
     pub whole: f64,
     /// The smallest det ∂x/∂ξ at its nodes, as the area or volume that a cell with this value everywhere would have. If the determinant is positive
-    /// at the nodes but negative between them, the smallest value there: see [`crate::least_jacobian`].
+    /// at the nodes but negative between them, this is its smallest value between them: see [`crate::least_jacobian`].
     pub least: f64,
     /// The largest of these values at its nodes.
     pub greatest: f64,

@@ -56,8 +56,8 @@ struct Work {
 
 impl Mesh<3> {
     /// This closed surface with edges of about the given length [m]; if the shape permits, nearly all of them have 0.6 to 1.45 times this length.
-    /// Edges between triangles that meet at more than 40° are kept, and their corners do not move. A surface that does not cross itself does not
-    /// cross itself afterwards either; its triangles remain smaller at points where it otherwise would.
+    /// Edges between triangles that meet at more than 40° are kept, and their corners do not move. If this surface does not cross itself, the result
+    /// does not either. Where the result otherwise would, its triangles remain smaller.
     ///
     /// Nodes are renumbered. A group keeps its old nodes; a new node belongs to it if both ends of the edge that it divides do.
     ///

@@ -104,7 +104,7 @@ pub fn side_vector<const D: usize>(point: &SidePoint, x: &[[f64; D]]) -> [f64; D
     }
 }
 
-/// ∂x/∂ξ and ∂x/∂η of a side at a point.
+/// The tangents ∂x/∂ξ and ∂x/∂η of a side at a point.
 pub fn side_tangents<const D: usize>(point: &SidePoint, x: &[[f64; D]]) -> [[f64; D]; 2] {
     [0, 1].map(|k| {
         let mut out = [0.0; D];
@@ -140,7 +140,7 @@ impl<const D: usize> Mesh<D> {
     /// beyond the last node are ignored.
     pub fn boundary_sides(&self, selected: &[u32]) -> Vec<Vec<u32>> {
         let chosen: BTreeSet<u32> = selected.iter().copied().collect();
-        // The facets of which a side consists: a map from ascending nodes to numbers.
+        // The selected facets that are not part of a side yet: a map from their ascending nodes to their numbers.
         let mut left = BTreeMap::new();
         for (number, facet) in self.facets.iter().enumerate() {
             if facet.iter().all(|node| chosen.contains(node)) {

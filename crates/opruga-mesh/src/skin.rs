@@ -101,7 +101,7 @@ pub(crate) fn refined(positions: &[[f64; 3]], triangles: &[[u32; 3]], longest: f
     (points, cut)
 }
 
-/// The triangles into which a triangle is cut if its edges may have midpoints.
+/// The triangles into which a triangle is cut at the midpoints that its edges may have.
 fn pieces([a, b, c]: [u32; 3], middle: &impl Fn(u32, u32) -> Option<u32>) -> Vec<[u32; 3]> {
     match (middle(a, b), middle(b, c), middle(c, a)) {
         (None, None, None) => vec![[a, b, c]],

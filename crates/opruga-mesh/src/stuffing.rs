@@ -361,11 +361,12 @@ impl<'a> Stuffing<'a> {
         }
     }
 
-    /// Whether the quadrilateral p, q, cut of qm, cut of pm on a face of the lattice is cut from p; otherwise it is cut from q. Both tetrahedra at
-    /// the face make the same choice.
+    /// Whether the diagonal of the quadrilateral p, q, cut of qm, cut of pm on a face of the lattice starts at p; otherwise it starts at q. Both
+    /// tetrahedra at the face make the same choice.
     ///
-    /// It is cut from the far end of a cut on a long edge. If both cut edges are short, it is cut from the end with an even number of coordinates
-    /// greater than those of m: the two faces at p and q of a tetrahedron are then cut from different ends (the parity rule of Labelle and Shewchuk).
+    /// If pm or qm is a long edge, the diagonal ends at the cut on this edge. If both are short, it starts at the point, p or q, for which an even
+    /// number of coordinates are greater than those of m. The diagonals of the two faces at p and q of a tetrahedron then start at different points
+    /// (the parity rule of Labelle and Shewchuk).
     fn diagonal(&self, p: Key, q: Key, m: Key) -> bool {
         let long = |a: Key, b: Key| (a[0] - b[0]).rem_euclid(2) == 0;
         if long(p, m) {

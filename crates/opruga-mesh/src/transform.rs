@@ -57,7 +57,8 @@ impl<const D: usize> Mesh<D> {
         self.transform(&rows, about)
     }
 
-    /// Mirrors in the line (plane) or plane (space) through a point [m] with a normal of any length; always reverses orientations and returns true.
+    /// Mirrors the body in a line (in 2D) or a plane (in 3D), given by a point [m] and a normal of any length; always reverses orientations and
+    /// returns true.
     ///
     /// # Errors
     /// [`MeshError::Size`] if the normal is zero or not finite.

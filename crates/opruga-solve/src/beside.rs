@@ -6,7 +6,7 @@ use opruga_core::dense::Dense;
 use opruga_core::potential::{DensePart, Following, RankOnePart};
 use std::sync::Arc;
 
-/// A dense part on some nodes, between projectors if directions of nodes are held.
+/// A dense part on some nodes, between projectors if directions of nodes are constrained.
 #[derive(Clone, Debug)]
 pub(crate) struct Beside<const D: usize> {
     pub(crate) factor: f64,
@@ -14,7 +14,7 @@ pub(crate) struct Beside<const D: usize> {
     pub(crate) indices: Vec<u32>,
     pub(crate) matrix: Arc<Dense>,
     pub(crate) following: Option<Following>,
-    /// The projectors of nodes with held directions, and the numbers of these nodes in the list.
+    /// For each node with constrained directions, its number in the list and its projector.
     pub(crate) pinned: Vec<(u32, Block<D>)>,
 }
 
@@ -42,7 +42,7 @@ impl<const D: usize> Beside<D> {
     pub(crate) fn size_at(&self, number: usize) -> f64 {
         self.factor * (0..D).map(|d| self.matrix.at(number * D + d, number * D + d).abs()).sum::<f64>() / D as f64
     }
-    /// The diagonal block of a node in its list, without the held directions.
+    /// The diagonal block of a node in its list, before its projector is applied.
     pub(crate) fn diagonal_block(&self, number: usize) -> Block<D> {
         self.part().block(number, number)
     }
@@ -62,7 +62,7 @@ impl<const D: usize> Beside<D> {
             (0..D).for_each(|d| y[*index as usize][d] += value[d]);
         }
     }
-    /// The terms that a following frame adds, as rank-one terms.
+    /// The rank-one terms that are added because the frame follows its nodes.
     pub(crate) fn parts_of_rank_one(&self) -> Vec<RankOne<D>> {
         let part = |(factor, entries): RankOnePart<D>| {
             let entries = entries.into_iter().map(|(index, entry)| (index as u32, entry)).collect();
@@ -70,8 +70,8 @@ impl<const D: usize> Beside<D> {
         };
         self.part().parts_of_rank_one().into_iter().map(part).collect()
     }
-    /// Holds the directions of nodes that are not free, by their projectors. If any direction is held, the frame no longer
-    /// follows its nodes; rank-one terms with the same effect are returned.
+    /// Constrains the nodes that are not free, by their projectors. If any node is constrained, the frame no longer follows its
+    /// nodes, and rank-one terms with the same effect are returned.
     pub(crate) fn constrain(&mut self, free: &[bool], projectors: &[Block<D>]) -> Vec<RankOne<D>> {
         self.pinned.clear();
         for (number, index) in self.indices.iter().enumerate().filter(|(_, index)| !free[**index as usize]) {

@@ -13,7 +13,7 @@ pub fn isotropic<const D: usize>(value: f64) -> Block<D> {
     out
 }
 
-/// A·x.
+/// The product A·x.
 #[inline(always)]
 pub fn times<const D: usize>(a: &Block<D>, x: &[f64; D]) -> [f64; D] {
     let mut out = [0.0; D];
@@ -25,7 +25,7 @@ pub fn times<const D: usize>(a: &Block<D>, x: &[f64; D]) -> [f64; D] {
     out
 }
 
-/// Aᵀ·x.
+/// The product Aᵀ·x.
 #[inline(always)]
 pub fn transposed_times<const D: usize>(a: &Block<D>, x: &[f64; D]) -> [f64; D] {
     let mut out = [0.0; D];
@@ -37,7 +37,7 @@ pub fn transposed_times<const D: usize>(a: &Block<D>, x: &[f64; D]) -> [f64; D] 
     out
 }
 
-/// A·B.
+/// The product A·B.
 #[inline(always)]
 pub fn product<const D: usize>(a: &Block<D>, b: &Block<D>) -> Block<D> {
     let mut out = [[0.0; D]; D];
@@ -51,7 +51,7 @@ pub fn product<const D: usize>(a: &Block<D>, b: &Block<D>) -> Block<D> {
     out
 }
 
-/// A·Bᵀ subtracted from C.
+/// Subtracts A·Bᵀ from C.
 #[inline(always)]
 pub fn subtract_product_transposed<const D: usize>(c: &mut Block<D>, a: &Block<D>, b: &Block<D>) {
     for i in 0..D {

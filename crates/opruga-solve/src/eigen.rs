@@ -151,7 +151,7 @@ impl Vectors {
         let columns = self.len();
         MatMut::from_column_major_slice_mut(&mut self.entries, self.rows, columns)
     }
-    /// Aᵀ B of two sets of vectors.
+    /// The product Aᵀ B of two sets of vectors.
     fn products(&self, other: &Vectors) -> Mat<f64> {
         let mut out = Mat::zeros(self.len(), other.len());
         matmul(&mut out, Accum::Replace, self.matrix().transpose(), other.matrix(), 1.0, Par::Seq);
@@ -406,14 +406,14 @@ enum Root {
 }
 
 impl Root {
-    /// Rᵀ B.
+    /// The product Rᵀ B.
     fn transposed_product(&self, b: MatRef<'_, f64>) -> Mat<f64> {
         match self {
             Root::Diagonal(root) => Mat::from_fn(b.nrows(), b.ncols(), |i, j| root[i] * b[(i, j)]),
             Root::Lower(root) => root.transpose() * b,
         }
     }
-    /// x ← R⁻ᵀ x.
+    /// Replaces x by R⁻ᵀ x.
     fn solve_transposed(&self, x: &mut [f64]) {
         match self {
             Root::Diagonal(root) => x.iter_mut().zip(root).for_each(|(x, root)| *x /= root),

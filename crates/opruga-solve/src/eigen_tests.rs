@@ -76,7 +76,7 @@ fn check(count: usize, coupled: bool) -> usize {
     solves.get()
 }
 
-/// Each vector of a basis takes one solution of the equations; no frequency is missed, not even double ones.
+/// Each vector of a basis requires one solution of the equations. No frequency is missed, not even a double one.
 #[test]
 fn few_modes_take_a_basis_that_grows_with_their_number() {
     for count in [1, 30, 60] {
@@ -86,7 +86,7 @@ fn few_modes_take_a_basis_that_grows_with_their_number() {
     assert!(check(60, true) <= 320);
 }
 
-/// Many modes come from the dense matrix, which takes as many solutions as the body has coordinates.
+/// Many modes come from the dense matrix, which requires as many solutions as the body has coordinates.
 #[test]
 fn all_modes_take_as_many_solutions_as_there_are_coordinates() {
     for count in [300, EDGE * EDGE] {

@@ -43,8 +43,8 @@ pub(crate) struct FollowingFrame {
 }
 
 impl FollowingFrame {
-    /// Makes the frame from a factor of Q and the masses M, one for each row. S has to be positive definite. `right` is an
-    /// additional right-hand side, which is replaced by the solution A⁻¹ `right`.
+    /// Makes the frame. Q is `factor` times the forces of `following`, and `masses` has the entry of M for each row. S has to be positive definite.
+    /// `right` is an additional right-hand side, which is replaced by the solution A⁻¹ `right`.
     ///
     /// # Errors
     /// [`Indefinite`] if A is not positive definite.

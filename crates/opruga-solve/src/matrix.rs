@@ -258,7 +258,7 @@ impl<const D: usize> BlockMatrix<D> {
         true
     }
 
-    /// Computes y = A x, over all rows in the order of columns, with the same bits everywhere.
+    /// Computes y = A x. Each row is summed in the order of its columns, so the bits are the same everywhere.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         let by_node = nodes::<D>(x);
         for (row, out) in nodes_mut::<D>(y).iter_mut().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::blocks::nodes_mut;
 
-/// c·u uᵀ.
+/// The rank-one term c·u uᵀ.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RankOne<const D: usize> {
     pub(crate) factor: f64,

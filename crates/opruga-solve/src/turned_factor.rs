@@ -111,7 +111,7 @@ impl TurnedFactor {
         (self.following, self.solved_base) = (Some(frame), Some(base));
         Ok(true)
     }
-    /// Takes all rank-one terms: those of a following frame, and others.
+    /// Takes all rank-one terms: those of a frame that follows its nodes, and others.
     pub(crate) fn update_parts<const D: usize>(
         &self,
         parts: &mut Woodbury,
@@ -123,7 +123,8 @@ impl TurnedFactor {
         let all = matrix.rank_one().iter().chain(&of_frames);
         parts.update(matrix.rows() * D, all, positive, right, |sides| self.solve_all(&mut sides.collect::<Vec<_>>()))
     }
-    /// Replaces a right-hand side by the solution, including a following frame but without rank-one terms.
+    /// Replaces a right-hand side by the solution. This takes account of a frame that follows its nodes, but not of rank-one
+    /// terms.
     pub(crate) fn solve(&self, side: &mut [f64]) {
         let (Some(following), Some(Solver::Inverse(inverse))) = (&self.following, &self.solver) else {
             return self.solve_all(&mut [side]);

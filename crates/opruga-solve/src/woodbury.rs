@@ -3,7 +3,7 @@
 use crate::rank_one::RankOne;
 use crate::{Indefinite, dense, dot};
 
-/// (S + U C Uᵀ)⁻¹ b = S⁻¹ b − S⁻¹ U (C⁻¹ + Uᵀ S⁻¹ U)⁻¹ Uᵀ S⁻¹ b (Woodbury 1950).
+/// Adds rank-one terms to a solution: (S + U C Uᵀ)⁻¹ b = S⁻¹ b − S⁻¹ U (C⁻¹ + Uᵀ S⁻¹ U)⁻¹ Uᵀ S⁻¹ b (Woodbury 1950).
 #[derive(Debug, Default)]
 pub(crate) struct Woodbury {
     /// The u of each term, and S⁻¹ u.

@@ -79,7 +79,8 @@ impl<W: Target> Writer<W> {
     }
 
     /// Adds a frame with its state: the first frame, which may have any number, or the next one. A state that is not due at its frame ends the
-    /// recording, and so does the state of the frame that was pushed last. The state is exchanged for other bytes instead of being copied.
+    /// recording, and so does the state of the frame that was pushed last. To avoid copying, the bytes of `state` are taken, and other bytes are left
+    /// there.
     ///
     /// # Errors
     /// A frame out of order; it is not added, and the state stays with its owner.

@@ -74,8 +74,7 @@ fn parted<const D: usize>(a: &PinBlueprint<D>, b: &PinBlueprint<D>, size: f64) -
     let shared = |axis: &usize| a.axes[*axis] && b.axes[*axis];
     times.into_iter().find_map(|time| {
         let (p, q) = (along_path::<D>(&a.motion, time).0, along_path::<D>(&b.motion, time).0);
-        // Differences due to rounding do not count. They occur if the same motion is given by other rows, or if components
-        // vanish by symmetry.
+        // Differences due to rounding do not count. They occur if the same motion is given by different rows, or if components vanish by symmetry.
         let apart =
             |axis: &usize| (p[*axis] - q[*axis]).abs() > 1e-9 * (p[*axis].abs() + q[*axis].abs()) + 1e-12 * size;
         (0..D).filter(shared).find(apart).map(|axis| (time, axis))

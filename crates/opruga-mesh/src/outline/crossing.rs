@@ -144,7 +144,7 @@ mod tests {
     }
 
     proptest! {
-        /// On a coarse grid points and edges often touch.
+        /// On a coarse grid, points and edges often touch.
         #[test]
         fn the_lowest_pair_that_meets_is_that_of_all_pairs(
             rings in proptest::collection::vec(proptest::collection::vec([0..9u8, 0..9u8], 3..12), 1..4),

@@ -30,7 +30,7 @@ pub fn joined(rings: &[Ring], how: Overlap) -> Vec<Ring> {
 
 /// Rings that bound the area covered by the non-zero rule, that is, all points around which the given rings wind.
 ///
-/// Like [`joined`], for rings whose directions matter.
+/// It works like [`joined`], but for rings whose directions matter.
 pub fn wound(rings: &[Ring]) -> Vec<Ring> {
     let all: Vec<&Ring> = rings.iter().collect();
     let made = numbered(contours(&all, FillRule::NonZero, false));

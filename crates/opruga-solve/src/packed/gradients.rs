@@ -16,7 +16,7 @@ pub struct Reached {
     pub indefinite: bool,
 }
 
-/// y = A x for the rows of a piece; returns the scalar product x·y.
+/// Computes y = A x for the rows of a piece; returns the scalar product x·y.
 struct Multiply<'a, const D: usize> {
     piece: &'a mut Piece<D>,
     rows: &'a [f64],
@@ -60,7 +60,7 @@ impl<const D: usize> Work for Multiply<'_, D> {
     }
 }
 
-/// x ← x + s p, r ← r − s A p, z ← B r; returns the scalar product r·z.
+/// Updates x ← x + s p, r ← r − s A p, z ← B r; returns the scalar product r·z.
 struct Advance<'a, const D: usize> {
     piece: &'a mut Piece<D>,
     step: f64,
@@ -94,7 +94,7 @@ impl<const D: usize> Work for Advance<'_, D> {
     }
 }
 
-/// p ← z + t p; p is also stored by seat, for products.
+/// Updates the direction p ← z + t p, which is also stored by seat, for products.
 struct Turn<'a, const D: usize> {
     direction: &'a mut Column,
     improved: &'a [f64],

@@ -49,7 +49,7 @@ pub struct Packed<const D: usize> {
     size: f64,
 }
 
-/// c·u uᵀ, by seat.
+/// The rank-one term c·u uᵀ, by seat.
 #[derive(Debug, Default)]
 struct Part<const D: usize> {
     factor: f64,
@@ -68,7 +68,7 @@ struct Piece<const D: usize> {
     /// The values of the blocks in single precision, so that only half as much memory has to be read. This precision is enough
     /// because [`Packed`] solves for corrections.
     values: Vec<f32>,
-    /// The approximate inverse of the diagonal blocks: D² packs each, without the held directions.
+    /// The approximate inverse of the diagonal blocks: D² packs each, without the constrained directions.
     inverse: Column,
     residual: Column,
     improved: Column,
@@ -205,7 +205,7 @@ impl<const D: usize> Packed<D> {
         if self.pieces.iter().all(|piece| piece.definite) { Ok(()) } else { Err(Indefinite) }
     }
 
-    /// The sum over the nodes of the mean diagonal of their blocks, including held directions.
+    /// The sum over the nodes of the mean diagonal of their blocks, including constrained directions.
     pub fn stiffness(&self) -> f64 {
         self.stiffness
     }
