@@ -13,8 +13,8 @@ pub(crate) struct Unclosed {
     pub(crate) until: usize,
 }
 
-/// Returns the outermost bracket of a value that is still open at a line that cannot be part of a value, or at the end of the text. Such a line is
-/// the head of a table or, in a list, a line with a key.
+/// Returns the outermost bracket of a value that is not closed before the end of the text, or before a line that cannot be part of a value. Such a
+/// line is the head of a table or, in a list, a line with a key.
 pub(crate) fn unclosed(text: &str) -> Option<Unclosed> {
     let bytes = text.as_bytes();
     let mut open: Vec<usize> = Vec::new();

@@ -136,9 +136,9 @@ impl Found {
         self.real == other.real || self.number.is_some() && self.number == other.number
     }
 
-    /// Whether two names mean the same file, or will once they are written. On many systems, names that do not exist yet and differ only by case or
-    /// by the Unicode form of their letters are the same file. Whether a system is of this kind would be known too late, so such names count as the
-    /// same file.
+    /// Whether two names mean the same file, or will mean the same file once they are written. On many systems, names that do not exist yet and
+    /// differ only by case or by the Unicode form of their letters are the same file. Whether a system is of this kind would be known too late, so
+    /// such names count as the same file.
     fn would_be(&self, other: &Found) -> bool {
         let form = |found: &Found| crate::canonical::decomposed(&found.real.to_string_lossy().to_lowercase());
         self.is(other) || self.number.is_none() && other.number.is_none() && form(self) == form(other)
@@ -182,7 +182,7 @@ fn number_of(path: &Path) -> Option<(u64, u64)> {
     use std::os::unix::fs::MetadataExt as _;
     fs::metadata(path).ok().map(|about| (about.dev(), about.ino()))
 }
-// Without file numbers, hard links cannot be detected; all other cases show in the paths without links.
+// Without file numbers, hard links cannot be detected; all other cases are detected by the paths without links.
 #[cfg(not(unix))]
 fn number_of(_: &Path) -> Option<(u64, u64)> {
     None

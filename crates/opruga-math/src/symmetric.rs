@@ -1,4 +1,4 @@
-//! Symmetric matrices over lanes: eigenvalues by Jacobi rotations, and the matrix without the negative ones.
+//! Symmetric matrices over lanes: their eigenvalues by Jacobi rotations, and the removal of negative eigenvalues.
 
 use crate::lane::Lane;
 

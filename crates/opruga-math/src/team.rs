@@ -52,7 +52,7 @@ impl core::fmt::Debug for Task {
 // atomics in `take` and `hand_out` ensure that a piece is taken after the write and completed before the next write.
 #[allow(unsafe_code)]
 unsafe impl Sync for Task {}
-// SAFETY: the work it refers to can be called from every thread.
+// SAFETY: the work that the task refers to can be called from every thread.
 #[allow(unsafe_code)]
 unsafe impl Send for Task {}
 

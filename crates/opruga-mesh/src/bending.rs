@@ -43,7 +43,7 @@ pub fn hinges(triangles: &[[u32; 3]]) -> Result<Vec<[u32; 4]>, MeshError> {
     if crowded.is_empty() { Ok(list) } else { Err(MeshError::NonManifoldEdges { edges: crowded }) }
 }
 
-/// For each node between exactly two edges of a chain, the triple [previous, middle, next], ascending in the middle node.
+/// For each node between exactly two edges of a chain, the triple [previous, middle, next], in ascending order of the middle node.
 ///
 /// ```text
 ///     previous ---> middle ---> next

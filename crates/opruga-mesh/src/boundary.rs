@@ -124,7 +124,7 @@ impl<const D: usize> Mesh<D> {
             return Ok(self);
         }
         let parts = if cut == Cut::Five { INSCRIBED[0].len() } else { KUHN.len() };
-        // The old cell of each new one; each kind is followed by the parts of the next kind.
+        // The old cell of each new cell. The parts of quadrilaterals follow the triangles, and the parts of hexahedra follow the tetrahedra.
         let (triangles, quadrilaterals) = (self.cells.triangles.len(), self.cells.quadrilaterals.len());
         let (tetrahedra, hexahedra) = (self.cells.tetrahedra.len(), self.cells.hexahedra.len());
         let mut origins: Vec<u32> = Vec::new();

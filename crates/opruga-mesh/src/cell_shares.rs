@@ -14,7 +14,7 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// The integrals ∫ Nₐ dV over a quadratic tetrahedron with curved sides, exact: a box collapsed to a corner (Duffy 1982).
+/// The integrals ∫ Nₐ dV over a quadratic tetrahedron with curved sides, computed exactly on a box collapsed to a corner (Duffy 1982).
 fn of_quadratic_tetrahedron(x: &[Point; 10]) -> [f64; 10] {
     let mut out = [0.0; 10];
     for (a, of_a) in GAUSS {
@@ -35,7 +35,7 @@ fn of_quadratic_tetrahedron(x: &[Point; 10]) -> [f64; 10] {
     out
 }
 
-/// The integrals ∫ Nₐ dV over a hexahedron, exact: two Gauss points along every axis.
+/// The integrals ∫ Nₐ dV over a hexahedron, computed exactly with two Gauss points along every axis.
 fn of_hexahedron(x: &[Point; 8]) -> [f64; 8] {
     /// The corners of the reference box [0, 1]³.
     const CORNERS: [[usize; 3]; 8] =

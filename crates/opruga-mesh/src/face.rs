@@ -25,7 +25,7 @@ pub enum FaceError {
 /// A face cut into triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutFace {
-    /// The triangles, two fewer than corners, by the numbers of the corners, with the winding of the face.
+    /// The triangles, given by the numbers of their corners and wound like the face. There are two fewer triangles than corners.
     pub triangles: Vec<[u32; 3]>,
     /// Whether it has a corner that points inward.
     pub concave: bool,

@@ -177,7 +177,7 @@ fn least_weight(tetrahedron: &[Key; 4], point: [f64; 3], lattice: &Lattice) -> f
     weights.into_iter().fold(f64::INFINITY, |m, w| if w < m { w } else { m })
 }
 
-/// The tetrahedron of the lattice that contains a point: the one around the point's cube in which its smallest weight is largest.
+/// The tetrahedron of the lattice that contains a point: the one around the point's cube in which the smallest weight of the point is largest.
 fn holder(point: [f64; 3], lattice: &Lattice) -> [Key; 4] {
     let center = cube_of(point, lattice).map(|c| 2 * c + 1);
     let mut best = ([center; 4], f64::NEG_INFINITY);

@@ -141,7 +141,7 @@ impl<const D: usize> Mesh<D> {
                 return Err(MeshError::NotSimplices { element });
             }
         }
-        // The old cell of each new one: linear cells are numbered first, and move after the quadratic ones.
+        // The old cell of each new cell. Linear cells are numbered first; once they are quadratic, they follow the cells that already were.
         let linear = self.cells.triangles.len() + self.cells.tetrahedra.len();
         let origins: Vec<u32> = (linear..self.cells.len()).chain(0..linear).map(|cell| cell as u32).collect();
 

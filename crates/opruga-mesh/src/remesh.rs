@@ -300,7 +300,7 @@ impl Work {
     fn may_merge(&self, kept: u32, gone: u32, position: Point, long: f64) -> bool {
         let (around, other) = (self.neighbours(kept), self.neighbours(gone));
         let common: Vec<u32> = around.iter().copied().filter(|node| other.contains(node)).collect();
-        // Their common neighbours are the opposite corners; each of these keeps four triangles.
+        // Their common neighbours are the opposite corners; each of these must keep at least four triangles.
         if common.len() != 2 || common.iter().any(|node| self.neighbours(*node).len() < 5) {
             return false;
         }

@@ -1,4 +1,4 @@
-//! Sides of cells on the boundary, with their shape functions, on which a pressure acts.
+//! Sides of cells on the boundary, on which a pressure acts, and their shape functions.
 
 use crate::Mesh;
 use crate::geometry::{HEXAHEDRON_FACES, lift};

@@ -97,7 +97,7 @@ impl Mesh<3> {
         let rows = Rows { n };
         let mut unit: Vec<Point> = vec![[0.0; 3]; (10 * n * n + 2) as usize];
 
-        // The twelve corners: two poles and two rings of five at z = ±1/√5, rotated by 36° against each other.
+        // The twelve corners: two poles and two rings of five at z = ±1/√5, rotated by 36° relative to each other.
         let (z, r) = (1.0 / 5.0_f64.sqrt(), 2.0 / 5.0_f64.sqrt());
         unit[rows.node(0, 0, 0) as usize] = [0.0, 0.0, 1.0];
         unit[rows.node(3 * n, 0, 0) as usize] = [0.0, 0.0, -1.0];

@@ -78,7 +78,7 @@ impl Mesh<3> {
     }
 }
 
-/// The number of pieces whose tetrahedra share no node with those of another.
+/// The number of pieces. The tetrahedra of different pieces share no node.
 fn pieces(mesh: &Mesh<3>) -> usize {
     let mut parent: Vec<u32> = (0..mesh.nodes() as u32).collect();
     let root = |parent: &mut Vec<u32>, mut node: u32| {

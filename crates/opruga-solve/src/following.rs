@@ -1,7 +1,7 @@
 //! Computes solutions for a matrix whose frame follows its nodes, from solutions for the matrix in a fixed frame.
 //!
 //! A = Tᵀ K T + M + J Qᵀ + Q Jᵀ with T = 1 − V Jᵀ ([`Following`]) and S = K + M, whose inverse is known. With the spin θ = Jᵀ d, the strain
-//! e = d − V θ and P = M V + Q, A d = r is
+//! e = d − V θ and P = M V + Q, the equation A d = r becomes
 //!
 //! S e = r + J ν − P θ,  Jᵀ e = (1 − JᵀV) θ,  (1 − VᵀJ) ν + Pᵀ e + (VᵀP + QᵀV) θ = Vᵀ r,
 //!

@@ -1,6 +1,7 @@
 //! Medit (INRIA), `.mesh` as text: vertices and elements with references.
 //!
-//! References other than 0 become groups: `tetrahedron 2` of nodes and cells, `triangle 3`, `edge 1` and `vertex 4` of nodes.
+//! References other than 0 become groups. For example, `tetrahedron 2` is a group of nodes and cells, and `triangle 3`, `edge 1` and `vertex 4` are
+//! groups of nodes.
 //!
 //! # Source
 //! P. Frey, "Medit: an interactive mesh visualization software", INRIA RT-0253 (2001), section "File formats"; L. Maréchal, libMeshb.

@@ -117,7 +117,7 @@ impl Reader<'_, '_> {
     fn sections(&mut self) -> Result<(), SceneError> {
         // Sections that may occur only once.
         let mut seen: Vec<&str> = Vec::new();
-        // Whether arrays belong to cells, and the number of cells or points that they belong to.
+        // Whether the following arrays belong to cells or to points, and the number of these cells or points.
         let mut of: Option<(bool, usize)> = None;
         while let Some((word, from)) = self.scanner.peek() {
             let word = word.to_ascii_uppercase();

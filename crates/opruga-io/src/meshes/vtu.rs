@@ -40,7 +40,7 @@ fn at(scanner: &Scanner<'_>, node: Node<'_, '_>, message: VtuError) -> SceneErro
     marked(scanner, node, SceneError::of(message))
 }
 
-/// An error at an element that files of other formats can have, too.
+/// An error that files of other formats can have, too, at an element.
 fn common(scanner: &Scanner<'_>, node: Node<'_, '_>, message: ScanError) -> SceneError {
     marked(scanner, node, SceneError { code: SYNTAX, ..SceneError::of(message) })
 }

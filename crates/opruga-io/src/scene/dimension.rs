@@ -17,7 +17,7 @@ enum Dimension {
     Wrong(String, Option<usize>),
 }
 
-/// Reads everything below the format of a scene. If the dimension is not known, reports those errors of the rest that occur in both dimensions.
+/// Reads everything below the format of a scene. If the dimension is not known, reports the errors that the rest of the scene has in both dimensions.
 pub(super) fn read(reader: &mut Reader<'_>, root: &Node) -> Option<AnyBlueprint> {
     match dimension_of(reader, root) {
         Dimension::Known(dimension) => within(reader, root, dimension),

@@ -254,7 +254,7 @@ impl<'a> Reader<'a> {
             return Vec::new();
         }
         let unknown = node.entries().iter().filter(|entry| !names(section, tag).any(|name| name == entry.key));
-        // Only for errors that are listed, because the suggestions of the others are not shown.
+        // Suggestions are needed only for errors that are listed; the other errors are only counted.
         unknown.take(MOST_SHOWN).filter_map(|entry| nearest(&entry.key, names(section, tag))).collect()
     }
 

@@ -22,7 +22,7 @@ pub fn toml(value: &Value) -> Toml {
     }
 }
 
-/// A model or an integrator as a table of a scene of this dimension. Default values of fields that have no effect beside the other values are
+/// A model or an integrator as a table of a scene of this dimension. Default values of fields that have no effect together with the other values are
 /// omitted, because a reader of the scene would get a warning about them.
 pub fn kind_table(values: &Values, dimension: usize) -> InlineTable {
     let spec = values.spec();

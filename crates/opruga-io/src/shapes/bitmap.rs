@@ -92,7 +92,7 @@ struct Lines {
     /// The previous row, and the number of rows so far.
     above: Vec<f32>,
     rows: usize,
-    /// Grid line at which the step starts, grid line at which it ends, and the point where the contour crosses the first.
+    /// The grid line at which the step starts, the grid line at which it ends, and the point where the contour crosses the first of them.
     steps: Vec<(u64, u64, [f64; 2])>,
 }
 

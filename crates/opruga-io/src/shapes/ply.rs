@@ -1,8 +1,8 @@
 //! PLY: elements with properties, as text or as bytes of either order.
 //!
 //! The reader takes the properties `x`, `y`, `z` of `vertex` and the list `vertex_indices` (or `vertex_index`) of `face`; polygons are divided into
-//! triangles. Other properties, which concern the appearance of vertices, are skipped by the sizes in the header. Other elements are skipped as well,
-//! and counted.
+//! triangles. Other properties, which concern the appearance of vertices, are skipped; the header gives their sizes. Other elements are skipped as
+//! well, and counted.
 //!
 //! # Source
 //! G. Turk, The PLY Polygon File Format (1994).

@@ -13,7 +13,7 @@ const DRIFT: f64 = 0.25;
 const SHORTER: f64 = 0.9;
 /// The largest number of lengths that are tried.
 const TRIED: usize = 30;
-/// The largest number of nodes of a surface for which a length is tried, so that the answer does not take longer than the body would.
+/// The largest number of nodes of a surface for which a length is tried, so that the search does not take longer than making the body would.
 const LARGEST_TRIED: f64 = 20_000.0;
 
 /// Why a length is refused.
@@ -57,7 +57,7 @@ fn made(mesh: &Mesh<3>, length: f64) -> Result<Result<Mesh<3>, TooCoarse>, oprug
 }
 
 /// Tries shorter and shorter lengths, each rounded to two digits, and returns the first that works; otherwise, as the error, the shortest one that
-/// was tried. Coarse surfaces are made quickly, so that all attempts together take little longer than the last one.
+/// was tried. Coarse surfaces are made quickly, so all attempts together take little longer than the last one.
 fn coarsest(mesh: &Mesh<3>, length: f64) -> Result<f64, f64> {
     let (mut tried, mut next) = (length, length);
     for _ in 0..TRIED {

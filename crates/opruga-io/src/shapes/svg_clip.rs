@@ -15,7 +15,7 @@ use roxmltree::Node;
 
 /// Curves are approximated within this fraction of the size of the drawing.
 const TOLERANCE: f64 = 1e-5;
-/// A cut counts if it exceeds this fraction of the area, which is above the error of the approximated curves.
+/// A cut counts if it exceeds this fraction of the area. The fraction is larger than the error of the approximated curves.
 const CUT: f64 = 1e-4;
 
 impl<'a, 'd> Reader<'a, 'd> {

@@ -280,7 +280,7 @@ impl Selector {
             [(words, _)] => all(words, node),
             [.., (last, _)] if !all(last, node) => false,
             parts => {
-                // From the outermost element inwards: the number of parts that have matched anywhere above, and at the parent.
+                // From the outermost element inwards: for each part, whether it has matched any element above, and whether it has matched the parent.
                 let mut lineage: Vec<Node<'_, '_>> = node.ancestors().filter(Node::is_element).collect();
                 lineage.reverse();
                 let (mut above, mut parent) = (vec![false; parts.len()], vec![false; parts.len()]);

@@ -64,7 +64,7 @@ fn search(rings: &[&[[f64; 2]]], most: u64, compared: &mut u64) -> Result<Option
     let (width, height) = (extent(0), extent(1));
     let size = if width > height { width } else { height };
 
-    // The mean direction of the edges and their perpendiculars, weighted by length. Angles are multiplied by four, because four times the angle is
+    // The mean direction of the edges and their perpendiculars, weighted by length. Angles are multiplied by four, because four times the angle gives
     // the same direction for an edge and its perpendicular.
     let (mut along, mut across) = (0.0, 0.0);
     for edge in &edges {

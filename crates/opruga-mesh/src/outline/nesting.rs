@@ -68,7 +68,7 @@ fn check(rings: &[Ring]) -> Result<(), OutlineError> {
         }
         let area = ring.area();
         if ring.points.len() < 3 || area == 0.0 || !area.is_finite() {
-            // The halves of a figure of eight have areas that cancel; its error is that it crosses itself.
+            // The halves of a figure of eight have areas that cancel; the error to be reported is that it crosses itself.
             if area == 0.0
                 && !is_on_a_line(ring)
                 && let Some((parts, point)) = meeting(core::slice::from_ref(ring))?

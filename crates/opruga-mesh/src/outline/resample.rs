@@ -5,7 +5,7 @@ use crate::Quantity;
 use std::collections::BTreeSet;
 
 /// Cosine of the angle, 35°, above which a turn within one edge length is a corner. The tip of a heart may turn by only 40°, and a regular octagon
-/// turns by 45°. A circle with twelve or more edges of the length in which turns are measured turns by at most 30°.
+/// turns by 45°. A circle with a circumference of twelve or more edge lengths turns by at most 30° within one of them.
 const CORNER_COSINE: f64 = 0.819_152_044_288_991_8;
 
 /// Rings with points about `spacing` [m] apart. Corners are kept, the curves between them are divided into equal lengths, and detail finer than the
