@@ -5,9 +5,9 @@ use opruga_core::system::{Stage, State, Update};
 use opruga_math::{Pack, Strip, WIDTH, lanes};
 use std::ops::Range;
 
-/// y₁ = y₀ + s k₀ with k₀ = (v₀, a₀), from the current state to the first work columns.
+/// Computes y₁ = y₀ + s k₀ with k₀ = (v₀, a₀) from the current state, and writes it to the first work columns.
 pub(crate) struct FirstStage {
-    /// The time step along the slope [s].
+    /// The time s along the slope k₀ [s].
     pub(crate) span: f64,
 }
 

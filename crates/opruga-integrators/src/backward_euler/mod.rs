@@ -25,7 +25,7 @@ use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::spec::{Role, Spec, Values};
 use opruga_core::system::System;
 
-/// The parameters.
+/// The parameters of `backward_euler`.
 pub const SPEC: Spec = Spec {
     kind: "backward_euler",
     summary: "implicit, first order, stable for every step size; damps fast motion",
@@ -38,11 +38,11 @@ or slip by Coulomb's law. Bodies are not stepped in batches.",
     roles: &[Role::OfferedImplicit],
 };
 
-/// The kind `backward_euler`.
+/// The kind of integrator that scenes name `backward_euler`.
 #[derive(Debug)]
 pub struct BackwardEulerKind;
 
-/// Backward Euler.
+/// The integrator x₁ = x₀ + h v₁, M (v₁ − v₀) = h F(x₁, v₁, t₁).
 #[derive(Clone, Copy, Debug)]
 pub struct BackwardEuler;
 

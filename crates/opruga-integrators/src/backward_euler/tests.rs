@@ -26,7 +26,7 @@ fn free_fall_is_that_of_its_recurrence() {
     testing::check_free_fall(&rule(), |n| 0.5 * n * (n + 1.0));
 }
 
-/// 1/√(1 + h²ω²): .995037, .707107, .099504 at hω = .1, 1, 10 (validation B4).
+/// A step multiplies the amplitude by 1/√(1 + h²ω²), which is .995037, .707107, .099504 at hω = .1, 1, 10 (validation B4).
 #[allow(clippy::approx_constant)] // the figures of the source as they stand there
 #[test]
 fn the_amplitude_falls_as_in_its_closed_form() {
@@ -42,8 +42,8 @@ fn the_amplitude_falls_as_in_its_closed_form() {
     }
 }
 
-/// Springs pull along their axis at the end of the step: linear momentum is conserved, and angular momentum falls by O(h), as
-/// in the oscillation.
+/// Springs pull along their axes at the end of the step, so linear momentum is conserved. Angular momentum falls by O(h), as
+/// the amplitude of an oscillation does.
 #[test]
 fn linear_momentum_is_kept() {
     let [linear, coarse] = testing::drift_of_momentum(&rule(), 0.02, 200);

@@ -2,7 +2,7 @@
 //!
 //! With steps of equal length
 //!
-//! x₁ = (4 x₀ − x₋₁)/3 + ⅔ h v₁,  M v₁ = M (4 v₀ − v₋₁)/3 + ⅔ h F(x₁, v₁, t₁);
+//! x₁ = (4 x₀ − x₋₁)/3 + ⅔ h v₁,  M v₁ = M (4 v₀ − v₋₁)/3 + ⅔ h F(x₁, v₁, t₁).
 //!
 //! If the step size changes, the coefficients change with it. Second order, stable for every step size. Motion that is much
 //! faster than the step is damped within a few steps (L-stable). Slow motion is hardly damped: the amplitude loses the fraction
@@ -31,7 +31,7 @@ use opruga_core::spec::{Spec, Values};
 use opruga_core::system::System;
 use opruga_solve::blocks::nodes;
 
-/// The parameters.
+/// The parameters of `bdf2`.
 pub const SPEC: Spec = Spec {
     kind: "bdf2",
     summary: "implicit, second order, stable for every step size; damps motion that is much faster than the step",
@@ -48,7 +48,7 @@ const DISPLACEMENT: PerNode = PerNode::new("bdf2.displacement");
 const VELOCITY: PerNode = PerNode::new("bdf2.velocity");
 const STEP: PerBody<f64> = PerBody::new("bdf2.step");
 
-/// The kind `bdf2`.
+/// The kind of integrator that scenes name `bdf2`.
 #[derive(Debug)]
 pub struct Bdf2Kind;
 
@@ -95,7 +95,8 @@ impl<const D: usize> Rule<D> for Bdf2 {
         ])
     }
     fn begin(&self, system: &System<D>, workspace: &mut Workspace<D>, h: f64) -> Balance {
-        // With the ratio r = h/h₋: x₁ = x₀ + r²(x₀ − x₋₁)/(1 + 2r) + γ h v₁, γ = (1 + r)/(1 + 2r); r = 0 is backward Euler.
+        // With the ratio r = h/h₋ of the lengths of this step and the previous one, x₁ = x₀ + r²(x₀ − x₋₁)/(1 + 2r) + γ h v₁, γ
+        // = (1 + r)/(1 + 2r). r = 0 gives backward Euler.
         let last = if self.begins { 0.0 } else { system.history.get(STEP) };
         let kept = [DISPLACEMENT, VELOCITY].map(|channel| system.history.vectors(channel).filter(|_| last > 0.0));
         let r = if last > 0.0 { h / last } else { 0.0 };
@@ -150,7 +151,8 @@ impl<const D: usize> Rule<D> for Bdf2 {
         0.5 * (workspace.v1[k] - workspace.v0[k])
     }
     fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
-        // If a node met an obstacle, what remains of the differences describes how the motion along the surface continues.
+        // For a node that met an obstacle, the differences are computed from the part of the memory that is still valid. They
+        // then describe how the motion along the surface continues.
         let velocity = |node: usize, d: usize| workspace.v1[node * D + d];
         if let Some(displacement) = system.history.vectors_mut(DISPLACEMENT) {
             for (node, u) in nodes::<D>(&workspace.u1).iter().enumerate() {

@@ -77,7 +77,7 @@ pub(super) fn follow<const D: usize>(
 #[derive(Clone, Copy, Debug, Default)]
 struct Tried {
     solved: Solved,
-    /// Whether it found a point of the curve that is backwards or far to the side.
+    /// Whether the step found a point of the curve that lies backwards or far to the side.
     turned: bool,
     /// Whether there was no load that could move the body.
     unloaded: bool,
@@ -140,8 +140,8 @@ fn one_step<const D: usize>(
             }
             step = (0.5 * (displacement * displacement - dot(&gone, &gone)) - dot(&gone, &correction)) / across;
         }
-        // A body that leans on obstacles may be unable to move that far under any load. Then the step applies the remaining
-        // load.
+        // A body that leans on obstacles may be unable to move by the length of the step under any load. The step then applies
+        // the remaining load.
         ends |= leans && (now + step > 1.0 || step.is_nan());
         if ends {
             step = 1.0 - now;
@@ -192,8 +192,8 @@ fn one_step<const D: usize>(
     Ok(None)
 }
 
-/// Returns the correction towards equilibrium under the present load, including the displacements to surfaces, and the
-/// displacement due to the whole load, K⁻¹ F_outer, whatever the signs of the eigenvalues of K.
+/// Returns two displacements, whatever the signs of the eigenvalues of K. The first is the correction towards equilibrium under
+/// the present load, including the displacements to surfaces. The second, K⁻¹ F_outer, is due to the whole load.
 fn directions<const D: usize>(
     rule: &Equilibrium,
     system: &System<D>,

@@ -1,13 +1,13 @@
 //! # Equilibrium
 //!
-//! Statics: every step ends in an equilibrium, where all forces balance, F(x, 0, t) = 0, and nothing moves. Over time it follows
-//! changing loads, pins and pointers (quasi-static motion); if nothing changes, one step is enough.
+//! Statics: every step ends in an equilibrium, where all forces balance, F(x, 0, t) = 0, and nothing moves. Over time the body
+//! follows changing loads, pins and pointers (quasi-static motion). If nothing changes, one step is enough.
 //!
 //! Newton's method searches downhill: if there is a potential U, every iteration lowers it. If the equilibrium is far away, it
-//! helps to apply the weight and the loads in parts (`load_steps`), or to do so only if the whole load fails
-//! (`when_not_converged = "halve"`). In statics every change of energy is external work. When a weight is lowered slowly, it
-//! releases more energy than the springs store. The rest goes into the hand that lowers it. This energy is recorded with the
-//! work of the loads as `work_user`.
+//! helps to apply the weight and the loads in parts (`load_steps`), or to do so only if the step under the whole load does not
+//! converge (`when_not_converged = "halve"`). In statics every change of energy is external work. When a weight is lowered
+//! slowly, it releases more energy than the springs store. The rest goes into the hand that lowers it. This energy is recorded
+//! with the work of the loads as `work_user`.
 //!
 //! **Through a snap** (`arc_length`): when a shallow arch snaps, no equilibrium is near the old one. With this option the load is
 //! an unknown as well: each step moves by a given length along the curve of equilibria, past the limit points where the load
@@ -24,9 +24,9 @@
 //! the curve begins without any load.
 //!
 //! A body that nothing holds has either no equilibrium or many. It is refused, and the error names its free motions. The same
-//! applies to a body of several pieces, such as a map with islands, if one piece is free. Without `arc_length` obstacles may
-//! hold the body too; a direction without stiffness then gets a billionth of the stiffness of the others, within the iteration
-//! only. If that fails, the error names the motions that contact leaves free.
+//! applies to a body of several pieces, such as a map with islands, if one piece is free. Without `arc_length`, obstacles may
+//! hold the body too. Within the iteration, a direction without stiffness then gets a billionth of the stiffness of the others.
+//! If the iteration still fails, the error names the motions that contact leaves free.
 //!
 //! Other bodies may hold a body too, but how they do so is not known in advance. So the common equilibrium of touching bodies is
 //! found by the caller, with the forces and the matrix of each body ([`OpenStep`]).
@@ -66,7 +66,7 @@ use opruga_core::spec::{Allowed, Condition, Default, Field, Role, Spec, Values};
 use opruga_core::system::System;
 use opruga_solve::blocks::nodes;
 
-/// The parameters.
+/// The parameters of `equilibrium`.
 pub const SPEC: Spec = Spec {
     kind: "equilibrium",
     summary: "statics: every step ends in the equilibrium of all forces; with `arc_length`, it follows a body that snaps through",
@@ -97,7 +97,7 @@ whole load is applied at once.",
     roles: &[Role::Statics],
 };
 
-/// The kind `equilibrium`.
+/// The kind of integrator that scenes name `equilibrium`.
 #[derive(Debug)]
 pub struct EquilibriumKind;
 
@@ -161,7 +161,7 @@ impl Equilibrium {
         }
     }
 
-    /// Finds an equilibrium; divides the step into halves if it is not found at once.
+    /// Finds an equilibrium, and divides the step into halves if the search does not succeed at once.
     fn go<const D: usize>(
         &self,
         system: &mut System<D>,
@@ -174,7 +174,8 @@ impl Equilibrium {
         let outcome = self.balance(system, workspace, to, h);
         let too_far = match &outcome {
             Err(StepError::NotConverged { .. }) => true,
-            // With a smaller step the model may have a value. A body that nothing holds stays free in any step.
+            // With a smaller step the model may have a value, so the step is halved. Halving does not help a body that nothing
+            // holds.
             Err(StepError::Model { model, .. }) => *model != SPEC.kind,
             _ => false,
         };
@@ -230,8 +231,8 @@ impl Equilibrium {
         let balance =
             Balance { sigma: 0.0, beta: 0.0, theta: 1.0, time: at.time, h, load: at.load, impulse: 1.0, echo: 0.0 };
         let mut solved = Newton(self.settings).minimise(system, workspace, &balance)?;
-        // A body that lies on obstacles may still be free to slide or to roll. The iteration then does not end, or ends at an
-        // arbitrary position.
+        // A body that lies on obstacles may still be free to slide or to roll. In this case the iteration does not end, or it
+        // ends at an arbitrary position.
         if system.contacts.is_some() && rigid::is_loose(system) {
             self.refuse_what_is_free(system, workspace)?;
         }
@@ -301,8 +302,8 @@ impl Equilibrium {
     }
 }
 
-/// The effect of a step of statics: motion stops at once, and the position becomes zero, or stays if there is no restoring
-/// force.
+/// The effect of a step of statics on an oscillator. Motion stops at once, and the position becomes zero. Without a restoring
+/// force the position does not change.
 fn to_rest(omega: f64) -> Amplification {
     let kept = if omega > 0.0 { 0.0 } else { 1.0 };
     Amplification::new([[kept, 0.0], [0.0, 0.0]])

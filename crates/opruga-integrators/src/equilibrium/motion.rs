@@ -11,7 +11,7 @@ use opruga_solve::dense::symmetric_eigen;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion<const D: usize> {
     pub(super) translation: [f64; D],
-    /// One number in the plane, three in space.
+    /// The rate of rotation: one number in the plane, three in space.
     pub(super) rotation: Vec<f64>,
 }
 
@@ -19,7 +19,7 @@ impl<const D: usize> Motion<D> {
     pub(super) fn turns(&self) -> bool {
         self.rotation.iter().any(|x| x.abs() > 1e-6)
     }
-    /// `translation along x`, `rotation`.
+    /// Returns the name of the motion, such as `translation along x` or `rotation`.
     pub fn name(&self) -> MotionName {
         let shown = |vector: &[f64]| {
             let size = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -216,7 +216,7 @@ pub(super) fn loose_motions<const D: usize>(
     of_weights(&motions, loose)
 }
 
-/// The motions that are combinations of others with given weights, in as simple a form as possible.
+/// Returns combinations of the given motions with the given weights, in as simple a form as possible.
 pub(super) fn of_weights<const D: usize>(motions: &[Motion<D>], weights: Vec<Vec<f64>>) -> Vec<Motion<D>> {
     // The components of translations and rotations are treated separately, so the result is the same for all lists of motions.
     let turns = if D == 2 { 1 } else { 3 };
@@ -256,7 +256,7 @@ pub(super) fn shape_at<const D: usize>(
     shape
 }
 
-/// Row echelon form, starting from the rotations: as many motions as possible are pure translations along axes.
+/// Returns the row echelon form, starting from the rotations: as many motions as possible are pure translations along axes.
 fn simplest(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<Vec<f64>> {
     let mut done = 0;
     for column in (0..n).rev() {

@@ -38,8 +38,8 @@ pub(crate) fn pieces<const D: usize>(system: &System<D>) -> Vec<Vec<usize>> {
     pieces
 }
 
-/// Which nodes share second derivatives, whatever the values of these. Every node points to another node of its piece, and the
-/// first node points to itself.
+/// Which nodes share second derivatives, whatever the values of these derivatives. Every node points to another node of its
+/// piece, and the first node points to itself.
 struct Ties {
     tied_to: Vec<usize>,
 }

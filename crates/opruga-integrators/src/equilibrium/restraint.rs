@@ -1,14 +1,15 @@
 //! The rigid motions that the loads do not restrain: those under which loads and weight do no work of any order.
 //!
-//! In a rigid motion q (displacements φ_q, rotation ω_q) the force on a node changes by −K φ_q, where K = −∂F/∂x. If the forces
-//! rotated with the body, the force would change by ω_q × F. Only the difference can hold the body in a position:
+//! In a rigid motion q (displacements φ_q, rotation ω_q) the force on a node changes by −K φ_q, where K = −∂F/∂x. If the force
+//! F rotated with the body, it would change by ω_q × F. Only the difference of these two changes can hold the body in a
+//! position:
 //!
 //! P_pq = Σ φ_p·(ω_q × F + K φ_q)
 //!
 //! This is zero for a pressure of any strength, because pressure follows the body. It is φ_p·K φ_q for a spring to a pointer.
 //! For a dead load or the weight, it is zero for a rotation about the axis along which they act. It is also zero if their
-//! resultant passes through the support of the body. In some poses, such as that of a horizontal pendulum, a dead load does no
-//! second-order work although it does in other poses. So several poses of the body are examined.
+//! resultant passes through the support of the body. A dead load may do second-order work in most poses but not in some, such
+//! as that of a horizontal pendulum. So several poses of the body are examined.
 
 use super::motion::{Motion, Projection, all_motions, center, displacement, of_weights, shape_at, unpinned_motions};
 use super::pieces::whole;
@@ -25,7 +26,7 @@ const TIMES: [f64; 7] = [0.0, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
 /// Restraints below a fraction of the loads count as zero. This number is the square of the fraction, because P is squared.
 const NOTHING: f64 = 1e-14;
 
-/// The angle of rotation of the other poses of the body [rad].
+/// The angle by which the body is rotated in the other poses [rad].
 pub(super) const TURN: f64 = 0.9;
 
 /// The motions of the body, or of a piece, that nothing prevents: neither pins, nor loads, nor the weight (which holds a
@@ -42,7 +43,7 @@ pub(super) fn free_motions<const D: usize>(
         return free;
     }
     let center = center(x, piece);
-    // The other loads and the weight, which may prevent rotations.
+    // The loads without a stiffness and the weight may prevent rotations.
     let mut restraint = Restraint::new(&free, piece, center);
     let outer = outer(system);
     let times = if outer.is_empty() { &TIMES[..1] } else { &TIMES[..] };
@@ -74,14 +75,15 @@ pub(super) fn unstiffened_motions<const D: usize>(
     free
 }
 
-/// The models that act from outside: loads, and every model that ties nodes to space, whatever the account of its energy.
+/// The models that act from outside: loads, and every model that ties nodes to space, even if the ledger does not count it
+/// among the loads.
 pub(super) fn outer<const D: usize>(system: &System<D>) -> Vec<&Member<D>> {
     let acts =
         |member: &&Member<D>| member.potential.properties().account == Account::User || ties_to_space(system, member);
     system.members.iter().filter(acts).collect()
 }
 
-/// The stiffness of a model against rigid motions, as a fraction of its largest stiffness, below which it counts as zero.
+/// If the stiffness of a model against rigid motions is below this fraction of its largest stiffness, it counts as zero.
 const NO_TIE: f64 = 1e-9;
 
 /// Whether a model resists rigid motions of a body. Forces between nodes do not, since they move and rotate with the nodes.
@@ -242,7 +244,7 @@ impl<'a, const D: usize> Restraint<'a, D> {
             return;
         }
         if matches!(source, Source::Stiff(_)) {
-            // A load with a stiffness delivers the symmetric part.
+            // A load with a stiffness delivers the symmetric part of P.
             for p in 0..n {
                 for q in 0..p {
                     let mean = 0.5 * (part[p * n + q] + part[q * n + p]);
@@ -267,7 +269,7 @@ impl<'a, const D: usize> Restraint<'a, D> {
     }
 }
 
-/// Adds the forces of a member in a state for which `scratch` was prepared.
+/// Adds the forces of a model in the state for which `scratch` was prepared.
 pub(crate) fn add_forces_of<const D: usize>(
     system: &System<D>,
     member: &Member<D>,

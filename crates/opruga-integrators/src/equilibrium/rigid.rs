@@ -37,7 +37,7 @@ pub(super) fn refuse_free_motions<const D: usize>(system: &System<D>) -> Result<
     Ok(())
 }
 
-/// `translation along x, rotation`.
+/// Returns the names of motions as a list, such as `translation along x, rotation`.
 fn names<const D: usize>(free: &[Motion<D>]) -> AnyMessage {
     let list = |rest, first| match rest {
         None => Some(first),
@@ -47,7 +47,7 @@ fn names<const D: usize>(free: &[Motion<D>]) -> AnyMessage {
     names.fold(None, list).unwrap_or_else(|| MotionName::Rotation {}.into())
 }
 
-/// `(0.5, 2)`, a position in metres with four digits.
+/// Returns a position in metres with four digits, such as `(0.5, 2)`.
 fn coordinates<const D: usize>(x: &[f64; D]) -> String {
     let numbers: Vec<String> = x.iter().map(|x| number(*x)).collect();
     format!("({}) m", numbers.join(", "))

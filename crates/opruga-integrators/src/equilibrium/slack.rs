@@ -1,8 +1,8 @@
 //! Rotations that meet no resistance at any angle, which exist only for linear laws.
 //!
 //! A law that accounts for large rotations rotates with the body, and the weight brings the body back like a pendulum. For a
-//! linear law, a rotation is the straight motion ω × r. Its forces do not change along that motion, so a torque at the start
-//! acts at every angle.
+//! linear law, a rotation is the straight motion ω × r. Forces do not change along that motion, so a torque that acts at the
+//! start acts at every angle.
 
 use super::motion::{Motion, center, shape_at};
 use super::restraint::{TURN, add_forces_of, outer, pose, unstiffened_motions};
@@ -13,8 +13,8 @@ use opruga_math::Column;
 /// Forces below this fraction of those due to a stretch of the same length count as rounding.
 const NOTHING: f64 = 1e-6;
 
-/// The rotations of a piece that neither pins nor loads with a stiffness prevent, if the forces of the body itself do not resist
-/// the straight motion however far it goes; otherwise none.
+/// The rotations of a piece that neither pins nor loads with a stiffness prevent, if the forces of the body itself do not
+/// resist the straight motion, however far it goes. If they do, the list is empty.
 pub(super) fn endless_turns<const D: usize>(system: &System<D>, piece: &[usize]) -> Vec<Motion<D>> {
     let x = &system.state.x;
     let free = unstiffened_motions(system, x, piece, &[]);

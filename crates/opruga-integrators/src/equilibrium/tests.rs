@@ -44,8 +44,8 @@ fn pin<const D: usize>(system: &mut System<D>, node: usize, axes: [bool; D]) {
     system.pins.push(Pin { index: node, axes, anchor, motion: Arc::default() });
 }
 
-/// ρ = 1000, L = 1, E = 125 000, g = 9.81: the end sinks by ρgL²/2E = .03924 m (validation B1), for any number of springs
-/// with half the mass at the ends, by every solver.
+/// ρ = 1000, L = 1, E = 125 000, g = 9.81: the end sinks by ρgL²/2E = .03924 m (validation B1). This holds for any number of
+/// springs with half the mass at the ends, and with every solver.
 #[test]
 fn a_hanging_bar_has_the_length_of_its_closed_form() {
     for (nodes, solver) in [(2, "conjugate_gradients"), (11, "conjugate_gradients"), (41, "cholesky")] {
@@ -64,7 +64,8 @@ fn a_hanging_bar_has_the_length_of_its_closed_form() {
         let sunk = -1.0 - system.state.x.at(springs)[1];
         assert!((sunk - 0.039_24).abs() < 1e-12, "{nodes} nodes: {sunk}");
         assert!(system.state.v.0.iter().flatten().all(|v| *v == 0.0));
-        // Half of the energy that the weight releases is not stored by the springs, and is external work. Nothing damps.
+        // The springs store half of the energy that the weight releases. The other half is external work, because nothing
+        // damps.
         let (damped, work): (f64, f64) = (system.work.damping.iter().sum(), system.work.user.iter().sum());
         let stored = system.stored_energy(opruga_core::system::Stage::Current, 0.0);
         assert!(damped == 0.0 && work < 0.0, "{damped} {work}");
@@ -73,7 +74,7 @@ fn a_hanging_bar_has_the_length_of_its_closed_form() {
     }
 }
 
-/// Two springs of length 1 with their apex at a height of 0.2 m, pressed down by λ m g: the load falls after its limit and rises
+/// Two springs of length 1, whose apex at a height of 0.2 m is pressed down by λ m g. The load falls after its limit and rises
 /// again later. Every point of the curve satisfies the closed form 2 k (1 − l)(y/l) = −λ m g.
 #[test]
 fn a_truss_is_followed_through_its_snap() {
@@ -104,7 +105,7 @@ fn a_truss_is_followed_through_its_snap() {
         steps += 1;
         assert!(steps < 100);
     }
-    // The limits at about y = ±0.2/√3: ±0.1048 of the load.
+    // The limits are at about y = ±0.2/√3 and are ±0.1048 of the load.
     assert!((highest - 0.1048).abs() < 1e-3 && (lowest + 0.1048).abs() < 1e-3, "{highest} {lowest}");
     let behind = system.state.x.at(1)[1];
     assert!(behind < -height && (needed(behind) - 1.0).abs() < 1e-9, "{behind}");
@@ -150,7 +151,7 @@ fn a_body_that_nothing_holds_is_refused_with_the_names_of_its_rigid_modes() {
     };
     assert_eq!(pendulum(0.1), Ok(()));
     assert!(pendulum(0.0).unwrap_err().about.to_string().contains("rotation: 1 rigid mode"));
-    // Axes along x only, at three heights.
+    // The body is pinned along x only, at nodes of different heights.
     assert_eq!(message(&[(0, [true, false]), (2, [true, false])]), refusal("translation along y: 1 rigid mode"));
 
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -195,12 +196,12 @@ fn what_is_out_of_balance_is_reported_for_nodes_pinned_along_some_axes_too() {
     let StepError::NotConverged { residual, .. } = rule.step(&mut system, 0.5).unwrap_err() else {
         panic!("another error")
     };
-    // The spring takes its share of the displacement, which leaves a residual along the free axis only.
+    // The spring shares the displacement of the pinned axis, so a residual remains along the free axis only.
     assert!(residual > 1.0 && residual < 5.0 * 9.81, "{residual}");
 }
 
-/// A custom model that ties nodes to space holds a body, whatever the account of its energy. Forces between nodes do not hold a
-/// body.
+/// A custom model that ties nodes to space holds a body, even if the ledger does not count it among the loads. Forces between
+/// nodes do not hold a body.
 #[test]
 fn models_that_tie_nodes_to_space_hold_a_body_by_what_they_do() {
     let rule = rule(&[]);

@@ -26,7 +26,7 @@ use opruga_core::system::{Stage, State, System, Update};
 use opruga_math::{Pack, Strip, WIDTH, lanes};
 use std::ops::Range;
 
-/// The parameters: none.
+/// The description of `explicit_euler`, which has no parameters.
 pub const SPEC: Spec = Spec {
     kind: "explicit_euler",
     summary: "first order, energy grows: for comparison",
@@ -37,7 +37,7 @@ a mode of angular frequency ω grows at the relative rate ω²h.",
     roles: &[],
 };
 
-/// The kind `explicit_euler`.
+/// The kind of integrator that scenes name `explicit_euler`.
 #[derive(Debug)]
 pub struct ExplicitEulerKind;
 

@@ -7,9 +7,9 @@
 //! Second order (also with damping), two forces per step; Butcher table `0 | ; 1 | 1 ; ½ ½`. It is written so that no slope is
 //! stored: x = x₀ + ½h (v₀ + v₁), v = v₀ + ½ ((v₁ − v₀) + h a₁).
 //!
-//! The stability function is R(z) = 1 + z + ½z². On the imaginary axis |R|² = 1 + ¼(hω)⁴: **no step is stable without damping**,
-//! and energy grows by the fraction ¼ω⁴h³ per second (slowly: at hω = 0.1 by 2.5e-5 per radian). An overdamped mode is stable
-//! for h |μ| ≤ 2. Free fall is exact.
+//! The stability function is R(z) = 1 + z + ½z². On the imaginary axis |R|² = 1 + ¼(hω)⁴: **no step is stable without
+//! damping**, and energy grows by the fraction ¼ω⁴h³ per second (slowly: at hω = 0.1 by 2.5e-5 per step). An overdamped mode is
+//! stable for h |μ| ≤ 2. Free fall is exact.
 //!
 //! Source: Heun 1900; Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.1.
 
@@ -25,7 +25,7 @@ use opruga_core::system::{Stage, State, System, Update};
 use opruga_math::{Pack, Strip, WIDTH, lanes};
 use std::ops::Range;
 
-/// The parameters: none.
+/// The description of `heun`, which has no parameters.
 pub const SPEC: Spec = Spec {
     kind: "heun",
     summary: "the explicit trapezoidal rule: second order; energy grows slowly",
@@ -36,7 +36,7 @@ step is stable: the energy of a mode of angular frequency ω grows at the relati
     roles: &[],
 };
 
-/// The kind `heun`.
+/// The kind of integrator that scenes name `heun`.
 #[derive(Debug)]
 pub struct HeunKind;
 

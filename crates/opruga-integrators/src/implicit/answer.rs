@@ -9,8 +9,8 @@ use opruga_core::integrator::next_matrix_number;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 
-/// Factors the matrix of the last step, or the matrix that the minimiser keeps for later steps, and returns its number; none if
-/// there is no matrix.
+/// Factors the matrix of the step that has just ended, or the matrix that the minimiser keeps for later steps. Returns the
+/// number of the matrix; none if there is no matrix.
 ///
 /// # Errors
 /// [`StepError`] if a model refuses.
@@ -30,7 +30,7 @@ pub(crate) fn prepare<const D: usize>(
     Ok(outcome?.then_some(workspace.answer.number))
 }
 
-/// Records the free directions, and assigns a number to the matrix that will now be made.
+/// Records the free directions, and assigns a number to the matrix that is made next.
 fn begin<const D: usize>(workspace: &mut Workspace<D>, balance: &Balance) {
     let Workspace { answer, free, projectors, .. } = workspace;
     answer.free.clone_from(free);
@@ -73,7 +73,7 @@ fn factor<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, bala
         matrix_free: false,
     };
     let filter = Filter { free, projectors };
-    // At the end of a step the exact derivatives are those of a minimum, up to the tolerance.
+    // The end of a step is a minimum up to the tolerance, so the exact matrix is usually positive definite.
     for keep in [Definiteness::Exact, Definiteness::Clamped] {
         answer.linear.assemble(&Mixture { keep, ..mixture });
         if answer.linear.factor_positive(&filter).is_ok() {
@@ -84,7 +84,8 @@ fn factor<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, bala
     answer.linear.factor(&filter).is_ok()
 }
 
-/// Replaces forces by displacements of the end, in `count` consecutive vectors; returns whether that was possible.
+/// Replaces the forces in `count` consecutive vectors by the displacements of the end of the step that they cause. Returns
+/// whether that was possible.
 pub(crate) fn displace<const D: usize>(workspace: &Workspace<D>, vectors: &mut [f64], count: usize) -> bool {
     let answer = &workspace.answer;
     let filter = Filter::<D> { free: &answer.free, projectors: &answer.projectors };

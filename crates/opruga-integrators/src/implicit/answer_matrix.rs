@@ -1,4 +1,4 @@
-//! The matrix with which the end of a step responds to forces of other bodies.
+//! The matrix that determines how the end of a step responds to forces of other bodies.
 
 use super::balance::Balance;
 use super::linear::Linear;
@@ -15,9 +15,9 @@ pub(crate) struct AnswerMatrix<const D: usize> {
     pub(crate) free: Vec<bool>,
     pub(crate) projectors: Vec<Block<D>>,
     pub(crate) theta: f64,
-    /// Its unique number, and its origin if it is a matrix that later steps share.
+    /// The unique number of the matrix, and its origin if later steps share it.
     pub(crate) number: u64,
     pub(crate) origin: Option<Origin<D>>,
-    /// Whether the matrix is solved by factors that do not require positive eigenvalues.
+    /// Whether the factors are of the kind that does not require positive eigenvalues.
     pub(crate) by_factors: bool,
 }

@@ -15,8 +15,8 @@ pub(crate) struct Balance {
     pub(crate) h: f64,
     /// The fraction of the weight and of the loads that acts.
     pub(crate) load: f64,
-    /// The change of momentum due to a force that acts only in this stage, in units of force times h. It includes the change
-    /// that the rule will add in later steps from its memory.
+    /// The change of momentum due to a force that acts only in this stage, in units of force times h. `impulse` is the change
+    /// in this step. `echo` is the change that the rule will add in later steps from its memory.
     pub(crate) impulse: f64,
     pub(crate) echo: f64,
 }
@@ -29,12 +29,13 @@ pub(crate) struct Solved {
     /// The largest displacement of a node in the last iteration [m].
     pub(crate) correction: f64,
     pub(crate) converged: bool,
-    /// How far the residual would still move a node [m], if it consists of rounding errors and that distance is large.
+    /// How far the residual would still move a node [m]; zero unless the residual consists of rounding errors and that distance
+    /// is large.
     pub(crate) error_estimate: f64,
-    /// The ratio of the forces due to rounding of positions to the loads, if it matters.
+    /// The ratio of the forces due to rounding of positions to the loads; zero if it is not needed.
     pub(crate) conditioning: f64,
-    /// If it did not converge: the rounding of positions [m], the largest rounding of a force [N], and how far such a force
-    /// would move a node [m].
+    /// If the iteration did not converge: the rounding of positions [m], the largest rounding of a force [N], and how far such
+    /// a force would move a node [m].
     pub(crate) floor: [f64; 3],
     /// Whether the residual may have created energy.
     pub(crate) doubtful: bool,

@@ -8,7 +8,7 @@
 //!
 //! Every Newton iteration decides whether a node is held, from the gap after the last correction and the force of the
 //! constraint. A contact that changes too often slips, or is released, for the rest of the step. In any case the force stays
-//! within Coulomb's cone, and no node may be inside at the end.
+//! within Coulomb's cone, and no node may be inside an obstacle at the end.
 
 use super::contact_query::ContactQuery;
 use super::friction::{Followed, SlipRule, against_slide, projected};
@@ -47,7 +47,7 @@ pub(crate) struct Contact<const D: usize> {
 /// The changes that follow from the forces of the constraints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Verdict {
-    /// Whether other nodes must be held, or nodes must be held in another way.
+    /// Whether the set of held nodes must change, or the way in which a node is held.
     pub(crate) anew: bool,
     /// Whether the friction force or its direction changes.
     pub(crate) unsettled: bool,
@@ -139,9 +139,9 @@ impl<const D: usize> Contacting<D> {
         self.any() && self.contacts.iter().filter(|contact| contact.is_active()).all(rests)
     }
 
-    /// Finds the contacts of nodes that start at x₀ and end displaced by u/θ; nodes that are inside are held from now on. Depths
-    /// below a billionth of the extent do not count. Nodes that hit a surface with friction are first assumed to stick, or to
-    /// slide if `impacts_slide` is set.
+    /// Finds the contacts of nodes that move from x₀ to x₀ + u/θ. Nodes that end inside an obstacle are held from now on.
+    /// Depths below a billionth of the extent do not count. Nodes that hit a surface with friction are first assumed to stick,
+    /// or to slide if `impacts_slide` is set.
     pub(crate) fn look(&mut self, contact_query: &ContactQuery<'_, D>, impacts_slide: bool) -> bool {
         let ContactQuery { system, x0, u, theta, h, extent } = *contact_query;
         let Some(obstacles) = &system.contacts else {
@@ -272,7 +272,7 @@ impl<const D: usize> Contacting<D> {
                     }
                 }
                 let size = dot(&rest, &rest).sqrt();
-                // A direction that is (nearly) held already is not added.
+                // A direction is not added if it is already held, or nearly so.
                 if rank == D || size < 1e-6 {
                     return;
                 }
@@ -338,7 +338,8 @@ impl<const D: usize> Contacting<D> {
     }
 
     /// Decides the state of contacts from the forces of the constraints (`reaction`, per node) and from the displacements after
-    /// the correction; returns the changes. `stiffness` of a node [N/m] determines how far friction alone would move it.
+    /// the correction; returns the changes. The `stiffness` of a node [N/m] determines how far friction alone would move the
+    /// node.
     pub(crate) fn judge(
         &mut self,
         reaction: &[f64],
@@ -441,7 +442,7 @@ impl<const D: usize> Contacting<D> {
         plain.clear();
         plain.extend_from_slice(change);
         mixing.mix(change);
-        // If friction and the normal force nearly amplify each other, mixing may give any value.
+        // If friction and the normal force amplify each other, mixing may give values without meaning.
         if !state.iter().zip(&*change).all(|(force, change)| (force + change).abs() <= 4.0 * most) {
             change.copy_from_slice(plain);
         }
@@ -458,7 +459,7 @@ impl<const D: usize> Contacting<D> {
     }
 }
 
-/// The forces along the normals of the held contacts of one node whose sum is the normal part of a force.
+/// Splits the normal part of a force on one node into forces along the normals of its held contacts.
 pub(super) fn split<const D: usize>(contacts: &[Contact<D>], force: &[f64; D]) -> [f64; D] {
     let mut out = [0.0; D];
     let is_active = |k: &usize| contacts[*k].is_active();

@@ -7,10 +7,10 @@ use opruga_solve::blocks::{Block, isotropic};
 /// If a direction of friction turns by less than this in an iteration, the next iteration uses its derivative.
 const FOLLOWED: f64 = 0.1;
 
-/// A slide of more than this fraction of the extent always has a direction.
+/// The direction of a slide is always used if the slide is longer than this fraction of the extent.
 const SLIDING: f64 = 1e-4;
 
-/// The distance from a node at which its surface is evaluated for differences, as a fraction of the extent of the body.
+/// For differences, a surface is evaluated at this distance from a node, as a fraction of the extent of the body.
 const BESIDE: f64 = 1e-5;
 
 impl<const D: usize> ContactQuery<'_, D> {
@@ -42,9 +42,9 @@ impl<const D: usize> ContactQuery<'_, D> {
 }
 
 impl<const D: usize> Contacting<D> {
-    /// Calls `visit` with the blocks −∂f/∂u of the forces of held contacts. The direction of friction follows the slide w,
-    /// which gives µλ/|w| across w. The direction of the constraint follows the surface, which gives −λ ∂n/∂x. If `clamped` is
-    /// set, only blocks without negative eigenvalues are visited.
+    /// Calls `visit` with the blocks −∂f/∂u of the forces of held contacts. The direction of friction follows the slide w, so
+    /// friction contributes µλ/|w| across w. The direction of the constraint follows the surface, so the constraint contributes
+    /// −λ ∂n/∂x. If `clamped` is set, only blocks without negative eigenvalues are visited.
     pub(crate) fn derivatives(
         &self,
         contact_query: &ContactQuery<'_, D>,
@@ -55,7 +55,7 @@ impl<const D: usize> Contacting<D> {
             let normal = &contact.touch.normal;
             if contact.rubs() && D > 2 {
                 let slide = contact.slide(contact_query.u, contact_query.theta, contact_query.x0);
-                // If the direction of a slide turns far, it is not settled yet, so its derivative is not used.
+                // A direction of slide that turns by a large angle is not settled yet, so its derivative is not used.
                 let size = dot(&slide, &slide).sqrt();
                 let strength = contact.touch.friction * contact.normal_force / size;
                 if dot(&slide, &contact.push) < 0.0

@@ -13,8 +13,8 @@ impl<const D: usize> Contacting<D> {
         }
     }
 
-    /// Gives contacts that the first search has found the forces of the previous step, as [`Contacting::visit_forces`]
-    /// delivered them: slipping contacts keep slipping, and sticking ones keep sticking.
+    /// Assigns the forces of the previous step, as delivered by [`Contacting::visit_forces`], to the contacts that the first
+    /// search has found. Slipping contacts keep slipping, and sticking ones keep sticking.
     pub(super) fn start_from(&mut self, force: impl Fn(usize) -> [f64; D]) {
         for contacts in self.contacts.chunk_by_mut(|a, b| a.node == b.node) {
             let force = force(contacts[0].node);

@@ -8,7 +8,7 @@ use opruga_core::error::StepError;
 use opruga_core::system::{Stage, System};
 use opruga_math::Lane;
 
-/// Records the outcome of a search for an equilibrium, and refuses it if it has not converged.
+/// Records the outcome of a search for an equilibrium, and refuses the outcome if the search has not converged.
 pub(crate) fn report<const D: usize>(
     integrator: &'static str,
     settings: &Settings,
@@ -80,8 +80,8 @@ pub(super) fn refusal<const D: usize>(
     let [of_positions, of_forces, displacement] = solved.floor;
     // If the iterations were used up, rounding is not the cause.
     let is_stuck = solved.iterations < settings.iterations;
-    // Forces and corrections below their rounding errors are lost. So is a body that rounding would move farther than its
-    // extent.
+    // A correction or a residual below its rounding error has no correct digit. The same holds if rounding would move a node
+    // farther than the extent of the body.
     let is_lost = solved.correction <= of_positions || residual <= of_forces || displacement > workspace.extent;
     let is_rounding = is_stuck && is_lost;
     StepError::NotConverged {

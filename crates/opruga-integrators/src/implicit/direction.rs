@@ -38,7 +38,7 @@ impl Keep {
     }
 }
 
-/// The largest number of corrections of a direction because friction has changed.
+/// How often a direction is corrected at most because friction has changed.
 const MOST_ROUNDS: u32 = 12;
 
 /// The relative error of the friction force that may remain in the first iteration.
@@ -70,8 +70,8 @@ pub(crate) fn wanted_forces<const D: usize>(
 }
 
 /// Solves for `workspace.step`, including prescribed displacements; `workspace.reaction` is then the force of the constraints,
-/// from which friction follows. Returns the number of products, and the slope along the step of the incremental potential minus
-/// the work of friction and of the constraints.
+/// from which friction follows. Returns the number of products. Also returns the slope, along the step, of the incremental
+/// potential minus the work of friction and constraints.
 pub(super) fn find_direction<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,
@@ -133,8 +133,8 @@ pub(super) fn find_direction<const D: usize>(
         reaction.fill(0.0);
         return Ok((products, slope));
     }
-    // The residual in the held directions after the step: r + A Δ. Friction follows from this residual, because the friction
-    // force depends on the normal force, and the step follows from friction.
+    // The residual in the held directions after the step, r + A Δ. It contains the normal forces, which determine friction, and
+    // the step follows from friction.
     friction.forget();
     let mut rounds = 0;
     loop {

@@ -33,7 +33,7 @@ pub(crate) struct Statics {
 }
 
 impl Statics {
-    /// Takes the state at the start of a step of statics, which has no velocities.
+    /// Stops all motion, and copies the state at the start of a step of statics to the workspace.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the state.
@@ -52,8 +52,9 @@ impl Statics {
 
     /// Ends a step of statics of h [s] at the displacement in `workspace.u1`.
     ///
-    /// The change of energy of the body, minus the energy given to a gas, is recorded as external work. This work includes that
-    /// of loads, of pins and of whatever slows the motion down. Nothing moves, so pins do not change any motion.
+    /// The change of energy of the body, minus the energy given to a gas, is recorded as external work. It includes the work of
+    /// loads, of pins and of all forces that slow the motion down. Velocities are zero before and after the step, so pins cause
+    /// no change of kinetic energy.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the end.
@@ -80,7 +81,8 @@ fn stop<const D: usize>(system: &mut System<D>) {
     system.state.v.0.iter_mut().for_each(|column| column.fill(0.0));
 }
 
-/// Takes the state at the start of a step, and records its share of the work for rules that use the mean of start and end.
+/// Copies the state at the start of a step to the workspace. For rules that use the mean of start and end, records the share of
+/// the start in the work.
 pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -96,7 +98,8 @@ pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
     Ok(Ledger { before, begun: system.work })
 }
 
-/// Records the work for rules that use the stage, which was evaluated last, and the work due to coupled masses.
+/// For rules that use the stage, which was evaluated last, records the work in the stage. For all rules, records the work of
+/// other bodies and the work due to coupled masses.
 pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -122,7 +125,7 @@ pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
     }
 }
 
-/// Records the share of the end of a step in the work, for rules that use the mean of start and end.
+/// For rules that use the mean of start and end, records the share of the end in the work.
 pub(super) fn enter_end<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

@@ -21,7 +21,7 @@ const MOST_ITERATIONS: u32 = 50;
 /// that does not move. This is checked for bodies in the air. It is also checked for other bodies if their matrix was rebuilt
 /// during the step, if they moved far, or if their residual is larger than promised. The residual of a body on an obstacle
 /// counts as an impulse of the obstacle, which the potential does not contain. The end of such a step is doubtful
-/// ([`Solved::doubtful`]), and its energy decides.
+/// ([`Solved::doubtful`]), so the energy of the body decides whether it is accepted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RealTime(pub(crate) Settings);
 
@@ -81,7 +81,7 @@ impl<const D: usize> Minimiser<D> for RealTime {
     }
 }
 
-/// Starts anew, without contacts, from the positions to which the body would move with its present velocities.
+/// Starts anew without contacts, at the positions that the body would reach with its present velocities.
 fn begin_anew<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
     workspace.contacting.clear(system.nodes);
     for k in 0..workspace.u.len() {
@@ -95,8 +95,8 @@ pub(crate) fn exactly(settings: &Settings) -> Settings {
     Settings { real_time: false, iterations: MOST_ITERATIONS, ..*settings }
 }
 
-/// Whether the incremental potential of the result is above that of the initial positions, in which only held nodes are moved.
-/// NaN counts as above, and so does a possible effect of forces without a potential.
+/// Whether the incremental potential of the result is above that of the initial positions with only held nodes moved. Returns
+/// true for NaN, and if forces without a potential may have raised it.
 fn has_risen<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

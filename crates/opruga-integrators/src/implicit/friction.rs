@@ -8,7 +8,8 @@
 //! t' = t − k w     sticks where |t'| ≤ µ λ, else t = µ λ t'/|t'|
 //! ```
 //!
-//! The fixed point is Coulomb's law for every k > 0. The iteration converges for k below twice the stiffness against which a node moves by itself.
+//! The fixed point is Coulomb's law for every k > 0. The iteration converges if k is below twice the stiffness of a node whose
+//! neighbours follow its motion.
 //!
 //! # Source
 //! P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, CMAME 92 (1991)

@@ -5,11 +5,12 @@
 //! the pin gives an impulse at the start of the step. The impulse acts only on the pinned node, but consistent masses couple
 //! nodes, so its neighbours recoil, as a bat does beyond the grip:
 //!
-//! M_ff Δv_f + M_fp (w − v_p) = 0,
+//! M_ff Δv_f + M_fp (w − v_p) = 0.
 //!
-//! This is the motion nearest to the previous one in the norm of M, and it never has more energy if the pins are at rest. Within
-//! the step pinned nodes do not accelerate, whatever the rule, and at its end they still have the velocity w. Otherwise each rule
-//! would treat a jump of velocity within a step differently, and the motion would depend on the rule.
+//! Among all motions with these pins, the new motion is the nearest to the previous one in the norm of M. It never has more
+//! energy than the previous one if the pins are at rest. Within the step pinned nodes do not accelerate, whatever the rule, and
+//! at its end they still have the velocity w. Otherwise each rule would treat a jump of velocity within a step differently, and
+//! the motion would depend on the rule.
 //!
 //! With lumped masses no impulse reaches a neighbour, so none of this is needed.
 

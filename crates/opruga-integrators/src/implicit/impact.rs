@@ -12,7 +12,7 @@ use opruga_solve::blocks::{Block, isotropic, nodes};
 const MOVES_ALONG: f64 = 0.1;
 
 impl<const D: usize> Contacting<D> {
-    /// Moves nodes that are still inside an obstacle to its surface, and records the energy that this gives; `reaction` is the
+    /// Moves nodes that are still inside an obstacle to its surface, and records the energy that they gain; `reaction` is the
     /// residual on the nodes [N].
     pub(crate) fn expel(
         &self,
@@ -108,8 +108,9 @@ impl<const D: usize> Ending<'_, D> {
         nodes::<D>(vector)[node]
     }
 
-    /// Records the work of the forces on one node in the step, from its mean velocity and the change of its motion due to these
-    /// forces. If the memory of the rule is discarded, the velocity that the rule would have added later is part of that change.
+    /// Records the work of the forces on one node in the step, from its mean velocity. If the memory of the rule is kept, the
+    /// work includes the later effect of these forces. If the memory is discarded, `Motion::meet` has already recorded that
+    /// effect.
     fn enter_forces(
         &self,
         work: &mut Work8,
@@ -122,8 +123,8 @@ impl<const D: usize> Ending<'_, D> {
         let (node, lane) = (contacts[0].node, contacts[0].node % WIDTH);
         let (x0, v0) = (self.part(node, self.x0), self.part(node, self.v0));
         let share = if motion.fresh { self.balance.impulse } else { 1.0 };
-        // The work that is recorded beyond the share of this step replaces the memory of the rule. It does not count as a loss
-        // due to the rule itself.
+        // Work beyond the share of this step belongs to the velocity that the rule will add later from its memory. A second
+        // entry keeps it out of the losses due to the rule itself.
         let beyond = |share: f64, work: f64| (share - self.balance.impulse) * work;
         let mut rest = *force;
         let mut carrier = None;
@@ -165,8 +166,8 @@ struct Motion<const D: usize> {
 }
 
 impl<const D: usize> Motion<D> {
-    /// Applies a surface to the motion: it stops or reverses the normal velocity, and friction reduces the tangential velocity
-    /// by µ times that change.
+    /// Applies a surface to the motion. The surface stops or reverses the normal velocity, and friction reduces the tangential
+    /// velocity by µ times the change of the normal velocity.
     ///
     /// The impulses of a whole step, including the memory of the rule, obey J_t = µ J_n against the slide.
     fn meet(&mut self, work: &mut Work8, ending: &Ending<'_, D>, contact: &Contact<D>, force: &Force<D>, alone: bool) {
@@ -178,7 +179,7 @@ impl<const D: usize> Motion<D> {
         let coming: [f64; D] = core::array::from_fn(|d| v0[d] - touch.velocity[d]);
         let (speed, came) = (dot(&relative, &touch.normal), -dot(&coming, &touch.normal));
         let slide = contact.along(&relative);
-        // The initial motion of the node relative to the surface, and the change of the motion of the surface since then.
+        // The initial velocity of the node relative to the surface, and the change of the velocity of the surface since then.
         let surface: [f64; D] = core::array::from_fn(|d| 2.0 / h * (touch.carried[d] - x0[d]) - touch.velocity[d]);
         let beside: [f64; D] = core::array::from_fn(|d| v0[d] - surface[d]);
         let turned: [f64; D] = core::array::from_fn(|d| touch.velocity[d] - surface[d]);

@@ -6,8 +6,8 @@ use super::workspace::Workspace;
 use opruga_core::error::StepError;
 use opruga_core::system::System;
 
-/// Evaluates the initial guess of the iteration: the state to which the motion leads, or the present state if that would tear
-/// the body.
+/// Evaluates the initial guess of the iteration: the state that the present motion would reach, or the present state if moving
+/// the pins would tear the body.
 ///
 /// Pins move to their final positions at once, so the cells next to them take the whole displacement instead of a small part of
 /// it. If that tears these cells, the iteration begins with no displacement, and pins move together with the rest of the body

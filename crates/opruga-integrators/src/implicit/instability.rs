@@ -1,9 +1,9 @@
 //! Corrections that leave an unstable equilibrium.
 //!
-//! A straight bar under too much compression is in equilibrium, and a matrix without negative eigenvalues leads to it as surely
-//! as to any other equilibrium. Each further correction is then a few per cent larger than the previous one, because the matrix
-//! is too stiff in the direction in which the body buckles. After several such corrections, the next one is extended as far as
-//! it leads downhill.
+//! A straight bar under too much compression is in an unstable equilibrium. A matrix without negative eigenvalues leads to this
+//! equilibrium as surely as to any other. Each further correction is then a few per cent larger than the previous one, because
+//! the matrix is too stiff in the direction in which the body buckles. After several such corrections, the next one is extended
+//! as far as it leads downhill.
 
 use super::line_search::{LONGEST_STRETCH, Stretches};
 use opruga_math::Lane;
@@ -50,8 +50,8 @@ impl Instability {
         }
     }
 
-    /// Records that the correction was extended. This disturbs directions that were nearly in equilibrium, which the next
-    /// corrections restore first.
+    /// Records that the correction was extended. The extension disturbs directions that were nearly in equilibrium. The next
+    /// corrections first restore them.
     pub(super) fn stretched(&mut self) {
         self.grown = 0;
     }

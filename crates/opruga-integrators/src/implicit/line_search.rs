@@ -25,7 +25,8 @@ pub(super) enum Stretches {
     No,
     /// Up to [`LONGEST_STRETCH`] times its length, as long as the energy falls.
     WhereEnergyFalls,
-    /// Up to this many times its length, even if differences of energies are lost in rounding: away from an unstable equilibrium.
+    /// Up to this many times its length, even if differences of energies are lost in rounding. This serves to leave an unstable
+    /// equilibrium.
     UpTo(f64),
 }
 
@@ -41,8 +42,8 @@ pub(super) fn line_search<const D: usize>(
     slope: f64,
     stretches: Stretches,
 ) -> Result<f64, StepError> {
-    // Damping has no potential. The work of friction and of constraints is included, with the forces that they are expected to
-    // have.
+    // Damping has no potential. The work of friction and constraints is included, with the forces that the constraints are
+    // expected to exert.
     let before = if system.is_damped() { None } else { potential(system, workspace, balance, false) };
     let given = given_along(workspace);
     let cancelled = rounding_of_models(system);
@@ -125,13 +126,13 @@ fn stretch<const D: usize>(
     }
 }
 
-/// The slope along the step of the incremental potential minus the work of friction and of the constraints.
+/// The slope, along the step, of the incremental potential minus the work of friction and constraints.
 pub(super) fn slope_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
     let given = given_along(workspace);
     dot(&workspace.residual, &workspace.step) - given
 }
 
-/// The work along the step of friction, and of the constraints with the forces that they are expected to have.
+/// The work that friction and the constraints do along the step, with the forces that the constraints are expected to exert.
 pub(super) fn given_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
     // r − friction in the held directions.
     let Workspace { right, reaction, contacting, free, projectors, step, .. } = workspace;
@@ -140,7 +141,7 @@ pub(super) fn given_along<const D: usize>(workspace: &mut Workspace<D>) -> f64 {
     let mut work = dot(right, step);
     Filter { free, projectors }.apply(right);
     work -= dot(right, step);
-    // Friction is subtracted from zero, so its work is added below.
+    // `right` becomes minus the friction forces, so subtracting its work adds that of friction.
     right.fill(0.0);
     contacting.subtract_friction(right);
     work - dot(right, step)

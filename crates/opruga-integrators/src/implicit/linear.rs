@@ -17,7 +17,7 @@ pub(crate) struct Linear<const D: usize> {
     full: BlockMatrix<D>,
     /// The matrix without the held directions.
     constrained: BlockMatrix<D>,
-    /// If there is no matrix, only its diagonal blocks, and the blocks that were added to them.
+    /// The diagonal blocks, and the blocks that were added to them, if the whole matrix is not assembled.
     diagonal: Vec<Block<D>>,
     added: Vec<(usize, Block<D>)>,
     jacobi: BlockJacobi<D>,
@@ -37,8 +37,8 @@ pub(crate) struct Linear<const D: usize> {
 /// The largest number of iterations of conjugate gradients.
 const MOST_PRODUCTS: u32 = 20_000;
 
-/// The largest number of rank-one terms with which a sparse factor is worthwhile: each term needs a solution, and each pair of
-/// terms a number.
+/// The largest number of rank-one terms for which a sparse factor is worthwhile. Each term requires a solution, and each pair
+/// of terms a number.
 const MOST_PARTS: usize = 64;
 
 /// After this many products the complete factor is used: a nearly incompressible solid needs thousands with an incomplete one.
@@ -50,9 +50,9 @@ pub(super) const LINEAR_TOLERANCE: f64 = 1e-2;
 /// The relative rounding of a number.
 pub(super) const EPSILON: f64 = 0.5 * f64::EPSILON;
 
-/// If the stiffness of a matrix is q times its mass, its solution contains rigid motions with a relative error of about q ε.
-/// Above this limit they are solved for separately. With a larger limit, every step would add such an error to a free fall
-/// (`tests/all/stiff_bodies.rs`); steel in cells of a centimetre is at 1e-9.
+/// If the stiffness of a matrix is q times its mass, its solution contains rigid motions with a relative error of about q ε. If
+/// q ε is above this limit, the rigid motions are solved for separately. With a larger limit, every step would add such an
+/// error to a free fall (`tests/all/stiff_bodies.rs`). For steel in cells of a centimetre, q ε is 1e-9.
 pub(super) const HIDDEN: f64 = 1e-6;
 
 /// The terms of a matrix.
@@ -167,8 +167,8 @@ impl<const D: usize> Sink<D> for DiagonalSink<'_, D> {
 }
 
 impl<const D: usize> Mixture<'_, D> {
-    /// Delivers K, then C after a call of `scale` with its factor, and the terms that a consistent mass matrix adds to the masses
-    /// of the nodes.
+    /// Delivers K, C, and the terms that a consistent mass matrix adds to the masses of the nodes. Calls `scale` with the
+    /// factor of the terms that follow.
     fn deliver<S: Sink<D>>(&self, sink: &mut S, scale: impl Fn(&mut S, f64)) {
         self.system.hessian(self.stage, self.time, self.keep, sink);
         if self.load != 1.0 {
@@ -200,7 +200,7 @@ impl<const D: usize> Mixture<'_, D> {
 }
 
 impl<const D: usize> Linear<D> {
-    /// Discards how many products earlier iterations needed: a step must depend only on the state.
+    /// Discards how many products earlier iterations needed, because a step must depend only on the state.
     pub(crate) fn begin(&mut self) {
         (self.is_filled, self.is_slow) = (false, false);
     }
@@ -403,7 +403,7 @@ impl<const D: usize> Linear<D> {
     pub(crate) fn full(&self) -> &BlockMatrix<D> {
         &self.full
     }
-    /// The matrix without the directions that the last filter held.
+    /// The matrix without the directions that the latest filter held.
     pub(crate) fn constrained(&self) -> &BlockMatrix<D> {
         &self.constrained
     }

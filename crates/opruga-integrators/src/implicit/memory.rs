@@ -1,4 +1,4 @@
-//! The memory that an implicit integrator needs for one body, estimated before anything is built.
+//! Estimates the memory that an implicit integrator needs for one body, before anything is built.
 //!
 //! The numbers come from measured runs (docs/performance.md, "Memory").
 
@@ -34,7 +34,7 @@ pub(crate) fn of_body<const D: usize>(settings: &Settings, counts: &Counts, coup
     let copies = if settings.real_time && !direct { COPIES_IN_REAL_TIME } else { COPIES };
     let kept = if settings.real_time && direct { 16.0 * vector / dimension } else { 0.0 };
     let of_each = couplings / nodes.larger(1.0);
-    // Fill of a minimum-degree factor: as N log N for surfaces, as N to the power 4/3 for bodies that fill space.
+    // The fill of a minimum-degree factor grows as N log N for surfaces, and as N to the power 4/3 for bodies that fill space.
     let blocks = match (direct, is_bulk) {
         (false, _) => 0.0,
         (true, false) => 1.2 * of_each * nodes * libm::log2(nodes.larger(2.0)),

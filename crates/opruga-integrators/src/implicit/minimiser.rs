@@ -1,7 +1,7 @@
 //! The interface of methods that find the stage of a rule.
 //!
-//! A rule defines its stage by a [`Balance`]; a minimiser finds it and does not depend on the rule. All exact minimisers find the
-//! same stage. The guards of a step (`step`) wrap any of them.
+//! A rule defines its stage by a [`Balance`]; a minimiser finds it and does not depend on the rule. All exact minimisers find
+//! the same stage. The guards of a step (file `step`) wrap any of them.
 
 use super::balance::{Balance, Solved};
 use super::workspace::Workspace;
@@ -9,8 +9,8 @@ use opruga_core::error::StepError;
 use opruga_core::history::Channel;
 use opruga_core::system::System;
 
-/// Finds the stage in which forces balance the change of motion. If they have a potential, this is the minimum of the incremental
-/// potential Φ.
+/// Finds the stage in which forces balance the change of motion. If the forces have a potential, this stage is the minimum of
+/// the incremental potential Φ.
 pub(crate) trait Minimiser<const D: usize>: core::fmt::Debug {
     /// Finds the stage, starting from the displacement in `workspace.u`; on success forces and residual belong to the result.
     ///
@@ -27,7 +27,7 @@ pub(crate) trait Minimiser<const D: usize>: core::fmt::Debug {
     fn history(&self) -> Vec<Channel> {
         Vec::new()
     }
-    /// Uses its memory to improve the displacement in `workspace.u`, to which the motion of the last step leads.
+    /// Uses its memory to improve the displacement in `workspace.u`, which continues the motion of the previous step.
     fn predict(&self, _system: &System<D>, _workspace: &mut Workspace<D>, _balance: &Balance) {}
     /// Discards the data that it reuses from step to step, after a guard has refused the stage that it found.
     fn discard(&self, _system: &mut System<D>) {}

@@ -19,7 +19,7 @@ const MOST: usize = 8;
 /// A difference adds no information if its component orthogonal to the others is below this fraction of its size.
 const NOTHING_NEW: f64 = 1e-6;
 
-/// The iterations in which nothing but the state has changed.
+/// The recorded iterations, in which nothing but the state has changed.
 #[derive(Debug, Default)]
 pub(crate) struct Mixing {
     /// The last state and its change; empty if there is none.
@@ -81,7 +81,7 @@ impl Mixing {
         refill(&mut self.change, change);
     }
 
-    /// Removes from a recorded change the part that the previous iterations make unnecessary.
+    /// Removes from a change, which was just recorded, the part that previous iterations make unnecessary.
     pub(crate) fn mix(&mut self, change: &mut [f64]) {
         let Mixing { changes, displacements, known, across, combined, rest, .. } = self;
         refill(rest, change);

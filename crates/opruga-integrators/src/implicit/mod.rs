@@ -9,8 +9,8 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `settings` | the parameters that all rules have: accuracy, solver, what to do when it does not converge |
-//! | `step` | a step of a rule from start to ledger, and the guards around its minimiser |
+//! | `settings` | the parameters that all rules have: accuracy, solver, what to do when a step does not converge |
+//! | `step` | a step of a rule, from its start to its entry in the ledger, and the guards around its minimiser |
 //! | `balance` | the balance of a stage, and the result of an iteration |
 //! | `stage` | evaluation of a stage: forces, matrix, incremental potential, contacts |
 //! | `rule` | the interface of a rule |
@@ -18,17 +18,17 @@
 //! | `convergence`, `energy` | guards that may refuse the stage of a minimiser |
 //! | `theta` | the θ-method, which undamped rules use in contact |
 //! | `newton` | the exact iteration: derivatives, direction, line search |
-//! | `direction` | one direction of this iteration |
-//! | `initial_guess` | its initial guess |
+//! | `direction` | one direction of the exact iteration |
+//! | `initial_guess` | the initial guess of the exact iteration |
 //! | `line_search` | the length of a step along its direction |
 //! | `rounding` | equilibria whose forces are as small as their rounding |
 //! | `rigid` | the balance of a body in its rigid motions, which rounding does not hide |
-//! | `rigid_motion` | these motions themselves |
+//! | `rigid_motion` | rigid motions: translations and rotations |
 //! | `rigid_balance` | whether that balance holds at the end of an iteration |
 //! | `mixing` | an estimate of what the matrix leaves out, from previous iterations |
 //! | `real_time` | the iteration with a fixed budget |
-//! | `fallback` | its guard: steps in which it gives a wrong result are made by `newton` |
-//! | `reused_matrix` | the matrix that it keeps from step to step |
+//! | `fallback` | the guard of `real_time`: if `real_time` gives a wrong result, `newton` makes the step |
+//! | `reused_matrix` | the matrix that `real_time` keeps from step to step |
 //! | `linear` | the linear solver of a direction: conjugate gradients or sparse Cholesky |
 //! | `step_limit` | limits of corrections in statics, which keep bodies without inertia out of obstacles |
 //! | `contact` | which nodes obstacles hold, and whether they stick or slip |
@@ -45,15 +45,15 @@
 //! fallen (Hager and Zhang 2005, approximate Wolfe condition) and, if Φ is known, Φ minus that work has not risen. The iteration
 //! ends when the last correction is below `tolerance` times the extent of the body.
 //!
-//! **Contact.** Obstacles hold nodes by constraints, not by penalties: a node that would end inside is moved to the surface
-//! within the iteration, all other nodes follow by elasticity, and the force of the constraint follows from the balance. A node
-//! is released when that force pulls. It sticks while the tangential part of the force obeys Coulomb's law |f_t| ≤ µ f_n, and
-//! otherwise slips against a friction of µ f_n. In statics, a correction ends at the first obstacle that it meets, because
-//! nothing else would keep a falling body from passing through. This treatment of contact is the primal–dual active set method,
-//! a semi-smooth Newton method (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs few additional
-//! iterations. Friction uses the normal force that the direction itself causes. Velocities are corrected at the end of the
-//! step: the incoming normal velocity is lost or returned according to the restitution, and friction takes µ times that change
-//! as well.
+//! **Contact.** Obstacles hold nodes by constraints, not by penalties: a node that would end inside an obstacle is moved to the
+//! surface within the iteration. All other nodes follow by elasticity, and the force of the constraint follows from the
+//! balance. A node is released when that force pulls. It sticks while the tangential part of the force obeys Coulomb's law
+//! |f_t| ≤ µ f_n, and otherwise slips against a friction of µ f_n. In statics, a correction ends at the first obstacle that it
+//! meets, because nothing else would keep a falling body from passing through. This treatment of contact is the primal–dual
+//! active set method, a semi-smooth Newton method (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs
+//! few additional iterations. The friction in a direction uses the normal force that the same direction causes. Velocities are
+//! corrected at the end of the step: the incoming normal velocity is lost or returned according to the restitution, and
+//! friction reduces the tangential velocity by µ times the normal change.
 
 mod answer;
 mod answer_matrix;

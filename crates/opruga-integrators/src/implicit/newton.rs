@@ -20,7 +20,7 @@ use opruga_math::Lane;
 /// Convergence is slow if a correction is above this fraction of the previous one.
 const SLOW: f64 = 0.03;
 
-/// From this iteration on, contacts do not change any more. Those that would still change make little difference.
+/// From this iteration on, contacts do not change any more. Contacts that would still change make little difference.
 const MOST_DECISIONS: u32 = 30;
 
 /// Newton's method: exact, to the tolerance of its settings.
@@ -104,7 +104,7 @@ struct Correction {
     /// Which derivatives its direction uses.
     keep: Keep,
     slope: f64,
-    /// The largest displacement of a node due to the direction alone [m], and the part of this displacement that was taken.
+    /// The largest displacement of a node due to the direction alone [m], and the part of it that remains after shortening [m].
     plain: f64,
     gone: f64,
     /// Whether previous iterations were mixed in.
@@ -202,7 +202,7 @@ impl<'a> Iteration<'a> {
         Correction { keep, slope, plain, gone, mixed, nears, length: 1.0 }
     }
 
-    /// Takes the correction in `workspace.step`; the line search limits it unless it is short.
+    /// Applies the correction in `workspace.step`. The line search limits the correction unless it is short.
     fn go<const D: usize>(
         &mut self,
         system: &mut System<D>,
@@ -214,8 +214,8 @@ impl<'a> Iteration<'a> {
         if plain <= self.goal {
             return full_step(system, workspace, self.balance);
         }
-        // A correction with too stiff a matrix may be extended even near obstacles, unless the body falls towards them without
-        // inertia.
+        // If the matrix is too stiff, the correction may be extended even near obstacles, unless the body falls towards them
+        // without inertia.
         let falls = self.balance.sigma == 0.0 && system.contacts.is_some();
         let stiff = keep != Keep::Exact && !falls;
         let stretches = if stiff && farthest <= 1e-3 * workspace.extent && !workspace.contacting.any_turns() {
@@ -262,7 +262,7 @@ impl<'a> Iteration<'a> {
         let Correction { keep, mixed, gone, .. } = *correction;
         if !stuck {
             if keep != Keep::Exact && gone <= 1e-2 * workspace.extent {
-                // Derivatives that were not positive may be positive this close to the solution.
+                // Derivatives that were not positive definite may become positive definite this close to the solution.
                 self.first = Keep::Exact;
             }
             return true;
@@ -289,7 +289,7 @@ impl<'a> Iteration<'a> {
         verdict.anew || verdict.unsettled
     }
 
-    /// Whether the iteration ends: because its correction is small, or because its residual is rounding.
+    /// Whether the iteration ends because its correction is small or because its residual is rounding.
     fn ends<const D: usize>(
         &mut self,
         system: &mut System<D>,

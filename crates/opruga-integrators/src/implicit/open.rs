@@ -51,7 +51,7 @@ pub(super) fn open<R: Rule<D>, const D: usize>(
     let mut workspace = system.cache.take::<Workspace<D>>();
     let rule = rule.pushed();
     let rule = rule.in_contact().unwrap_or(rule);
-    // Data that are reused from step to step are valid only for searches of the body alone.
+    // Data that are reused from step to step are valid only if the body is solved alone.
     workspace.answer.last = None;
     holding::take_hold(system, &mut workspace.kick, h);
     let account = Account::Motion(Box::new(open_ledger::<R, D>(system, &mut workspace, h)?));
@@ -73,7 +73,7 @@ pub(crate) fn open_at_rest<R: Rule<D>, const D: usize>(
     begin((rule, settings), system, workspace, account, h)
 }
 
-/// Begins a step whose initial state has been taken.
+/// Begins a step whose initial state is already in the workspace.
 fn begin<R: Rule<D>, const D: usize>(
     (rule, settings): (R, Settings),
     system: &mut System<D>,

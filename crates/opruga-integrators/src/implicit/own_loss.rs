@@ -10,7 +10,8 @@
 //!
 //! L = W + U₀ − U₁ − v̄·J.
 //!
-//! This value is signed, and exact for any U. If nothing else acts, it is as follows, with g = ∇U.
+//! This value may be negative, and it is exact for any U. If only forces with the potential U act, it has the following form,
+//! with g = ∇U.
 //!
 //! | rule | L |
 //! |---|---|
@@ -19,9 +20,9 @@
 //! | BDF2 | ½ Δv·M Δv − ⅓ v₁·M Δ₋v − ⅓ g₁·Δ₋x + U₀ − U₁ + g₁·Δx |
 //! | generalised-α | U₀ − U₁ + g_f·Δx + (1 − γ − α_m) Δx·M Δa + h² (β − γ/2) (½ Δ(a·M a) + (γ − ½) Δa·M Δa) |
 //!
-//! Δ goes from n to n + 1 and Δ₋ from n − 1 to n; g_f = (1 − α_f) g₁ + α_f g₀ if forces are linear, and in general it is g in
-//! the averaged state. Tests compare the rules with these formulas. The work of r, h i v̄·r, is in no channel of the ledger, so
-//! it remains unexplained. The code of contacts records the work of R.
+//! Δ goes from n to n + 1 and Δ₋ from n − 1 to n; g_f is g in the averaged state, which is (1 − α_f) g₁ + α_f g₀ if forces are
+//! linear. Tests compare the rules with these formulas. No channel of the ledger contains h i v̄·r, the work of r, so this work
+//! remains unexplained. The code of contacts records the work of R.
 //!
 //! Pinned nodes do not count: the work of pins is recorded with the kinetic energy of these nodes.
 
@@ -54,7 +55,8 @@ pub(super) fn add_pushes<const D: usize>(system: &mut System<D>, u1: &[f64]) {
     }
 }
 
-/// Takes v̄·J, before obstacles change velocities at the end of the step. The residual is that of the stage.
+/// Subtracts v̄·J from the recorded loss, before obstacles change velocities at the end of the step. The residual is that of
+/// the stage.
 pub(super) fn take_impulses<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
     let Workspace { v0, v1, pin_displacement, mass, residual, trial: change, .. } = workspace;
     let span = balance.h * balance.impulse;

@@ -1,4 +1,4 @@
-//! The real-time setting: few iterations with a matrix that is kept as long as the iteration with it finds the end of a step.
+//! The real-time setting: few iterations, with a matrix that is kept as long as iterations with it find the end of a step.
 //!
 //! Every iteration balances the exact forces; the matrix only determines the correction. If the matrix belongs to another shape
 //! of the body, or if its equations are solved only approximately, a part of the residual remains, and the next step begins
@@ -33,8 +33,8 @@ const LINEAR: f64 = 0.05;
 /// If a larger fraction of the residual remains, the next step rebuilds the matrix.
 const MOST_MISMATCH: f64 = 0.2;
 
-/// The same fraction for bodies that are free or near obstacles: after three such iterations, a thousandth of the residual
-/// remains.
+/// The same fraction for bodies that are free or near obstacles. If each of three iterations leaves this fraction, a thousandth
+/// of the residual remains.
 const MOST_MISMATCH_LOOSE: f64 = 0.1;
 
 /// The fraction of the residual that the linear solver may leave for bodies that are free or near obstacles. An iteration is
@@ -47,9 +47,8 @@ const NOTHING: f64 = 1e-9;
 /// The largest number of products with the matrix in an iteration.
 const PRODUCTS: u32 = 1000;
 
-/// Iterations with more products than this count as cut off. A body through which information travels so slowly is
-/// ill-conditioned. Stiff motions dominate its residual, which is a poor measure of slow motions such as the bending of a
-/// slender body.
+/// Iterations with more products than this count as cut off. A body that needs so many products is ill-conditioned. Stiff
+/// motions dominate its residual, so the residual is a poor measure of slow motions such as the bending of a slender body.
 const MANY_PRODUCTS: u32 = 120;
 
 /// The shape in which the matrix was made [m], the velocity at the start of the previous step [m/s] and its length [s]; zero if
@@ -65,8 +64,8 @@ const STEP: PerBody<f64> = PerBody::new("real_time.step");
 const MATRIX: PerBody<bool> = PerBody::new("real_time.matrix");
 const STALE: PerBody<bool> = PerBody::new("real_time.stale");
 
-/// Whether nothing holds a body, or whether obstacles may be near. The residual would then push and rotate the body, and the
-/// acceleration of an impact cannot be continued.
+/// Whether a body has no pins, or may be near obstacles. Without pins, the residual would push and rotate the body. Near
+/// obstacles, the acceleration of an impact cannot be continued.
 fn is_loose<const D: usize>(system: &System<D>) -> bool {
     system.contacts.is_some() || system.pins.is_empty()
 }
@@ -355,7 +354,7 @@ pub(super) fn iterate<const D: usize>(
 /// The outcome of the iterations of a step.
 #[derive(Clone, Copy, Debug)]
 struct End {
-    /// The residual, its initial value, and the value that counts as zero.
+    /// The size of the residual, its initial value, and the value below which it counts as zero.
     size: f64,
     first: f64,
     floor: f64,
@@ -395,7 +394,7 @@ fn conclude<const D: usize>(
     Ok((solved, trust))
 }
 
-/// Takes the step, including prescribed displacements; `workspace.reaction` is then the force of the constraints. For bodies
+/// Applies the step, including prescribed displacements; `workspace.reaction` is then the force of the constraints. For bodies
 /// that are free or near obstacles, returns the difference between the present forces and those that the matrix predicted: r −
 /// (r₀ + A Δ). Here r₀ + A Δ is the residual of the linear solver; if no node is held, it counts as zero.
 fn go<const D: usize>(

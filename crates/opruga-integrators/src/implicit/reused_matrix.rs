@@ -20,9 +20,9 @@ pub(crate) struct Origin<const D: usize> {
 /// The present matrix, and its solvers.
 #[derive(Debug)]
 pub(crate) struct ReusedMatrix<const D: usize> {
-    /// None if there is no matrix.
+    /// The data from which the matrix was made; none if there is no matrix.
     pub(crate) origin: Option<Origin<D>>,
-    /// The free directions for which it was prepared.
+    /// Whether the matrix is prepared for solving, and the free directions for which it was prepared.
     ready: bool,
     free: Vec<bool>,
     projectors: Vec<Block<D>>,
@@ -77,7 +77,7 @@ impl<const D: usize> ReusedMatrix<D> {
         }
     }
 
-    /// Prepares it for solving in the free directions, with this right-hand side first.
+    /// Prepares the matrix for solving in the free directions. The first right-hand side will be `right`.
     pub(crate) fn hold(
         &mut self,
         threads: usize,
@@ -119,7 +119,7 @@ impl<const D: usize> ReusedMatrix<D> {
         self.ready = false;
     }
 
-    /// Takes a right-hand side; returns its size in the norm of the inverse diagonal blocks.
+    /// Begins with a new right-hand side, and returns its size in the norm of the inverse diagonal blocks.
     pub(crate) fn begin(&mut self, system: &System<D>, right: &[f64]) -> f64 {
         self.packed.begin(system.simd, system.threads, right)
     }

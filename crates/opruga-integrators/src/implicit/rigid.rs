@@ -2,19 +2,20 @@
 //!
 //! Positions have sixteen digits. Rounding them causes forces of about ε |x| times the stiffness of a node. Such a force may be
 //! a multiple of the weight of the node: E ε |x|/(ρ g ℓ²) times this weight in a body with cells of size ℓ. The residual of a
-//! single node is then meaningless. But whatever the positions are, the forces between nodes and their moments sum to zero over
-//! a piece of a body, up to the rounding of that sum, which is smaller by another ε. So the sum of the residuals is known even
-//! if its terms are not: it consists of weight, loads and inertia. A matrix whose stiffness is 1/ε times its mass is also
-//! useless for these motions, since the sums of its rows are rounding errors.
+//! single node is then meaningless. But at all positions, the forces between nodes and their moments sum to zero over a piece
+//! of a body. The rounding of that sum is smaller by another ε. So the sum of the residuals, which consists of weight, loads
+//! and inertia, is known even if its terms are not. A matrix whose stiffness is 1/ε times its mass is also useless for these
+//! motions, since the sums of its rows are rounding errors.
 //!
 //! For each piece (`pieces`) let φ be its motions t + ω × (x − c) that neither pins nor obstacles prevent, orthonormal with
 //! respect to the masses. The motion φ a that balances the piece follows from
 //!
 //! (σ + φᵀ(K + βC)φ) a = −φᵀ r
 //!
-//! Models that exert forces only between nodes are omitted from r and K: the sums of these forces are zero, but their computed
-//! moments have rounding errors like the forces themselves. Any model that ties nodes to space resists rigid motion, if its
-//! resistance exceeds rounding. A piece moves by a finite rotation (Cayley's), which does not change its shape.
+//! Models that exert forces only between nodes are omitted from r and K. The sums of these forces and of their moments are
+//! zero, but the computed moments have rounding errors like the forces themselves. Any model that ties nodes to space resists
+//! rigid motion, if its resistance exceeds rounding. A piece moves by a finite rotation (Cayley's), which does not change its
+//! shape.
 
 use super::contact::Contacting;
 use super::linear::{Filter, Mixture};
@@ -35,7 +36,7 @@ const MOST: usize = 6;
 struct Piece<const D: usize> {
     center: [f64; D],
     motions: Vec<Motion<D>>,
-    /// The inverse of their matrix.
+    /// The inverse of the matrix of these motions.
     inverse: Vec<f64>,
 }
 
@@ -135,7 +136,7 @@ impl<const D: usize> Rigid<D> {
     }
 
     /// The residual in the free directions without the forces between nodes: inertia, the weight, friction and all external
-    /// models. It is summed without those forces, because it may be lost in their rounding.
+    /// models. Forces between nodes are left out, because the rest may be lost in their rounding.
     pub(super) fn residual(&self, stage: &Stage<'_, D>) -> Vec<f64> {
         let Stage { mixture, u, y, filter, contacting, .. } = stage;
         if !self.any_is_free() {

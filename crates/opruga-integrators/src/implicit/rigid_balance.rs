@@ -1,4 +1,4 @@
-//! Checks whether the end of an iteration balances a body in its rigid motions, and balances it if not (`rigid`).
+//! Checks whether a body is balanced in its rigid motions at the end of an iteration, and balances it if not (file `rigid`).
 
 use super::balance::Balance;
 use super::linear::{EPSILON, Filter, HIDDEN, contrast};
@@ -43,9 +43,9 @@ pub(super) fn accepts<const D: usize>(
     Ok(moved <= goal || at_rounding(system, workspace, balance, settings, size))
 }
 
-/// Moves the pieces of a body until their total residual no longer halves, which is its rounding; pieces that would move by no
-/// more than `least` [m] are not moved. Returns how far the pieces moved [m]; none if they could not be brought closer to
-/// equilibrium.
+/// Moves the pieces of a body until a further move does not halve their total residual, which is then rounding. Pieces that
+/// would move by no more than `least` [m] are not moved. Returns how far the pieces moved [m]; none if they could not be
+/// brought closer to equilibrium.
 pub(super) fn balance_rigid_motions<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -78,7 +78,7 @@ fn balance_with<const D: usize>(
         rigid.finite_displacements(&workspace.x0, &workspace.u, &shares, &mut workspace.step);
         Filter { free: &workspace.free, projectors: &workspace.projectors }.apply(&mut workspace.step);
         let displacement = longest(&workspace.step, D);
-        // A fraction of the last digit of positions is not a displacement.
+        // A fraction of the last digit of positions does not count as a displacement.
         let moves = displacement > (1e-3 * EPSILON * size).larger(least);
         if !moves {
             break;
@@ -87,7 +87,7 @@ fn balance_with<const D: usize>(
         for (u, step) in workspace.u.iter_mut().zip(&workspace.step) {
             *u += step;
         }
-        // The sums do not need the models that exert forces only between nodes, whose evaluation may take long.
+        // Models that exert forces only between nodes are not evaluated, because they do not change the sums and may take long.
         tried = true;
         Workspace::show(system, &workspace.x0, &workspace.u, &workspace.z, balance.beta);
         system.prepare_some(&outer, Workspace::<D>::STAGE, balance.time)?;

@@ -14,8 +14,8 @@ use opruga_solve::dot;
 /// The rounding of a force, in units of stiffness times size.
 const ROUNDING: f64 = 4e-15;
 
-/// The fraction of the extent above which the displacement due to another iteration is reduced, and the fraction above which it
-/// is reported.
+/// If another iteration would move a node by more than the first fraction of the extent, that displacement is reduced. Above
+/// the second fraction, it is reported.
 const LEFT: f64 = 1e-8;
 const VISIBLE: f64 = 1e-7;
 
@@ -114,14 +114,15 @@ fn leaves<const D: usize>(workspace: &mut Workspace<D>, loads: f64) -> bool {
 /// What makes an equilibrium of statics doubtful.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Doubt {
-    /// The largest displacement of a node, all of which is uncertain [m]; zero if there is no doubt.
+    /// The largest displacement of a node [m], which is entirely uncertain; zero if there is no doubt.
     pub(super) displacement: f64,
     /// Whether the loads are so small that they are lost in the rounding of forces.
     pub(super) lost: bool,
 }
 
-/// Whether, in statics, loads are lost in the rounding of forces or remain as a residual: positions then do not show what
-/// balances them, or an artificially stiffened matrix has failed.
+/// Returns the doubt about an equilibrium of statics. There are two reasons for doubt. If loads are lost in the rounding of
+/// forces, positions do not show what balances the loads. If loads remain as a residual, an artificially stiffened matrix has
+/// failed.
 pub(super) fn in_doubt<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -179,8 +180,8 @@ pub(super) fn random_error<const D: usize>(
     correction(system, workspace, balance, settings).unwrap_or(f64::INFINITY)
 }
 
-/// How far a force that consists of rounding errors would move a node against its inertia [m], if its stiffness is its mass
-/// times a factor.
+/// How far a force that consists of rounding errors would move a node against its inertia [m]. The stiffness of the node is its
+/// mass times the factor `contrast`.
 pub(super) fn roundings_of(contrast: f64, size: f64) -> f64 {
     ROUNDING * contrast * size
 }

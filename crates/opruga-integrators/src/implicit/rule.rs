@@ -10,9 +10,9 @@ use opruga_core::system::System;
 pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + 'static {
     /// The name of the integrator.
     const NAME: &'static str;
-    /// Whether work is integrated by the trapezoidal rule over start and end, instead of by the value in the stage.
+    /// Whether work is the mean of the values at start and end (the trapezoidal rule) instead of the value in the stage.
     const TRAPEZOID: bool;
-    /// Whether the form of the rule with which a step was made integrates work by the trapezoidal rule.
+    /// Whether this form of the rule, which made a step, computes work by the trapezoidal rule.
     fn is_trapezoid(&self) -> bool {
         Self::TRAPEZOID
     }
@@ -40,8 +40,8 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     fn begin(&self, system: &System<D>, workspace: &mut Workspace<D>, h: f64) -> Balance;
     /// Computes displacement `u1` and velocity `v1` at the end from the stage.
     fn end(&self, system: &System<D>, workspace: &mut Workspace<D>, balance: &Balance, h: f64);
-    /// The velocity that the memory will add to a coordinate in a following step of the same length, in addition to the effect
-    /// of forces [m/s]. The sum of v₁ and this velocity changes by h F/m in every step.
+    /// The velocity that the memory will add to a coordinate in the next step [m/s], in addition to the effect of forces, if
+    /// that step has the same length. The sum of v₁ and this velocity changes by h F/m in every step.
     fn remembered(&self, _workspace: &Workspace<D>, _k: usize, _h: f64) -> f64 {
         0.0
     }

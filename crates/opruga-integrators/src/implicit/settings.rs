@@ -10,8 +10,9 @@ use opruga_core::system::System;
 /// The fraction of the residual at which an iteration is good enough, and the fraction that may remain after the last one.
 const ENOUGH: [f64; 2] = [0.2, 0.2];
 
-/// The same fractions for a rule that damps slow motions little. Its residual acts with a delay, in the next step, and pushes
-/// in the direction of the motion: with a fiftieth, a beam of 10 × 2 quadrilaterals still gained energy under `bdf2`.
+/// The same fractions for a rule that damps slow motions little. The residual of such a rule acts with a delay, in the next
+/// step, and pushes in the direction of the motion. With a fiftieth as the first fraction, a beam of 10 × 2 quadrilaterals
+/// still gained energy under `bdf2`.
 const ENOUGH_UNDAMPED: [f64; 2] = [1e-3, 0.05];
 
 /// How the equations of a step are solved.
@@ -23,7 +24,7 @@ pub(crate) struct Settings {
     pub(crate) common_iterations: u32,
     /// The correction below which the iteration ends, as a fraction of the extent of the body.
     pub(crate) tolerance: f64,
-    /// Whether a step has a fixed budget, and counts as converged when that is spent.
+    /// Whether a step has a fixed budget of iterations, and counts as converged when the budget is spent.
     pub(crate) real_time: bool,
     /// The fraction of the residual at which a step in real time ends, and the largest fraction that may remain when its
     /// iterations are spent.
@@ -35,7 +36,7 @@ pub(crate) struct Settings {
 /// The linear solver that the scene chooses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Solver {
-    /// By size and dimension.
+    /// The solver follows from the size and the dimension of the body.
     Auto,
     /// Conjugate gradients on the assembled matrix.
     ConjugateGradients,
@@ -96,7 +97,7 @@ pub(crate) const LINEAR_SOLVER: Field = Field::new(
     Default::Text("auto"),
     solvers!(),
 );
-/// What to do without convergence.
+/// What to do if a step does not converge.
 pub(crate) const OTHERWISE: Field = Field::new(
     "when_not_converged",
     Allowed::Choice(&["error", "halve", "accept"]),
@@ -131,7 +132,7 @@ With `arc_length` the step along the curve is halved in any case.",
     ..OTHERWISE
 };
 
-/// The fields of an integrator or of statics: its own, and those that determine how equations are solved.
+/// The fields of an integrator or of statics. They are its own fields, and those that determine how equations are solved.
 macro_rules! fields {
     (of_time $(, $own:expr)*) => {{
         use $crate::implicit::settings::{ACCURACY, ITERATIONS, LINEAR_SOLVER, OTHERWISE, TOLERANCE};
@@ -146,7 +147,7 @@ macro_rules! fields {
 }
 pub(crate) use fields;
 
-/// Exact or in real time.
+/// Whether steps are solved exactly or in real time.
 pub(crate) const ACCURACY: Field = Field::new(
     "accuracy",
     Allowed::Choice(&["exact", "real_time"]),
@@ -165,7 +166,7 @@ differences, such as buckling. `implicit_midpoint`, which damps nothing, and `ne
 accumulate residuals, so they refuse the setting.",
 );
 
-/// Integrators with which residuals of steps would accumulate.
+/// Integrators that would accumulate the residuals of steps.
 const UNDAMPED: [&str; 2] = ["implicit_midpoint", "newmark"];
 
 /// Integrators that damp slow motions little.
@@ -245,7 +246,8 @@ impl Settings {
 }
 
 impl Solver {
-    /// Whether the sparse factor is used for a body in real time, where it is kept: for small stiff bodies and for slender ones.
+    /// Whether the sparse factor is used for a body in real time, where the factor is kept. This is the case for small stiff
+    /// bodies and for slender ones.
     pub(crate) fn is_direct_in_real_time<const D: usize>(self, system: &System<D>) -> bool {
         match self {
             Solver::Cholesky => true,

@@ -1,11 +1,11 @@
 //! Whether a body is slender, as determined from the couplings of its nodes. In slender bodies the sparse factor is narrow.
-//! Conjugate gradients pass information on by only one cell per product, so they are slow and would stop before the whole body
-//! has bent.
+//! Conjugate gradients carry information by only one cell per product, so they are slow for such bodies and would stop before
+//! the whole body has bent.
 
 use opruga_core::potential::{Definiteness, DensePart, Sink};
 use opruga_core::system::{Stage, System};
 
-/// A body is slender if no layer of cells has more nodes than this many times the number of layers.
+/// A body is slender if no layer has more nodes than this number times the number of layers.
 const SLENDER: usize = 8;
 
 /// The largest size of the factor: the number of nodes of the widest layer times the number of nodes of the body.
@@ -54,7 +54,7 @@ pub(crate) fn is_slender<const D: usize>(system: &System<D>) -> bool {
         list.sort_unstable();
         list.dedup();
     }
-    // The layers start from one end of the body: the last node of a walk from any node.
+    // The layers start from one end of the body. A walk from any node ends at such an end.
     let Some(end) = layers(&touching.neighbours, 0).last().and_then(|layer| layer.first().copied()) else {
         return false;
     };

@@ -145,7 +145,7 @@ pub(crate) fn potential<const D: usize>(
     inertia *= 0.5 * balance.sigma;
     let mut lifted = 0.0;
     if balance.load != 1.0 {
-        // The energy of the missing part of the weight.
+        // The energy of the part of the weight and the loads that does not act yet.
         for node in 0..system.nodes {
             for d in 0..D {
                 lifted += (1.0 - balance.load) * workspace.outer.0[d][node] * u[node * D + d];

@@ -165,7 +165,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         let velocities = holding::take_hold(system, &mut workspace.kick, h);
         let outcome = self.attempt(system, workspace, h);
         if outcome.is_err() {
-            // Nothing has been written except the ledger, and velocities that pins have changed.
+            // Only the ledger, and velocities that pins have changed, have been written.
             if let Some(before) = velocities {
                 system.state.v = before;
             }
@@ -216,7 +216,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         loop {
             let (balance, solved) = find_stage(rule, minimiser, system, workspace, h)?;
             if let Some(other) = in_contact.filter(|_| rule.in_contact().is_some() && workspace.contacting.any()) {
-                // There is a contact that was not foreseen.
+                // The end of the step has a contact that was not foreseen.
                 rule = other;
                 continue;
             }
@@ -257,7 +257,7 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
     }
 }
 
-/// Finds the stage of a rule, starting from a continuation of the previous motion.
+/// Finds the stage of a rule. The search starts from a continuation of the previous motion.
 fn find_stage<R: Rule<D>, const D: usize>(
     rule: R,
     minimiser: &dyn Minimiser<D>,

@@ -16,7 +16,7 @@ const LONGEST: f64 = 0.5;
 /// were all moved onto it, the resulting shape would be unusable.
 const CAUGHT: f64 = 1e-3;
 
-/// The number of bisections of the fraction of a step, so that half the extent is resolved more finely than `CAUGHT`.
+/// The number of bisections of the fraction of a step. With this number, half the extent is resolved more finely than `CAUGHT`.
 const BISECTIONS: usize = 12;
 
 /// The largest number of moves that lift a body as a whole out of obstacles, from surface to surface.
@@ -25,8 +25,8 @@ const MOST_LIFTS: u32 = 32;
 /// The largest depth of a node in equilibrium, as a fraction of the extent of the body.
 const LEFT: f64 = 1e-6;
 
-/// If no pin holds a body that begins deep in obstacles, the iteration begins with the body moved out of them as a whole, in
-/// `workspace.u`: moving deep nodes onto the surface one by one would tear the body.
+/// If a body without pins begins deep in obstacles, moves it out of them as a whole, in `workspace.u`, before the iteration.
+/// Moving deep nodes onto the surface one by one would tear the body.
 pub(crate) fn lift_out<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, h: f64) {
     if system.contacts.is_none() || workspace.pin_displacement.iter().any(|displacement| !displacement.is_nan()) {
         return;
@@ -54,8 +54,8 @@ pub(crate) fn leaves_nodes_inside<const D: usize>(system: &System<D>, workspace:
     deepest(system, workspace, &|node, d| workspace.u[node * D + d], h).is_some_and(|touch| touch.gap < -most)
 }
 
-/// The deepest position of a node that no pin holds, given its `displacement` as a function of node and axis; none if all nodes
-/// are outside.
+/// The contact of the node that is deepest inside an obstacle, among nodes without pins; none if all of them are outside.
+/// `displacement` is a function of node and axis.
 fn deepest<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,
@@ -80,8 +80,8 @@ fn deepest<const D: usize>(
     deepest
 }
 
-/// The largest fraction of the step in `workspace.step` that statics may take; the largest displacement of the step is `longest`.
-/// The limited step is not longer than the body and does not lead through obstacles.
+/// The largest fraction of the step in `workspace.step` that may be applied in statics; the largest displacement of the step is
+/// `longest`. The limited step is not longer than the body and does not lead through obstacles.
 pub(super) fn part_without_inertia<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,

@@ -22,7 +22,7 @@ pub(crate) struct Workspace<const D: usize> {
     pub(crate) v0: Vec<f64>,
     /// The changes of velocities due to pins at the start of the step; empty if there are none.
     pub(crate) kick: Vec<f64>,
-    /// The acceleration at the start, for rules that have one [m/s²].
+    /// The acceleration at the start [m/s²], for rules that use it.
     pub(crate) a0: Vec<f64>,
     /// Mass of every node [kg].
     pub(crate) mass: Vec<f64>,
@@ -42,7 +42,7 @@ pub(crate) struct Workspace<const D: usize> {
     pub(crate) trial: Vec<f64>,
     pub(crate) step: Vec<f64>,
     pub(crate) right: Vec<f64>,
-    /// The displacement from y, if a mass matrix couples nodes.
+    /// The displacement u − y, if a mass matrix couples nodes.
     pub(crate) displacement: Vec<f64>,
     /// The part of the force that acts along held directions [N].
     pub(crate) reaction: Vec<f64>,
@@ -57,7 +57,7 @@ pub(crate) struct Workspace<const D: usize> {
     /// The velocities that the rule will still add from its memory [m/s].
     pub(crate) memory: Vec<f64>,
     pub(crate) linear: Linear<D>,
-    /// The matrix with which the end of the step responds to other bodies.
+    /// The matrix that determines how the end of the step responds to forces of other bodies.
     pub(crate) answer: AnswerMatrix<D>,
     /// Whether the real-time setting factors its matrix with a given solver, if already determined.
     pub(crate) direct: Option<(Solver, bool)>,
@@ -114,7 +114,7 @@ impl<const D: usize> Default for Workspace<D> {
     }
 }
 
-/// Writes two numbers for every coordinate into columns; indices after the last node repeat that node.
+/// Writes two numbers for every coordinate into two sets of columns. Indices after the last node repeat that node.
 pub(crate) fn write<const D: usize>(
     index_count: usize,
     nodes: usize,
@@ -133,7 +133,7 @@ pub(crate) fn write<const D: usize>(
 }
 
 impl<const D: usize> Workspace<D> {
-    /// Takes the state of a system at the start of a step.
+    /// Copies the state of a system at the start of a step.
     pub(crate) fn load(&mut self, system: &System<D>) {
         let size = system.nodes * D;
         for vector in [

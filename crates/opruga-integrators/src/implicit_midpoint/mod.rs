@@ -6,9 +6,9 @@
 //! oscillation stays constant at any h ω, and linear and angular momentum are conserved to the tolerance of the iteration.
 //! Motion that is too fast for the step is not damped, but slowed down to half a period per step.
 //!
-//! The stage is the midpoint: a step of backward Euler of half the length, which the second half extrapolates in a straight line.
-//! Energy is conserved exactly if forces are linear. A stiff spring that rotates within a step exchanges energy with its stretch,
-//! which limits the step in practice.
+//! The stage is the midpoint. A step of backward Euler with half the length leads to it, and the second half extrapolates this
+//! motion in a straight line. If forces are linear, energy is conserved exactly. A stiff spring that rotates within a step
+//! exchanges energy with its stretch, which limits the step in practice.
 //!
 //! In contact the vibration of a stiff body would never end, and friction would act on this vibration. So steps in which
 //! obstacles hold nodes have their stage at θ = 1/(1 + 0.9) instead of ½: in each step, the amplitude of motion much faster
@@ -32,7 +32,7 @@ use opruga_core::integrator::{Amplification, Integrator, IntegratorKind};
 use opruga_core::spec::{Spec, Values};
 use opruga_core::system::System;
 
-/// The parameters.
+/// The parameters of `implicit_midpoint`.
 pub const SPEC: Spec = Spec {
     kind: "implicit_midpoint",
     summary: "implicit, second order, stable for every step size; conserves momentum, and the energy of linear systems",
@@ -44,7 +44,7 @@ than the step decreases by a tenth in each step, so that bodies come to rest. Bo
     roles: &[],
 };
 
-/// The kind `implicit_midpoint`.
+/// The kind of integrator that scenes name `implicit_midpoint`.
 #[derive(Debug)]
 pub struct ImplicitMidpointKind;
 

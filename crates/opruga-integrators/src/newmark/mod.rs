@@ -5,14 +5,14 @@
 //!
 //! Without `spectral_radius` it is the average acceleration method: α_m = α_f = 0, γ = ½, β = ¼. It has second order, is stable
 //! for every step size on linear systems, and damps no frequency. With `spectral_radius` ρ from 0 to 1 it is the generalised-α
-//! method. At hω → ∞, the amplitude is multiplied by ρ in each step, and slow motion is damped as little as this permits: α_m =
-//! (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². It also has second order.
+//! method. At hω → ∞, the amplitude is multiplied by ρ in each step, and slow motion is damped as little as this factor
+//! permits: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². It also has second order.
 //!
-//! **Memory.** The integrator remembers the acceleration. It begins with F/M, and does so again after a program has moved a
-//! node. When a node meets an obstacle, the component of its acceleration normal to the surface is discarded, because it
-//! belongs to the time before the impact. Free fall is exact. The average acceleration method damps nothing and would sustain
-//! an oscillation of the contact forces (Hughes et al. 1976). So steps in which obstacles hold nodes use the related implicit
-//! midpoint rule in contact.
+//! **Memory.** The integrator remembers the acceleration. The first value is F/M, and so is the first value after a program has
+//! moved a node. When a node meets an obstacle, the component of its acceleration normal to the surface is discarded, because
+//! it belongs to the time before the impact. Free fall is exact. The average acceleration method damps nothing and would
+//! sustain an oscillation of the contact forces (Hughes et al. 1976). So steps in which obstacles hold nodes use a related
+//! rule, the implicit midpoint rule in its form for contact.
 //!
 //! Source: Newmark 1959; Chung and Hulbert, *A time integration algorithm for structural dynamics with improved numerical
 //! dissipation: the generalized-α method*, 1993 (the force in the averaged state: Erlicher, Bonaventura, Bursi 2002).
@@ -34,7 +34,7 @@ use opruga_core::spec::{Allowed, Default, Field, Spec, Values};
 use opruga_core::system::System;
 use opruga_solve::blocks::times;
 
-/// The parameters.
+/// The parameters of `newmark`.
 pub const SPEC: Spec = Spec {
     kind: "newmark",
     summary: "implicit, second order, stable for every step size: average acceleration, or generalised-α with a spectral radius",
@@ -61,7 +61,7 @@ given, average acceleration is used.",
 const ACCELERATION: PerNode = PerNode::new("newmark.acceleration");
 const BEGUN: PerBody<bool> = PerBody::new("newmark.begun");
 
-/// The kind `newmark`.
+/// The kind of integrator that scenes name `newmark`.
 #[derive(Debug)]
 pub struct NewmarkKind;
 
@@ -197,7 +197,7 @@ impl<const D: usize> Rule<D> for Newmark {
     }
     fn remember(&self, system: &mut System<D>, workspace: &Workspace<D>, h: f64) {
         if self.theta.is_some() {
-            // The next step begins with F/M, which is what average acceleration would have remembered.
+            // The next step begins with F/M, the value that the average acceleration method would have remembered.
             system.history.set(BEGUN, false);
             return;
         }

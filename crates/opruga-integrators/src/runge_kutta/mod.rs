@@ -40,7 +40,7 @@ use opruga_core::system::{Stage, State, System, Update};
 use opruga_math::{Pack, Strip, WIDTH, lanes};
 use std::ops::Range;
 
-/// The parameters: none.
+/// The description of `runge_kutta`, which has no parameters.
 pub const SPEC: Spec = Spec {
     kind: "runge_kutta",
     summary: "fourth order: the classical Runge–Kutta method",
@@ -52,7 +52,7 @@ fraction (hω)⁶/72 of the energy of a mode.",
     roles: &[],
 };
 
-/// The kind `runge_kutta`.
+/// The kind of integrator that scenes name `runge_kutta`.
 #[derive(Debug)]
 pub struct RungeKuttaKind;
 

@@ -1,8 +1,8 @@
 //! # Symplectic Euler
 //!
-//! v₁ = v₀ + h a(x₀, v₀), x₁ = x₀ + h v₁ (the method of the thesis, section 2.4). First order; it conserves the symplectic
-//! form, and so keeps the energy of an undamped system within O(h) for ever. It is stable for h ω < 2 without damping. With
-//! damping, which is evaluated at the old velocity, it is stable for h < (2/ω)(√(1 + ζ²) − ζ).
+//! v₁ = v₀ + h a(x₀, v₀), x₁ = x₀ + h v₁ (the method of the thesis, section 2.4). First order. It conserves the symplectic
+//! form, so the error of the energy of an undamped system stays within O(h) for ever. It is stable for h ω < 2 without damping.
+//! With damping, which is evaluated at the old velocity, it is stable for h < (2/ω)(√(1 + ζ²) − ζ).
 
 #[cfg(test)]
 mod tests;
@@ -15,7 +15,7 @@ use opruga_core::system::{Stage, State, System, Update};
 use opruga_math::{Pack, Strip, WIDTH};
 use std::ops::Range;
 
-/// The parameters: none.
+/// The description of `symplectic_euler`, which has no parameters.
 pub const SPEC: Spec = Spec {
     kind: "symplectic_euler",
     summary: "first order, energy stays bounded: the integrator of the thesis",
@@ -26,7 +26,7 @@ pub const SPEC: Spec = Spec {
     roles: &[Role::OfferedExplicit],
 };
 
-/// The kind `symplectic_euler`.
+/// The kind of integrator that scenes name `symplectic_euler`.
 #[derive(Debug)]
 pub struct SymplecticEulerKind;
 

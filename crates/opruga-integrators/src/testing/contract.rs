@@ -58,7 +58,7 @@ fn every_kind_is_registered_once() {
     }
 }
 
-/// Records what obstacles receive.
+/// Records the positions and the time that obstacles receive.
 #[derive(Debug, Default)]
 struct Witness(Mutex<Vec<(f64, f64, f64)>>);
 
@@ -120,7 +120,7 @@ fn the_ledger_closes_at_the_order_of_the_rule() {
             assert!(damped > 0.01, "{}", rule.name());
             (problems::energy_of_two_nodes(&system) + damped - before).abs()
         };
-        // Over four halvings, because errors of opposite sign may cancel on the way.
+        // The order is measured over four halvings, because errors of opposite sign may cancel at single ones.
         let observed = libm::log2(gap(50) / gap(800)) / 4.0;
         assert!(observed >= order - 0.2, "{}: {observed}", rule.name());
     }

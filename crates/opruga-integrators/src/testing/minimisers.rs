@@ -26,7 +26,7 @@ use opruga_core::state::{Columns, Layout, Parameter};
 use opruga_core::system::System;
 use opruga_math::{Lane, Simd};
 
-/// Gradient descent: each node moves with the mean diagonal of its own block, with a line search by energy.
+/// Gradient descent with a line search by energy. The gradient of each node is divided by the mean diagonal of its own block.
 #[derive(Debug)]
 struct GradientDescent(Settings);
 

@@ -24,7 +24,7 @@ pub(crate) fn state<const D: usize>(system: &System<D>) -> Vec<f64> {
     x.chain(v).collect()
 }
 
-/// Makes steps.
+/// Makes a number of steps of length h.
 pub(crate) fn run<const D: usize>(system: &mut System<D>, integrator: &dyn Integrator<D>, h: f64, steps: usize) {
     system.equip(integrator);
     for _ in 0..steps {
@@ -56,7 +56,7 @@ fn matrix_of_one_step<const D: usize>(integrator: &dyn Integrator<D>) {
             let one = |row: usize| if row == column { 1.0 } else { 0.0 };
             let mut system = oscillator::<D>(mass, mass * omega * omega, mass * c, one(0), one(1));
             system.equip(integrator);
-            // For integrators with a history, a step in the middle of a run.
+            // Integrators with a history make this step in the middle of a run.
             let mut row = 2;
             for (_, content) in system.history.channels_mut() {
                 match content {

@@ -61,7 +61,7 @@ pub(crate) fn oscillator<const D: usize>(mass: f64, stiffness: f64, damping: f64
     system
 }
 
-/// Springs with damping along their axes, closed to a ring or not; in the plane, with a gas inside: isothermal, p = nRT/A.
+/// Springs with damping along their axes, which may form a ring. In the plane the ring encloses an isothermal gas, p = nRT/A.
 #[derive(Debug)]
 pub(crate) struct Springs {
     pub(crate) pairs: Vec<[usize; 2]>,
@@ -149,7 +149,8 @@ impl<const D: usize> Potential<D> for Springs {
             if tile.range.contains(&a) {
                 tile.power[a % 8] += self.damping * speed * speed;
             }
-            // Half the pressure on the edge goes to each end, along its outer normal (counter-clockwise rings).
+            // Each end of an edge gets half of the force of the pressure, along the outer normal of the edge (counter-clockwise
+            // rings).
             let normal = [-d[1], d[0]];
             for (end, sign) in [(a, -1.0), (b, 1.0)] {
                 if tile.range.contains(&end) {

@@ -1,4 +1,4 @@
-//! Estimated limits, compared with closed-form spectra and with the onset of instability in runs.
+//! Compares estimated limits with closed-form spectra and with the onset of instability in runs.
 
 use super::problems::{Anchors, Springs};
 use crate::explicit_euler::ExplicitEuler;
@@ -134,7 +134,7 @@ fn rules_that_need_damping_of_every_mode() {
             system
         };
         let limit = estimated(&make(), rule).largest_stable_step.unwrap();
-        // Only the fastest mode: ω = 80 cos(π/36), c = 5.
+        // The limit follows from the fastest mode alone: ω = 80 cos(π/36), c = 5.
         let fastest = 80.0 * libm::cos(core::f64::consts::PI / 36.0);
         let exact = Spectrum::uniform(fastest, 5.0).largest_stable_step(rule).unwrap();
         assert!(limit <= exact && limit >= 0.9 * exact, "{}: {limit} {exact}", rule.name());
@@ -178,7 +178,7 @@ fn growth_is_as_fast_as_announced() {
     let mut system = ring(36, 100.0, 1.0, 1600.0, 0.0, 0.0);
     let announced =
         estimated(&system, &ExplicitEuler).spectrum.growth_per_second(&ExplicitEuler as &dyn Integrator<2>, h);
-    // The initial motion is only the alternating one.
+    // The initial motion contains only the alternating mode.
     for p in 0..36 {
         let (x, sign) = (system.state.x.at(p), if p % 2 == 0 { 1e-9 } else { -1e-9 });
         system.state.v.set(p, [-x[1] * sign, x[0] * sign]);

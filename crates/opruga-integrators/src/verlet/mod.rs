@@ -2,17 +2,18 @@
 //!
 //! x₁ = x₀ + h v₀ + ½h² a₀,  v* = v₀ + h a₀,  a₁ = a(x₁, v*),  v₁ = v₀ + ½h (a₀ + a₁).
 //!
-//! Second order. Forces that depend on the velocity are evaluated at the end with the *predicted* velocity v*, whose error O(h²)
-//! enters v₁ as O(h³), so the order stays 2 with damping. With the more usual half-kick velocity v₀ + ½h a₀, it drops to 1.
+//! Second order. Forces that depend on the velocity are evaluated at the end with the *predicted* velocity v*, whose error
+//! O(h²) enters v₁ as O(h³), so the order stays 2 with damping. With the more usual half-kick velocity v₀ + ½h a₀, the order
+//! drops to 1.
 //!
 //! Without damping it is the leapfrog method: it conserves the symplectic form, its energy stays within O(h²) for ever, and it is
 //! stable for h ω < 2. With damping the stable region is smaller; a mode without stiffness is stable for h c < 2. Free fall is
 //! exact.
 //!
-//! **Two forces per step.** It is common to save one by reusing a₁ as the a₀ of the next step. This is not done here, because
-//! a₁ belongs to v* and not to v₁, and because obstacles, pins and commands move nodes between steps. It would keep the order,
-//! but the acceleration would become part of the state (of snapshots, hashes, merged islands), and the step would no longer be
-//! a function of (x, v).
+//! **Two forces per step.** It is common to save one force by reusing a₁ as the a₀ of the next step. This is not done here,
+//! because a₁ belongs to v* and not to v₁, and because obstacles, pins and commands move nodes between steps. Reusing a₁ would
+//! keep the order, but the acceleration would become part of the state (of snapshots, hashes, merged islands), and the step
+//! would no longer be a function of (x, v).
 //!
 //! Source: Swope et al. 1982; predicted velocity: Allen and Tildesley, *Computer Simulation of Liquids*, 3.2;
 //! Hairer, Lubich, Wanner, *Geometric numerical integration illustrated by the Störmer–Verlet method*, 2003.
@@ -28,7 +29,7 @@ use opruga_core::system::{Stage, State, System, Update};
 use opruga_math::{Pack, Strip, WIDTH, lanes};
 use std::ops::Range;
 
-/// The parameters: none.
+/// The description of `verlet`, which has no parameters.
 pub const SPEC: Spec = Spec {
     kind: "verlet",
     summary: "second order, energy stays bounded: velocity Verlet, damping at the predicted velocity",
@@ -39,7 +40,7 @@ integrator is stable if h ω < 2 for the highest angular frequency ω.",
     roles: &[],
 };
 
-/// The kind `verlet`.
+/// The kind of integrator that scenes name `verlet`.
 #[derive(Debug)]
 pub struct VerletKind;
 

@@ -1,8 +1,8 @@
 //! # The published ball
 //!
 //! The step of the program in D. Križaić, *Postupci izrade elastično deformabilnih objekata* (bachelor's thesis 2460,
-//! University of Zagreb, 2012), reproduced up to rounding. The table compares what was printed with what was meant. Every edge
-//! of the outline is a spring between i and j, with d = x_i − x_j and r = |d|:
+//! University of Zagreb, 2012), reproduced up to rounding. The table compares the printed formulas with those that were meant.
+//! Every edge of the outline is a spring between i and j, with d = x_i − x_j and r = |d|:
 //!
 //! - F_i −= (d/r) f, F_j += (d/r) f with f = (r − l) KS + ((v_i − v_j)·d) KD / r, if r ≠ 0;
 //! - n = (d_y/r, −d_x/r), "volume" V = Σ ½ |d_x| |n_x| r;
@@ -11,11 +11,11 @@
 //! - the mouse: with d = x − pointer and r = |d|, F −= (d/r)(r + (v·d)/r) on the vertex nearest to it;
 //! - v_x += F_x/MASS · DT, v_y += F_y · DT, x += v · DT.
 //!
-//! It is an ordinary model. `prepare` computes the forces. The memory of the model is the state of the ramp and the vertex that
-//! the mouse holds. F_y is multiplied by the mass of its node, so that the integrator's division gives the published v_y (E9).
-//! The published floor (y = 500, v_y = −½ v_y on crossing) is the engine's collider with restitution ½ and no friction. Edges run
-//! with the interior to their left; with y downwards, this is the direction of the thesis. Node i of a spring is the second node
-//! of its edge.
+//! For the engine, this is an ordinary model. `prepare` computes the forces. The memory of the model is the state of the ramp
+//! and the vertex that the mouse holds. F_y is multiplied by the mass of its node, so that the integrator's division gives the
+//! published v_y (E9). The published floor (y = 500, v_y = −½ v_y on crossing) is the engine's collider with restitution ½ and
+//! no friction. Edges run with the interior to their left; with y downwards, this is the direction of the thesis. Node i of a
+//! spring is the second node of its edge.
 //!
 //! ## Where it is not the physics
 //!
@@ -47,7 +47,7 @@ use opruga_core::system::along_path;
 use opruga_core::tile::Tile;
 use opruga_math::{Simd, WIDTH};
 
-/// The kind `as_published`.
+/// The kind of model that scenes name `as_published`.
 #[derive(Debug)]
 pub struct AsPublishedModel;
 
@@ -75,10 +75,11 @@ struct Constants {
     presses: Vec<[f64; 2]>,
 }
 
-/// Memory of each body: Pressure, the number of the press whose vertex is held (from 1; 0 if none is), the vertex.
+/// The memory of each body: Pressure, the number of the press whose vertex is held (from 1; 0 if none is held), and that
+/// vertex.
 const MEMORY: usize = 3 * WIDTH;
 
-/// In the scratch, after the forces: "volume", press and vertex of each body.
+/// The numbers that follow the forces in the scratch: "volume", press and vertex of each body.
 const NUMBERS: usize = 3 * WIDTH;
 
 impl<const D: usize> Model<D> for AsPublishedModel {
@@ -210,7 +211,7 @@ impl AsPublished {
         };
         let mut vertex = memory[2 * WIDTH + body] as usize;
         if memory[WIDTH + body] as usize != press {
-            // A new press takes the nearest vertex; if several are equally near, the first.
+            // A new press holds the nearest vertex; if several are equally near, the first of them.
             vertex = 0;
             for node in 1..self.nodes {
                 if away(node).2 < away(vertex).2 {

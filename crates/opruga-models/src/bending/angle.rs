@@ -21,7 +21,8 @@ const SERIES: [f64; 11] = [
 #[inline(always)]
 pub(super) fn angle<S: Lane>(y: S, x: S) -> S {
     let (ax, ay) = (x.abs(), y.abs());
-    // The quotient of the smaller and the larger coordinate, reduced below tan(π/8) by atan t = π/4 + atan((t − 1)/(t + 1)).
+    // The quotient of the smaller and the larger coordinate. It is reduced below tan(π/8) by atan t = π/4 + atan((t − 1)/(t +
+    // 1)).
     let steep = ax.less(ay);
     let (low, high) = (S::select(steep, ax, ay), S::select(steep, ay, ax));
     let turned = (S::splat(0.414_213_562_373_095_03) * high).less(low);

@@ -11,9 +11,9 @@
 //!
 //! Two closed forms hold for the outline with k = EI/ℓ: a ring buckles under the outer pressure 3EI/R³ (Lévy), and a clamped
 //! strip bends by PL³/3EI. A shell that is rolled into a cylinder has the flexural rigidity E t³/12. On a regular triangular
-//! lattice this holds in every direction, with a Poisson's ratio of −1/3 in bending (Seung and Nelson 1988). Hinges measure only
-//! the angles across edges, so a shell that may warp deflects more than a plate: by an eighth on the regular lattice and by a
-//! quarter on grids of right triangles.
+//! lattice this holds in every direction, with a Poisson's ratio of −1/3 in bending (Seung and Nelson 1988). Hinges measure
+//! only the angles across edges, so a shell that is free to warp deflects more than a plate: by an eighth on the regular
+//! lattice and by a quarter on grids of right triangles.
 //!
 //! Limits: chains in space resist bending but not twist, and their damping does not act on a change of the plane in which they
 //! bend. A hinge of such a chain that is bent at rest exerts no force when it is exactly straight.
@@ -39,7 +39,7 @@ use opruga_core::tile::Tile;
 use opruga_math::{Simd, WIDTH};
 use turn::Turn;
 
-/// The kind `bending`.
+/// The kind of model that scenes name `bending`.
 #[derive(Debug)]
 pub struct BendingModel;
 
@@ -133,7 +133,7 @@ struct Shape {
 }
 
 impl Shape {
-    /// Makes a shape from sine and cosine, both multiplied by a common factor.
+    /// Makes a shape from the sine and the cosine, which may have a common factor.
     fn new(sine: f64, cosine: f64, factor: f64) -> Shape {
         let length = (sine * sine + cosine * cosine).sqrt();
         Shape { sine: sine / length, cosine: cosine / length, factor }

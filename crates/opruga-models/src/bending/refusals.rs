@@ -21,7 +21,7 @@ messages! {
         /// A surface whose hinges cannot be determined.
         "model.not_manifold" #[error("{problem}")]
         Hinges { problem: MeshError },
-        /// Nothing to bend.
+        /// A body without hinges.
         "model.no_hinges"
         #[error("the body has nothing to bend: no node between two edges of an outline or chain, no edge between two triangles")]
         NoHinges {},

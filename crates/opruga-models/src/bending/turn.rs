@@ -40,7 +40,7 @@ impl Turn {
     fn excess<S: Lane>(bent: &Bent<S>, [_, _, cos, sin]: &[S; 4]) -> S {
         angle(bent.sine * *cos - bent.cosine * *sin, bent.cosine * *cos + bent.sine * *sin)
     }
-    /// n × u/|u|² and n × w/|w|² with the given normal n. Divided by the length of n, they are −∂θ/∂u and ∂θ/∂w.
+    /// n × u/|u|² and n × w/|w|² with the given normal n. Divided by |n|, these levers are −∂θ/∂u and ∂θ/∂w.
     #[inline(always)]
     fn levers<S: Lane>(bent: &Bent<S>, normal: &[S; 3]) -> [[S; 3]; 2] {
         let (iu, iw) = (inverse(dot(&bent.u, &bent.u)), inverse(dot(&bent.w, &bent.w)));

@@ -1,11 +1,11 @@
 //! Computes the stiffness of a boundary: G t = H u, K = symmetric part of Mᵀ G⁻¹ H without rigid motion.
 //!
-//! The equation at a point ξ of the boundary, with u(ξ) taken out of the strongly singular integral,
+//! If u(ξ) is taken out of the strongly singular integral, the equation at a point ξ of the boundary is
 //!
-//! interior ∫ T (u(y) − u(ξ)) dS = ∫ U t dS,  exterior u(ξ) + ∫ T (u(y) − u(ξ)) dS = ∫ U t dS,
+//! interior ∫ T (u(y) − u(ξ)) dS = ∫ U t dS,  exterior u(ξ) + ∫ T (u(y) − u(ξ)) dS = ∫ U t dS.
 //!
-//! holds at corners too and has no strongly singular integral. Translations of the body satisfy it up to rounding. Rotations
-//! satisfy it up to the error of the integrals; removing them from the stiffness corrects that error.
+//! It holds at corners too and contains no strongly singular integral. Translations of the body satisfy it up to rounding.
+//! Rotations satisfy it up to the error of the integrals; removing them from the stiffness corrects that error.
 
 use super::integrals::{Integrator, Sums};
 use super::kernels::{Block, Kelvin};
@@ -39,13 +39,14 @@ pub(super) struct Changes {
 pub(super) struct Stiffness {
     pub(super) matrix: Arc<Dense>,
     pub(super) changes: Changes,
-    /// The stress at the requested points for the displacements of the vertices, a row for each component of each point.
+    /// The matrix from the displacements of the vertices to the stress at the requested points, with a row for each component
+    /// at each point.
     pub(super) stresses: Vec<Vec<f64>>,
 }
 
 /// The system before it is solved, column by column.
 struct System {
-    /// Rows: D for each source.
+    /// The number of rows, D for each source.
     rows: usize,
     g: Vec<f64>,
     h: Vec<f64>,
@@ -180,8 +181,8 @@ fn times(matrix: &[f64], rows: usize, vector: &[f64]) -> Vec<f64> {
 }
 
 impl Stiffness {
-    /// Computes the stiffness. The points at which the stress is requested are in units of the size, relative to the mean of the
-    /// vertices.
+    /// Computes the stiffness. `asked` contains the points at which the stress is requested, in units of the size and relative
+    /// to the mean of the vertices.
     pub(super) fn new<const D: usize>(
         surface: &Surface<D>,
         poisson: f64,
@@ -233,7 +234,9 @@ fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// The largest traction of a rotation by 1 rad. The motion has length one over all vertices.
+/// Returns an upper bound on the traction of a rotation by 1 rad, for a shear modulus of 1. Exact integrals would give zero.
+/// `motion` contains the displacements of all vertices in a rotation about an axis through their mean, scaled to a norm of 1,
+/// and `force` is H times `motion`.
 fn rotation_traction<const D: usize>(
     surface: &Surface<D>,
     factors: &DenseFactors,
@@ -243,7 +246,7 @@ fn rotation_traction<const D: usize>(
     let mut traction = force.to_vec();
     factors.solve(&mut traction);
     let most = traction.iter().fold(0.0, |most, x| larger(most, x.abs()));
-    // |motion| = angle · distance from the axis. The largest distance is at most 1, and in this case at least a third of that.
+    // The displacement of a vertex is the angle times the distance from the axis. The distance from the axis is at most the distance from the mean, so the angle is at least the largest displacement over the largest distance from the mean.
     let moved = motion.chunks_exact(D).map(|x| x.iter().map(|x| x * x).sum::<f64>().sqrt());
     let reach = surface.points.iter().map(|x| x.iter().map(|x| x * x).sum::<f64>().sqrt());
     most * reach.fold(0.0, larger) / moved.fold(0.0, larger)
@@ -294,8 +297,8 @@ fn free_and_symmetrise(size: usize, motions: &[Vec<f64>], k: &mut [f64], changes
     changes.asymmetry = (skew / even).sqrt();
 }
 
-/// The largest number of vertices for which negative eigenvalues are removed; larger boundaries that have some are refused.
-/// Finding all eigenvectors takes as long as everything else.
+/// The largest number of vertices for which negative eigenvalues are removed. Larger boundaries with negative eigenvalues are
+/// refused. Finding all eigenvectors takes as long as the rest of the preparation.
 const MOST_CLAMPED: usize = 1000;
 
 /// The largest fraction of a stiffness that may be removed with its negative eigenvalues.

@@ -18,7 +18,7 @@ fn applied(stiffness: &Stiffness, u: &[f64]) -> Vec<f64> {
     y
 }
 
-/// Rows of H are 0 inside and 1 outside, and a rotation has no traction.
+/// The rows of H sum to 0 for the interior and to 1 for the exterior, and a rotation has no traction.
 #[test]
 fn identities_hold() {
     for exterior in [false, true] {

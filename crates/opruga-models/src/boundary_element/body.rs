@@ -44,14 +44,14 @@ struct Body {
     law: Constants,
 }
 
-/// The numbers of a state in the scratch besides x, y, u and g: its frame, λ, U, and when it was last requested (counted in
-/// states; 0 means never).
+/// The numbers of a state in the scratch besides x, y, u and g: the frame, λ, U, and the number of the latest request for this
+/// state (0 means none).
 const NUMBERS: usize = 32;
 const ASKED: usize = NUMBERS - 1;
 
-/// The number of states that are kept. A step alternates between its initial state, its present state, and the state in which the
-/// rigid motion is balanced, and a product with K takes most of the time. Keeping only one state gives the same results, but the
-/// steps of a free body then take up to a fifth longer.
+/// The number of states that are kept. A step alternates between its initial state, its present state, and the state in which
+/// the rigid motion is balanced, and a product with K takes most of the time. If only one state is kept, the results are the
+/// same, but the steps of a free body take up to a fifth longer.
 const STATES: usize = 3;
 
 impl<const D: usize> BoundaryElement<D> {

@@ -1,5 +1,5 @@
-//! The stiffnesses that bodies hold, by the data that determine them. A body that is built again, or is identical to another,
-//! reuses the existing stiffness.
+//! A table of the stiffnesses that bodies use, by the data that determine them. A body that is built again, or is identical to
+//! another, reuses the existing stiffness.
 
 use super::assembly::Stiffness;
 use super::refusals::Refusal;
@@ -10,8 +10,8 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 /// The bits of all data that determine a stiffness.
 type Key = Vec<u64>;
 
-/// The stiffnesses in use, and the one that was last requested: a program that reads a scene builds its bodies more than once,
-/// one after the other.
+/// The stiffnesses in use, and the one that was last requested. The latter is kept because a program that reads a scene builds
+/// its bodies more than once, one after the other.
 struct Known {
     shared: Vec<(Key, Weak<Stiffness>)>,
     last: Option<Arc<Stiffness>>,
@@ -35,7 +35,7 @@ fn key<const D: usize>(surface: &Surface<D>, poisson: f64, exterior: bool, asked
     key
 }
 
-/// Returns the stiffness of a boundary, which is computed unless it is still stored.
+/// Returns the stiffness of a boundary, and computes it unless it is still stored.
 pub(super) fn stiffness<const D: usize>(
     surface: &Surface<D>,
     poisson: f64,

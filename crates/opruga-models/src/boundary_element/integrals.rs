@@ -2,10 +2,10 @@
 //!
 //! If the source lies on the side, the side is divided into parts with their apex at the source, r = s ρ(t). Then neither U dS
 //! nor T (u(y) − u(ξ)) dS depends on s, and the integral over s is computed analytically. The remaining integrand is smooth in
-//! the variable τ with dt/ρ = dτ/ℓ; each piece of length 1 gets 12 points. Otherwise Gauss's rules have as many points as the
-//! distance requires, and sides that are nearer than 1.6 times their size (in the plane, their length) are halved in each
-//! direction. The total error is below 1e-9 of the integrals; the tractions of a rotation, which should be zero, measure it
-//! (docs/boundary-elements.md).
+//! the variable τ with dt/ρ = dτ/ℓ; each piece of length 1 gets 12 points. If the source does not lie on the side, Gauss's
+//! rules have as many points as the distance requires. Sides that are nearer than 1.6 times their size (in the plane, their
+//! length) are halved in each direction. The total error is below 1e-9 of the integrals. It is measured by the tractions of a
+//! rotation, which should be zero (docs/boundary-elements.md).
 
 use super::kernels::{Block, Kelvin};
 use super::quadrature::{Rule, SimplexRule};
@@ -43,13 +43,13 @@ struct Piece<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Integrator<const D: usize> {
     pub(super) kelvin: Kelvin,
-    /// The rules, each with the smallest distance at which it is accurate enough, relative to the size of a piece; distances
-    /// descend.
+    /// The rules in the order of descending distance, each with the smallest distance at which it is accurate enough, relative
+    /// to the size of a piece.
     rules: Vec<(f64, SimplexRule<D>)>,
     along: Rule,
 }
 
-/// The largest number of halvings of a side: a source is then as near as rounding permits.
+/// The largest number of halvings of a side. After that many, the source is as near as rounding permits.
 const MOST_HALVINGS: u32 = 40;
 
 fn minus<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {

@@ -5,7 +5,7 @@
 //! space  U = (1/16π(1 − ν)ρ) [(3 − 4ν) 1 + e eᵀ],
 //!        T = (−1/8π(1 − ν)ρ²) {e·n [(1 − 2ν) 1 + 3 e eᵀ] − (1 − 2ν)(e nᵀ − n eᵀ)},
 //! plane  U = (1/8π(1 − ν)) [−(3 − 4ν) ln ρ 1 + e eᵀ],
-//!        T = (−1/4π(1 − ν)ρ) {e·n [(1 − 2ν) 1 + 2 e eᵀ] − (1 − 2ν)(e nᵀ − n eᵀ)},
+//!        T = (−1/4π(1 − ν)ρ) {e·n [(1 − 2ν) 1 + 2 e eᵀ] − (1 − 2ν)(e nᵀ − n eᵀ)}.
 //!
 //! Rows correspond to directions of the force. The plane formulas are those of plane strain.
 //!

@@ -6,10 +6,10 @@
 //! symmetric part of Mᵀ G⁻¹ H without rigid motion (file `assembly`). A moving body has U = ½ uᵀ K u with u = Rᵀ(x − x̄) − X in
 //! the nearest frame R (file `frame`). The infinite medium around a boundary (`exterior`) does not rotate: u = x − X.
 //!
-//! Collocation is used instead of Galerkin's method, because it needs one integral instead of two. Its matrix is slightly
-//! unsymmetric (the readings report how much).
+//! Collocation is used instead of Galerkin's method, because it needs one integral instead of two. The matrix of collocation is
+//! slightly unsymmetric. A reading shows by how much.
 //!
-//! Limits: strain must be small in the frame R. There is only one frame, so a slender body that bends by large angles is too
+//! Limits: strain must be small in the frame R. A body has only one frame, so a slender body that bends by large angles is too
 //! stiff and grows. The mass is on the boundary. There are at most 2000 vertices, since all matrices are dense.
 
 #[cfg(not(target_arch = "wasm32"))]
@@ -50,7 +50,7 @@ use opruga_core::spec::Spec;
 /// The largest number of vertices.
 pub const MOST_VERTICES: usize = 2000;
 
-/// The kind `boundary_element`.
+/// The kind of model that scenes name `boundary_element`.
 #[derive(Debug)]
 pub struct BoundaryElementModel;
 

@@ -32,9 +32,9 @@ impl<'a> Progress<'a> {
     /// The progress of the preparation of a system with `rows` rows, at its start.
     pub(super) fn new(break_off: &'a BreakOff, rows: usize) -> Progress<'a> {
         let n = rows as f64;
-        // The numbers of multiplications: about 1500 for each pair of a source and a facet, which has nine entries; the other
-        // numbers are those of textbooks. Solving for many columns and factorising run at the speed of matrix products; the other
-        // parts run at the speed of memory.
+        // The numbers of multiplications. Each pair of a source and a facet, which has nine entries, needs about 1500; the
+        // other numbers are those of textbooks. Factorising and solving for many columns run at the speed of matrix products.
+        // The other parts run at the speed of memory.
         let costs = [200.0 * n * n, n * n * n / 3.0, n * n * n, 40.0 * n * n, n * n * n / 6.0];
         Progress { break_off, costs, part: Part::Integrals, share: 0.0 }
     }

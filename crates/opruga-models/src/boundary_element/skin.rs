@@ -5,8 +5,8 @@
 //! σ_nn = t·n,  σ_an = t·a,  σ_aa = 2μ/(1 − ν) (ε_aa + ν ε_bb) + ν/(1 − ν) σ_nn,  σ_ab = 2μ ε_ab,
 //!
 //! with ε_bb = 0 in the plane. A traction is the force on a vertex over its share of the boundary. At an edge or a corner the
-//! force belongs to several smooth parts, and the traction of a single part cannot be determined. A facet uses the tractions of
-//! its vertices that belong to only one smooth part, if it has any.
+//! force belongs to several smooth parts, and the traction of a single part cannot be determined. If a facet has vertices that
+//! belong to only one smooth part, it uses only the tractions of these vertices.
 //!
 //! Source: Brebbia, Telles, Wrobel 1984, section 5.11 (stresses on the boundary).
 
@@ -26,7 +26,7 @@ struct Facet<const D: usize> {
     axes: [[f64; D]; D],
     /// The gradient of each shape function along each tangent [1/m].
     slopes: [[f64; D]; D],
-    /// The factor with which the force on each vertex enters the mean traction [1/m²].
+    /// The factor of the force on each vertex in the mean traction [1/m²].
     pulls: [f64; D],
     /// Length times thickness, or area [m²].
     measure: f64,
@@ -46,7 +46,7 @@ fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     (0..D).map(|d| a[d] * b[d]).sum()
 }
 
-/// The tangents of a facet with a normal; the first points along its first edge.
+/// The tangents of a facet and its normal. The first tangent points along the first edge.
 fn axes<const D: usize>(corners: &[[f64; D]; D], normal: &[f64; D]) -> [[f64; D]; D] {
     let edge: [f64; D] = core::array::from_fn(|d| corners[1][d] - corners[0][d]);
     let length = dot(&edge, &edge).sqrt();
@@ -93,7 +93,8 @@ impl<const D: usize> Skin<D> {
         Skin { facets: facets.collect() }
     }
 
-    /// The stress of every facet from u [m] and the forces g [N], rotated from the frame of the body into that of the world.
+    /// The stress of every facet from u [m] and the forces g [N]. It is rotated from the frame of the body into that of the
+    /// world.
     pub(super) fn states(&self, law: Constants, frame: &[[f64; D]; D], u: &[f64], g: &[f64]) -> Vec<CellState> {
         let of = |facet: &Facet<D>| -> [[f64; 3]; 3] {
             let local = facet.stress(law, u, g);

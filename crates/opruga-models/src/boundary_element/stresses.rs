@@ -1,6 +1,6 @@
 //! Stress at points of the solid: σ = ∫ D t dS − ∫ S u dS (Somigliana).
 //!
-//! With r = y − p, e = r/ρ, α = D − 1, β = D, γ = D + 2 and μ = 1,
+//! For the stress at the point p, with r = y − p, ρ = |r|, e = r/ρ, the normal n in y, α = D − 1, β = D, γ = D + 2 and μ = 1,
 //!
 //! D_kij = [(1 − 2ν)(δ_ki e_j + δ_kj e_i − δ_ij e_k) + β e_i e_j e_k]/(4πα(1 − ν)ρ^α),
 //! S_kij = {β e·n [(1 − 2ν)δ_ij e_k + ν(δ_ik e_j + δ_jk e_i) − γ e_i e_j e_k] + βν(n_i e_j e_k + n_j e_i e_k)
@@ -20,8 +20,8 @@ pub(super) const fn components(dimensions: usize) -> &'static [(usize, usize, &'
     if dimensions == 2 { ALL.split_at(3).0 } else { ALL }
 }
 
-/// Returns a row for every component of stress at every point, with an entry for each displacement of the vertices, given the
-/// tractions due to each displacement.
+/// Returns the matrix from the displacements of the vertices to the stress, given the tractions due to each displacement. It
+/// has a row for every component of stress at every point.
 pub(super) fn rows<const D: usize>(
     surface: &Surface<D>,
     kelvin: Kelvin,

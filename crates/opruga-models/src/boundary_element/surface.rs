@@ -18,7 +18,7 @@ pub(super) struct Source<const D: usize> {
     pub(super) at: [f64; D],
     /// The vertex at this point; none if the point lies inside a side.
     pub(super) vertex: Option<u32>,
-    /// A side that contains this point, and the shape functions of the side at the point.
+    /// A side that contains the collocation point, and the shape functions of the side there.
     pub(super) side: u32,
     pub(super) shape: [f64; D],
 }
@@ -44,7 +44,7 @@ pub(super) struct Surface<const D: usize> {
 }
 
 impl<const D: usize> Surface<D> {
-    /// Takes the boundary of a mesh; the solid is inside it or, with `exterior`, all around it.
+    /// Extracts the boundary of a mesh. The solid is inside it or, with `exterior`, all around it.
     pub(super) fn of(mesh: &Mesh<D>, exterior: bool) -> Result<Surface<D>, Refusal> {
         let nodes = mesh.nodes();
         if mesh.facets.is_empty() {
@@ -105,7 +105,7 @@ impl<const D: usize> Surface<D> {
                 for (facet, corner) in part {
                     self.corners[*facet as usize][*corner] = number;
                 }
-                // The side with the widest angle, which has the most space for the point.
+                // The collocation point lies on the side with the widest angle, where the distances from the edges are largest.
                 let mut widest = part[0];
                 let mut least = 2.0;
                 for own in part {

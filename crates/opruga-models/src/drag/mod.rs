@@ -6,7 +6,7 @@
 //!
 //! By design, drag damps rigid motion as well: a falling body tends to the speed g/λ, and a flying body loses momentum. To damp
 //! oscillations alone, use the damping of springs or of bending, which is zero under rigid motion. Drag has no energy; the
-//! dissipated power is λ Σ m v². Also known as mass-proportional (Rayleigh) damping.
+//! dissipated power is λ Σ m v². Drag is also known as mass-proportional (Rayleigh) damping.
 
 mod spec;
 
@@ -19,7 +19,7 @@ use opruga_core::state::{Parameter, View};
 use opruga_core::tile::Tile;
 use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
 
-/// The kind `drag`.
+/// The kind of model that scenes name `drag`.
 #[derive(Debug)]
 pub struct DragModel;
 

@@ -67,7 +67,7 @@ impl<'a, const D: usize> Builder<'a, D> {
         Ok(if self.numbers.heated { &entry.heated } else { &entry.cold })
     }
 
-    /// How linear simplices near incompressibility are treated.
+    /// The value of `locking`: how linear simplices near incompressibility are treated.
     fn locking(&self) -> &str {
         self.ingredients.values[0].text("locking").unwrap_or("refuse")
     }
@@ -159,7 +159,7 @@ impl<'a, const D: usize> Builder<'a, D> {
         }
         let size = longest.sqrt();
         let least = NO_VOLUME * (0..D).map(|_| size).product::<f64>();
-        // Boxes are checked at the centre too.
+        // Boxes are also checked at their centre.
         let middle = E::BOX.then(|| E::at([0.0; 3]).1);
         let mut measure = 0.0;
         for (slopes, weight) in E::SLOPES.iter().chain(&middle).zip(E::WEIGHTS.iter().chain(&[0.0])) {
@@ -197,7 +197,7 @@ impl<'a, const D: usize> Builder<'a, D> {
     }
 }
 
-/// The density of every cell [kg/m³, in the plane per area]. If it is not given, it is the total mass divided by the total
+/// The density of every cell [kg/m³, in the plane per area]. If no density is given, it is the total mass divided by the total
 /// measure.
 fn densities<const D: usize>(ingredients: &Ingredients<D>) -> Result<Vec<f64>, BuildError> {
     if let Some(densities) = ingredients.densities {

@@ -130,7 +130,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractPrincipal<
         let from = &self.principal[self.pack * PRINCIPAL * size..(self.pack + 1) * PRINCIPAL * size];
         for part in 0..P::PARTS {
             let (inverse, measure) = geometry::<P::Part, D>(&self.group, self.group.first + self.pack, 0, part);
-            // Rows are nodes: ĝ of the node a + 1.
+            // Row a is ĝ of the node a + 1.
             let slopes = matrix::product(&inverse, &read_matrix::<P::Part, D>(&from[size..], part));
             let u = read_matrix::<P::Part, D>(from, part);
             let second = read_matrix::<P::Part, D>(&from[2 * size..], part);
@@ -205,7 +205,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractInvariants
         let size = D * D * WIDTH;
         let numbers = &self.invariants[self.pack * INVARIANTS * WIDTH..(self.pack + 1) * INVARIANTS * WIDTH];
         for part in 0..P::PARTS {
-            // Rows are nodes: g of the node a + 1.
+            // Row a is g of the node a + 1.
             let (slopes, measure) = geometry::<P::Part, D>(&self.group, self.group.first + self.pack, 0, part);
             let number = |k: usize| measure * P::Part::load(&numbers[k * WIDTH + part * P::Part::NUMBERS..]);
             let [stretch, stretch_twice, volume, volume_twice] = [number(0), number(1), number(2), number(3)];
@@ -252,8 +252,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for ContractInvariants
     }
 }
 
-/// Adds s εᵢₖₘ wₘ with w = F (a × b). In the plane, F does not contribute, because the product is along the normal of the
-/// plane.
+/// Adds s εᵢₖₘ wₘ with w = F (a × b). In the plane F has no effect, because a × b is normal to the plane.
 #[inline(always)]
 fn add_turn<R: Register, const D: usize>(block: &mut Matrix<R, D>, s: R, f: &Matrix<R, D>, a: &[R; D], b: &[R; D]) {
     let cross = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];

@@ -24,14 +24,14 @@ pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sy
     }
     /// Whether ∂x/∂ξ is computed from differences to the first node.
     const SIMPLEX: bool;
-    /// Whether bending has the assumed strain of [`super::boxes`].
+    /// Whether the element bends with the assumed strain of [`super::boxes`].
     const BOX: bool = false;
 }
 
-/// An element, as its section needs it.
+/// An element of a mesh, with the data that a section needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell<const N: usize> {
-    /// Its number in the mesh.
+    /// The number of the element in the mesh.
     pub(super) number: u32,
     /// Its nodes.
     pub(super) nodes: [u32; N],

@@ -11,10 +11,10 @@
 //! | quadrilateral, hexahedron | 4, 8, and the mean above ν = 1/3 | no |
 //! | quadratic triangle, tetrahedron | 3, 4 | no |
 //!
-//! Quadrilaterals and hexahedra have a mean deformation gradient (Flanagan and Belytschko 1981), so that patches of arbitrary
-//! cells are exact. Bending and twisting add the small strain of assumed stresses (Pian and Sumihara 1984, Pian and Tong 1986),
-//! transformed by the mean gradient, and the law is evaluated with that strain at the Gauss points: see the folder `boxes`. A
-//! rectangular cell bends exactly for every ν, in plane strain, plane stress and space.
+//! Quadrilaterals and hexahedra use a mean deformation gradient (Flanagan and Belytschko 1981), so that a uniform strain is
+//! exact on arbitrary cells. Bending and twisting add the small strain of assumed stresses (Pian and Sumihara 1984, Pian and
+//! Tong 1986), transformed by the mean gradient. The law is evaluated with that strain at the Gauss points (see the folder
+//! `boxes`). A rectangular cell bends exactly for every ν, in plane strain, plane stress and space.
 //!
 //! **Materials** are functions of F, one file each: see [`crate::materials`].
 //!
@@ -24,8 +24,8 @@
 //! small strain (file `materials/heat`). Without expansion none of this is computed.
 //!
 //! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws. At small
-//! strain, boxes bend according to Hooke's law with their E and ν. This also determines, in all states, how much a bent cell
-//! expands sideways. Corotated laws have no unique rotation, and so no unique force, if the two smallest stretches are
+//! strain, boxes bend according to Hooke's law with their E and ν. In all states, Hooke's law also determines how much a bent
+//! cell expands sideways. Corotated laws have no unique rotation, and so no unique force, if the two smallest stretches are
 //! opposite.
 
 mod boxes;
@@ -58,7 +58,7 @@ use opruga_core::potential::{Ingredients, Model, Potential};
 use opruga_core::spec::Spec;
 use solid::Built;
 
-/// The kind `fem`.
+/// The kind of model that scenes name `fem`.
 #[derive(Debug)]
 pub struct FemModel;
 

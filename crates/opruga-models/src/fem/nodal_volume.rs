@@ -1,19 +1,19 @@
 //! Volumes of nodes, for linear triangles and tetrahedra near incompressibility.
 //!
-//! Cells with one integration point cannot both bend and keep their volume, because there are more cells than degrees of freedom.
-//! The volumetric stiffness beyond λ′ = min(λ, 2μ) therefore acts on the volumes of the nodes instead, because there are fewer
-//! nodes than cells (Bonet and Burton 1998). A node has an equal share V/(D + 1) of every cell around it, and
+//! Cells with one integration point cannot both bend and keep their volume, because there are more cells than degrees of
+//! freedom. There are fewer nodes than cells, so the volumetric stiffness beyond λ′ = min(λ, 2μ) acts on the volumes of the
+//! nodes instead (Bonet and Burton 1998). A node has an equal share V/(D + 1) of every cell around it, and
 //!
 //! U = Σₐ ½ κₐ Vₐ (Jₐ − 1)²,  Jₐ = Σ share · det F / Vₐ,  Vₐ = Σ share,  κₐ = Σ share · (λ − λ′) / Vₐ.
 //!
 //! In every cell this is an isotropic stress p, the mean of κₐ (Jₐ − 1) over its corners, with P = p cof F. Under `linear` det F
 //! is 1 + tr (F − 1).
 //!
-//! First J is computed for all cells, then every node sums over the cells around it. Then the cells are evaluated as usual, with
-//! p cof F added to the stress of their law ([`super::pressures`]).
+//! First, J is computed for all cells. Second, every node sums over the cells around it. Third, the cells are evaluated as
+//! usual, with p cof F added to the stress of their law ([`super::pressures`]).
 //!
-//! The second derivatives couple every node with all nodes of the cells around its neighbours. They form wide rows and are not
-//! matrices of cells.
+//! The second derivatives couple every node with all nodes of the cells around its neighbours. These derivatives form wide
+//! rows, which are not sums of matrices of cells.
 
 use super::elements::rest_gradient;
 use super::numbers::beyond;
@@ -41,9 +41,9 @@ pub(super) struct NodalVolumes<const D: usize> {
     /// The cells around each node: the start of its list, and the lists.
     start: Vec<u32>,
     around: Vec<u32>,
-    /// The location of J − 1 of these cells, once they have been located.
+    /// The location of J − 1 of each of these cells in the scratch; empty until it is set.
     grown: Vec<u32>,
-    /// The start of the energies and pressures of every block of nodes.
+    /// The start of the energies and pressures of every block of nodes in the scratch.
     starts: Vec<usize>,
 }
 
@@ -195,7 +195,7 @@ impl<const D: usize> NodalVolumes<D> {
         self.starts.len() * (WIDTH + BLOCK * self.bodies())
     }
 
-    /// Computes κₐ (Jₐ − 1) of all nodes from the growth of their cells; returns the energies of the bodies [J].
+    /// Computes κₐ (Jₐ − 1) of all nodes from J − 1 of their cells; returns the energies of the bodies [J].
     pub(super) fn press(&self, threads: usize, grown: &[f64], scratch: &mut [f64]) -> [f64; WIDTH] {
         let bodies = self.bodies();
         each_part(threads, scratch, &self.starts, |block, scratch| {

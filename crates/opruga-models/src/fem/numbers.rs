@@ -7,7 +7,7 @@ use opruga_core::error::BuildError;
 use opruga_core::potential::Ingredients;
 use opruga_core::spec::{Field, Values};
 
-/// The parameters of an element: μ, λ, the material's own, thermal growth, retardation time.
+/// The number of parameters of an element: μ, λ, the material's own parameter, the thermal growth and the retardation time.
 pub(super) const NUMBERS: usize = 5;
 
 /// λ − λ′ with λ′ = min(λ, 2μ). If this part of the volumetric stiffness acted at every point, most cells could not bend.

@@ -21,8 +21,8 @@ use opruga_core::potential::{CellState, Definiteness, StencilPack, StencilPacks}
 use opruga_core::state::{Layout, View};
 use opruga_math::{Simd, WIDTH};
 
-/// The number of packs of points whose tangents are kept at a time if elements have one point. They fit into the first-level
-/// cache.
+/// The number of packs of points whose tangents are kept at a time if elements have one point. That many tangents fit into the
+/// first-level cache.
 const TANGENTS: usize = 4;
 
 /// The largest number of packs of boxes that are processed together.
@@ -190,7 +190,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             }
             self.deform(&group, positions, pressures);
             let points = self.points(&group);
-            // The products of the pressures with the second derivatives of J may be negative.
+            // The products of the pressures with the second derivatives of J may have negative eigenvalues.
             let pressed = section.nodal && group.turns && matches!(matrix, Matrix::Hessian(Definiteness::Exact));
             let form = match matrix {
                 Matrix::Hessian(keep) if E::SIMPLEX && !pressed => {
@@ -302,8 +302,8 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                         measure += weight;
                         now += weight * ratio;
                     }
-                    // ∫ P Fᵀ over the rest shape is ∫ σ over the present one. A law for small motions has only one shape and
-                    // one symmetric stress.
+                    // ∫ P Fᵀ over the rest shape equals ∫ σ over the present shape. A law for small motions has only one shape
+                    // and one symmetric stress.
                     for i in 0..axes {
                         for j in 0..3 {
                             for k in 0..axes {
@@ -313,8 +313,8 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                         }
                     }
                 }
-                // In boxes, F at the points contains bending as transformed by the mean. It may have J > 0 where the cell itself
-                // is inverted, so the true J is checked too.
+                // In boxes, F at the points contains bending in the form that the mean gradient has transformed. Its
+                // determinant may be positive where the cell itself is inverted, so the true J is checked too.
                 for (q, slopes) in E::SLOPES.iter().enumerate().filter(|_| E::BOX) {
                     let side = |i: usize, j: usize| match (i < D, j < D) {
                         (true, true) => (0..N).map(|a| at(cell.nodes[a], i) * slopes[a][j]).sum(),

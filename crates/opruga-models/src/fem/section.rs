@@ -9,8 +9,8 @@
 //! bodies.
 //!
 //! The elements of a body are divided into *shares* for threads. A share has its own rows for the nodes that it touches; forces
-//! are summed there in the order of its elements, and then at each node in the order of the shares. Shares are the same for every
-//! number of threads and for both layouts, and so are the bits.
+//! are summed there in the order of its elements, and then at each node in the order of the shares. Shares are the same for
+//! every number of threads and for both layouts, and so are the bits of the results.
 
 use super::boxes::{self, Boxes};
 use super::elements::{Cell, Shape, rest_gradient};
@@ -25,7 +25,8 @@ use opruga_core::error::StepError;
 use opruga_core::state::{Layout, View};
 use opruga_math::{Column, ROW, WIDTH};
 
-/// The number of packs of points in a share. A share takes a hundred kilobytes and half a millisecond at most.
+/// The number of packs of points in a share. A share takes at most a hundred kilobytes of memory and half a millisecond of
+/// time.
 const SHARE: usize = 512;
 
 /// The offset of the forces of a share in its scratch, after energies and powers.
@@ -120,7 +121,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         let packs = cells.len().div_ceil(lanes);
         let cell = |pack: usize, lane: usize| &cells[(pack * lanes + lane).min(cells.len() - 1)];
 
-        // The number of elements is the same in both layouts, whatever the material of the other bodies.
+        // The number of elements in a share is the same in both layouts, whatever the material of the other bodies.
         let shares = shares(&cells, packs, lanes, (SHARE / E::POINTS).max(1) * WIDTH / lanes);
         let mut node_indices = vec![0; packs * N * lanes];
         let mut targets = vec![0; if layout == Layout::Batch { packs * N } else { 0 }];

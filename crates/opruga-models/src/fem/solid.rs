@@ -57,9 +57,10 @@ struct Task {
 /// The location of the forces of the nodes in the scratch.
 #[derive(Debug)]
 enum Sums {
-    /// All of them, consecutive from this index.
+    /// The forces of all nodes are consecutive from this index.
     Whole(usize),
-    /// For every node, rows of several shares: the start of its list, and the lists of row indices in units of [`ROW`].
+    /// The forces of a node are rows of several shares: the start of the list of every node, and the lists of row indices in
+    /// units of [`ROW`].
     Listed { start: Vec<u32>, rows: Vec<u32> },
 }
 
@@ -264,7 +265,7 @@ impl<const D: usize> Solid<D> {
             }
         }
         if let Some(volumes) = &mut volumes {
-            // The data follow the sums of the whole solid.
+            // The data of the shares follow the sums of the whole solid.
             let start =
                 |part: usize| shares.iter().find(|task| task.part == part).map_or(0, |task| task.start - FORCES);
             let mut of_parts = parts.iter().enumerate();

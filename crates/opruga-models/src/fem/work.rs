@@ -55,7 +55,7 @@ pub(super) struct Nodes<'a, const D: usize> {
     pub(super) columns: [&'a [f64]; D],
 }
 
-/// Gathers a vector at the nodes of the elements of one part of a pack.
+/// Gathers a vector at the nodes of the elements in one part of a pack.
 #[inline(always)]
 pub(super) fn gather<R: Register, const D: usize, const N: usize>(
     group: &Group<'_>,
@@ -217,8 +217,8 @@ fn integrate<P: Pack, const D: usize>(group: &Group<'_>, k: usize, density: &mut
 }
 
 impl<E, const D: usize, const N: usize> Forces<'_, E, D, N> {
-    /// Prefetches the data of a pack for the next group. Every step reads more than fits into a cache, and the processor does
-    /// not fetch it by itself while the law is evaluated.
+    /// Prefetches the data of a pack for the next group. Every step reads more data than fit into a cache, and the processor
+    /// does not fetch them by itself while the law is evaluated.
     #[inline(always)]
     fn fetch(&self, pack: usize) {
         if self.group.layout == Layout::Single {

@@ -1,15 +1,15 @@
 //! The forces of a curve in one walk along it, for nodes that are numbered along the curve.
 //!
-//! Stretch and bending exert forces N along edges, which follow from g = (x₊ − x)/L and ∂U/∂g of every edge. The force on a node
-//! is N of the edge after it minus N of the edge before it:
+//! Stretch and bending cause a force N in every edge, which follows from g = (x₊ − x)/L and ∂U/∂g of the edge. The force on a
+//! node is N of the edge after it minus N of the edge before it:
 //!
 //! ```text
 //!   ── i−1 ──Nᵢ₋₁── i ──Nᵢ── i+1 ──        Fᵢ = Nᵢ − Nᵢ₋₁,  Nᵢ = EA ε g + (∂U/∂b of the bend at i + ∂U/∂a of that at i + 1)/L
 //! ```
 //!
-//! Every node is computed once, eight at a time, from its neighbours in the registers and without any index. The edge that closes
-//! a ring is computed separately. The forces equal those of the stencils in [`super::curve`] up to rounding; energy and Hessian
-//! come from the stencils.
+//! Every node is computed once, eight nodes at a time. The neighbours of a node are in the registers, so no index is needed.
+//! The edge that closes a ring is computed separately. The forces equal those of the stencils in [`super::curve`] up to
+//! rounding; energy and Hessian come from the stencils.
 
 use crate::vectors::{cross, dot, in_space, inverse};
 use opruga_core::state::{Layout, Parameter, View};
@@ -49,7 +49,7 @@ struct Section<S> {
     retardation: S,
 }
 
-/// The edges on both sides of a node: g and its rate.
+/// The edges on both sides of a node: g of each edge, and its rate.
 #[derive(Clone, Copy)]
 struct Sides<S, const D: usize> {
     before: [S; D],
@@ -58,7 +58,7 @@ struct Sides<S, const D: usize> {
     rate_behind: [S; D],
 }
 
-/// Tension of an edge, EA (ε + τ dε/dt) g, and the power that damping dissipates [W].
+/// The tension of an edge, EA (ε + τ dε/dt) g, and the power that damping dissipates [W].
 #[inline(always)]
 fn tension<S: Lane, const D: usize>(
     g: &[S; D],
@@ -96,7 +96,7 @@ fn bend<S: Lane, const D: usize>(
 ) -> ([[S; D]; 2], S) {
     let (of_a, of_b) = (numbers[SHARE], S::one() - numbers[SHARE]);
     let tangent = lanes!(S, d => of_a * sides.before[d] + of_b * sides.behind[d]);
-    // The squared length of the tangent, and that length times its rate.
+    // The squared length of the tangent, and the length times its rate.
     let (mut square, mut longer) = (S::zero(), S::zero());
     for d in 0..D {
         square += tangent[d] * tangent[d];
@@ -142,7 +142,8 @@ fn bend<S: Lane, const D: usize>(
     let positive = S::zero().less(curvature_square);
     let curvature = S::select(positive, S::select(positive, curvature_square, S::one()).sqrt(), S::zero());
     let per_curvature = inverse(curvature);
-    // If the curve is straight at rest, the force is smooth in the straight state; otherwise it has no direction in that state.
+    // If the curve is straight at rest, the force is smooth in the straight state. If the curve is bent at rest, the force has
+    // no direction in the straight state.
     let curved = S::zero().less(numbers[REST]);
     let mut part = S::one() - S::select(curved, numbers[REST] * per_curvature, S::zero());
     let scale = numbers[PER_MEAN] * per_square;
@@ -267,7 +268,7 @@ impl<P: Pack, const D: usize> Walker<'_, P, D> {
     #[inline(always)]
     fn step<const BATCH: bool, const DAMPED: bool>(&mut self, k: usize, part: usize) -> ([P::Part; D], P::Part) {
         let (next, slot) = if BATCH { (WIDTH, part) } else { (1, 0) };
-        // For bodies side by side nothing follows the padding, in which 1/L is zero.
+        // For bodies side by side, no data follow the padding, in which 1/L is zero.
         let there = if BATCH && k + next > self.end { self.end } else { k + next };
         let mut numbers = [P::Part::zero(); NUMBERS];
         for n in 0..if DAMPED { NUMBERS } else { LENGTH } {

@@ -71,7 +71,7 @@ impl Bend {
         let square = dot(&tangent, &tangent);
         let per_square = inverse(square);
         let normal = cross(&a, &b);
-        // The change of the length of the tangent subtracts a part along the tangent.
+        // The length of the tangent changes too, which subtracts a part along the tangent.
         if D == 2 {
             let length = S::select(S::zero().less(square), square, S::one()).sqrt();
             let scale = p[4] * inverse(length);

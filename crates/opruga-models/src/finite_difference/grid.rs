@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 /// The fraction of a spacing by which the cells of a grid may deviate from equal rectangles.
 ///
-/// If spacings vary from node to node, second-order differences become first-order. Rest positions are in double precision, so a
-/// grid that is meant to be regular is regular to about 1e-12 of a spacing.
+/// If spacings vary from node to node, differences of second order become differences of first order. Rest positions have
+/// double precision, so a regular grid is regular to about 1e-12 of a spacing.
 const DEVIATION: f64 = 1e-6;
 
 /// A body as a grid.
@@ -98,7 +98,7 @@ impl Grid {
         Grid::curve(edges)
     }
 
-    /// Edges that follow each other without branching.
+    /// Makes a curve from edges that follow each other without branching.
     fn curve(edges: Vec<[u32; 2]>) -> Result<Grid, Refusal> {
         let (mut next, mut before) = (BTreeMap::new(), BTreeMap::new());
         for &[a, b] in &edges {
@@ -110,7 +110,8 @@ impl Grid {
         Ok(Grid::Curve { edges, nodes })
     }
 
-    /// Nodes with all four neighbours, and nodes on the edge with both neighbours along it and one inside.
+    /// Finds the nodes with all four neighbours, and the nodes on the edge, each with both neighbours along the edge and one
+    /// inside.
     fn surface(cells: &[[u32; 4]]) -> Result<Grid, Refusal> {
         // The neighbours of every node: backward and forward along both axes.
         let mut around: BTreeMap<u32, [Option<u32>; 4]> = BTreeMap::new();
@@ -131,7 +132,7 @@ impl Grid {
                 [Some(a), Some(b), Some(c), Some(d)] => inner.push([node, a, b, c, d]),
                 [Some(a), Some(b), Some(c), None] | [Some(a), Some(b), None, Some(c)] => edge.push([node, a, b, c]),
                 [Some(c), None, Some(a), Some(b)] | [None, Some(c), Some(a), Some(b)] => edge.push([node, a, b, c]),
-                // A corner has no curvature along either edge.
+                // No curvature is defined at a corner along either edge.
                 _ => {}
             }
         }

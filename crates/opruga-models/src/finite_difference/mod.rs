@@ -10,18 +10,18 @@
 //!
 //! Differences are staggered: strains along an axis are defined on edges, shear strains at the centres of cells (of faces in
 //! space), curvatures at nodes and twists at the centres of cells. So the error falls with the square of the spacing, and no
-//! checkerboard mode has zero energy. The paper puts all differences at nodes, which leaves a checkerboard mode without energy.
+//! checkerboard mode has zero energy. The paper defines all differences at nodes, so that a checkerboard mode has no energy.
 //!
 //! Forces are the exact gradient of the discrete energy. The paper's force (its equation 9) neglects that the normal n in B =
-//! n·x″ rotates with the surface; docs/finite-differences.md reports measurements of the consequences.
+//! n·x″ rotates with the surface. The file docs/finite-differences.md reports the measured consequences.
 //!
-//! A curve in space may also resist a change of its Frenet torsion τ, U = ∫ ½ GJ (τ − τ₀)²: on an edge of length L between two
-//! nodes with a curvature, τ is the angle between their osculating planes over L.
+//! A curve in space may also resist a change of its Frenet torsion τ, U = ∫ ½ GJ (τ − τ₀)². On an edge of length L between two
+//! nodes with a curvature, τ is the angle between the osculating planes of these nodes, divided by L.
 //!
-//! Limits: the Frenet torsion describes the centre line and not the twist of the section. It has no value and no force where a
-//! curve is straight, and its force grows with the inverse of the curvature near that state. A curve with a curvature at rest has
-//! no force where it is exactly straight, because its curvature has no direction there. The St. Venant–Kirchhoff law softens
-//! below 1/√3 of the length. A degenerate tangent plane has no normal and no moment.
+//! Limits: the Frenet torsion describes the centre line and not the twist of the section. Where a curve is straight, its Frenet
+//! torsion has no value and causes no force. Near that state, the force grows with the inverse of the curvature. A curve with a
+//! curvature at rest has no force where it is exactly straight, because its curvature has no direction there. The St.
+//! Venant–Kirchhoff law softens below 1/√3 of the length. A degenerate tangent plane has no normal and no moment.
 
 mod along;
 mod curve;
@@ -124,7 +124,7 @@ impl From<FiniteDifferenceError> for BuildError {
     }
 }
 
-/// The kind `finite_difference`.
+/// The kind of model that scenes name `finite_difference`.
 #[derive(Debug)]
 pub struct FiniteDifferenceModel;
 
@@ -358,7 +358,7 @@ impl<const D: usize> Plan<'_, D> {
             [stiffness, own.damping * stiffness, cosine, sine]
         })))
     }
-    /// B₀ of a node of a curve [1/m].
+    /// The curvature at rest B₀ of a node of a curve [1/m].
     fn rest_curvature(&self, [before, at, after]: [u32; 3], [low, high]: [f64; 2], share: f64) -> f64 {
         let a = minus(&self.at(at), &self.at(before)).map(|c| c / low);
         let b = minus(&self.at(after), &self.at(at)).map(|c| c / high);

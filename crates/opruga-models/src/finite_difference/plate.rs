@@ -7,8 +7,8 @@
 //!         │             n = x₁ × x₂/|x₁ × x₂| by central differences.
 //!         v₋
 //! ```
-//! No moment acts across a free edge, so B across the edge has the value of least energy, which leaves ½ D (1 − ν²) B² for the
-//! curvature along the edge.
+//! No moment acts across a free edge, so the curvature across the edge has the value of least energy. The energy of the
+//! curvature B along the edge is then ½ D (1 − ν²) B².
 
 use crate::vectors::{cross, dot, in_dimension, in_space, minus, scaled};
 use opruga_core::stencil::Kernel;

@@ -1,8 +1,8 @@
 //! Differences in the cells of a grid: Green's strain of its edges and faces.
 //!
-//! Strains along an axis are defined on edges, shear strains at the centres of faces. Where the law multiplies strains of two
-//! axes, it uses their means over the cell. Every edge and every face has its own energy, so no checkerboard of displacements has
-//! zero energy.
+//! Strains along an axis are defined on edges, shear strains at the centres of faces. Where the law multiplies the strains of
+//! two axes, the means of these strains over the cell are used. Every edge and every face has its own energy, so no
+//! checkerboard of displacements has zero energy.
 
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;

@@ -73,7 +73,7 @@ impl<const D: usize> Cells<D> {
         let strain = |i: usize, j: usize| 0.5 * (product(&mean[i], &mean[j]) - if i == j { 1.0 } else { 0.0 });
         let trace: f64 = (0..D).map(|i| strain(i, i)).sum();
         let stress = |i: usize, j: usize| 0.5 * four_mu * strain(i, j) + if i == j { lambda * trace } else { 0.0 };
-        // In plane stress the depth changes. Otherwise it does not, and there is an out-of-plane stress.
+        // In plane stress the depth changes. In plane strain it does not, and there is an out-of-plane stress.
         let poisson = elastic.poissons_ratio;
         let deepened = 1.0 - 2.0 * poisson / (1.0 - poisson) * trace;
         let (deep, across) = match (D, elastic.plane_stress) {

@@ -152,7 +152,8 @@ pub(super) fn inverse<const D: usize>(side: &Matrix<f64, D>) -> (Matrix<f64, D>,
     (out, determinant)
 }
 
-/// The area vectors of the dual faces of all edges [m²], in the plane lengths [m], each from the first node of its edge to the second.
+/// The area vectors of the dual faces of all edges [m²; lengths in the plane, m]. Each points from the first node of its edge
+/// to the second.
 pub(super) fn dual_faces<C: Cell<D, N>, const D: usize, const N: usize>(x: &[[f64; D]; N]) -> Vec<[f64; D]> {
     let center = mean(x, 0..N);
     let face = |(number, &[i, j]): (usize, &[usize; 2])| {
@@ -189,7 +190,7 @@ fn mean<const D: usize, const N: usize>(x: &[[f64; D]; N], of: impl IntoIterator
     sum.map(|s| s / count)
 }
 
-/// The volume that the dual faces enclose with the nodes, by the divergence theorem: (1/D) Σ S·(xⱼ − xᵢ) [m³].
+/// The volume of a cell from its dual faces, by the divergence theorem: (1/D) Σ S·(xⱼ − xᵢ) [m³].
 pub(super) fn volume<C: Cell<D, N>, const D: usize, const N: usize>(x: &[[f64; D]; N], faces: &[[f64; D]]) -> f64 {
     let along = |(&[i, j], face): (&[usize; 2], &[f64; D])| (0..D).map(|d| face[d] * (x[j][d] - x[i][d])).sum::<f64>();
     C::EDGES.iter().zip(faces).map(along).sum::<f64>() / D as f64

@@ -1,12 +1,13 @@
 //! # Finite volumes
 //!
-//! The force on a node is the force of the stress on the part of the body that belongs to the node (Teran, Blemker, Ng-Thow-Hing,
-//! Fedkiw 2003). That part is the dual cell of the node, with faces between the centres of edges, sides and cells. With the area
-//! vectors S of the dual faces at rest,
+//! The force on a node is the force that the stress exerts on the part of the body that belongs to the node (Teran, Blemker,
+//! Ng-Thow-Hing, Fedkiw 2003). That part is the dual cell of the node. Its faces lie between the centres of edges, sides and
+//! cells. With the area vectors S of the dual faces at rest,
 //!
-//! fᵢ = Σ P(F) S,  fⱼ = −Σ P(F) S over the dual faces from i to j,
+//! fᵢ = Σ P(F) S,  fⱼ = −Σ P(F) S over the dual faces from i to j.
 //!
-//! so the net force of each face is exactly zero, and Σ x × f = 0 if P Fᵀ is symmetric and F is the same for all faces of a cell.
+//! The net force of each face is therefore exactly zero, and Σ x × f = 0 if P Fᵀ is symmetric and F is the same for all faces
+//! of a cell.
 //!
 //! | cell | F | energy |
 //! |---|---|---|
@@ -14,13 +15,13 @@
 //! | quadrilateral, hexahedron | at the centre of each dual face | none: the tangent is not symmetric if F differs between faces |
 //!
 //! For triangles and tetrahedra Kₐᵦ = Wₐ · ∂P/∂F · Wᵦ/V. For boxes the tangent is −∂fᵢ/∂x_b = −Σ S · ∂P/∂F · ∇N_b at the centre
-//! of the face: `equilibrium` accepts it, and implicit integrators refuse it with a reason. Materials are those of
+//! of the face. `equilibrium` accepts this tangent, and implicit integrators refuse it with a reason. Materials are those of
 //! [`crate::materials`].
 //!
 //! A constant F is exact on cells of any shape, because the dual faces around an inner node form a closed surface.
 //!
 //! Limits: triangles and tetrahedra lock as linear finite elements do. Boxes that bend conserve angular momentum only
-//! approximately, because F, and with it P Fᵀ, differs between the faces of a cell.
+//! approximately, because F differs between the faces of a cell, and so does P Fᵀ.
 
 mod cell;
 mod cells;
@@ -47,7 +48,7 @@ use opruga_core::spec::Spec;
 use opruga_math::WIDTH;
 use part::{Matter, Part};
 
-/// The kind `finite_volume`.
+/// The kind of model that scenes name `finite_volume`.
 #[derive(Debug)]
 pub struct FiniteVolumeModel;
 

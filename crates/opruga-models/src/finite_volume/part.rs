@@ -1,4 +1,4 @@
-//! Cells of one kind, as a solid uses them.
+//! The interface between a solid and its cells of one kind.
 
 use super::cell::Cell;
 use super::cells::Cells;
@@ -200,7 +200,7 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Part<D> for Cells<C, D, N> {
             }
             for (l, (sum, ratios, smallest)) in sums.iter().enumerate() {
                 let Some((cell, _)) = self.item(pack, l).filter(|(_, of)| *of == body) else { continue };
-                // ∫ P Fᵀ over the rest shape is ∫ σ over the present one. A law of small motions has only one shape.
+                // ∫ P Fᵀ over the rest shape equals ∫ σ over the present shape. A law for small motions has only one shape.
                 let over = if turns { *ratios } else { C::POINTS as f64 };
                 out.push(CellState {
                     cell: (self.first + cell) as u32,

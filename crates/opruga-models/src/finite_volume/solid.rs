@@ -1,4 +1,4 @@
-//! A solid of finite volumes: a potential, or a force with a tangent if there is no potential.
+//! A solid of finite volumes. It has a potential, or only a force with a tangent.
 
 use super::SPEC;
 use super::kernels::Positions;

@@ -5,8 +5,9 @@
 //!
 //! U = ½ k (r − l₀)²,  f_a = −k (r − l₀) d/r − c (ḋ·d/r) d/r,  f_b = −f_a,
 //!
-//! ∂²U/∂x_a∂x_a = k (n nᵀ + (1 − l₀/r)(1 − n nᵀ)), n = d/r. A compressed spring has a negative eigenvalue across its axis, which
-//! the clamped Hessian omits. −∂f_a/∂v_a = c n nᵀ. Springs resist neither bending nor a change of enclosed area.
+//! ∂²U/∂x_a∂x_a = k (n nᵀ + (1 − l₀/r)(1 − n nᵀ)), n = d/r. A compressed spring has a negative eigenvalue across its axis,
+//! which the clamped Hessian omits. The damping matrix is −∂f_a/∂v_a = c n nᵀ. Springs resist neither bending nor a change of
+//! enclosed area.
 
 mod law;
 mod refusals;
@@ -26,7 +27,7 @@ use opruga_core::tile::Tile;
 use opruga_math::{Pack, Simd, WIDTH, Work};
 use opruga_mesh::EdgeSet;
 
-/// The kind `mass_spring`.
+/// The kind of model that scenes name `mass_spring`.
 #[derive(Debug)]
 pub struct MassSpring;
 

@@ -15,7 +15,7 @@ use opruga_math::rotation::nearest_rotation;
 #[derive(Clone, Copy, Debug)]
 pub struct Corotated;
 
-/// The smallest σᵢ + σⱼ that is used as a divisor: the rotation is undefined if it is zero.
+/// The smallest σᵢ + σⱼ that is used as a divisor. If this sum is zero, the rotation is undefined.
 const LEAST_SUM: f64 = 1e-9;
 
 /// The second derivatives of μ Σ(σᵢ − 1)² in principal stretches.

@@ -2,12 +2,12 @@
 //!
 //! If a point has expanded by the factor g = 1 + α ΔT in every direction, the law applies to the remaining, elastic deformation:
 //!
-//! F = g F_e,  ψ_T(F) = g³ ψ(F/g),  P = g² P_e,  ∂P/∂F = g ∂P_e/∂F_e:
+//! F = g F_e,  ψ_T(F) = g³ ψ(F/g),  P = g² P_e,  ∂P/∂F = g ∂P_e/∂F_e.
 //!
-//! g³ is the ratio of the volume of the unconstrained heated body to that at rest, to which ψ refers. The law of small strain
-//! subtracts the thermal strain instead, ψ_T = ψ(ε − αΔT 1), which is g² ψ(F/g) with that law. Both forms hold in space and for
-//! a plate, whose thickness is free to change. In plane strain nothing moves out of the plane, so the elastic stretch in that
-//! direction is 1/g, and the law in space is evaluated.
+//! g³ is the volume of the unconstrained heated body divided by the volume at rest, to which ψ refers. The law of small strain
+//! subtracts the thermal strain instead, ψ_T = ψ(ε − αΔT 1). This equals g² ψ(F/g) with that law. Both forms hold in space and
+//! for a plate, whose thickness is free to change. In plane strain nothing moves out of the plane, so the elastic stretch in
+//! that direction is 1/g, and the law in space is evaluated.
 //!
 //! # Source
 //! Vujošević, Lubarda, "Finite-strain thermoelasticity based on multiplicative decomposition of deformation gradient",

@@ -11,7 +11,7 @@ use core::fmt::Debug;
 use opruga_core::potential::Definiteness;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work};
 
-/// A material as elements use it.
+/// The interface of a material for elements.
 pub(crate) trait Law<const D: usize>: Send + Sync + Debug {
     /// Computes energy densities (one pack per pack of points) and stresses (D² packs).
     fn stress(&self, simd: Simd, points: Points<'_>, energy: &mut [f64], stress: &mut [f64]);
@@ -29,7 +29,7 @@ pub(crate) trait Law<const D: usize>: Send + Sync + Debug {
     }
     /// Whether the law accounts for rotations.
     fn turns(&self) -> bool;
-    /// Whether its energy at rest is a difference of parts as large as the moduli.
+    /// Whether the energy at rest is a difference of terms as large as the moduli.
     fn cancels(&self) -> bool;
 }
 
@@ -134,7 +134,7 @@ impl<M: Material<D>, const D: usize> Work for Tangents<'_, M, D> {
     }
 }
 
-/// Computes the data of the tangent by invariants; returns whether the material has them.
+/// Computes the derivatives by invariants, from which the tangent follows; returns whether the material has them.
 struct ByInvariants<'a, M, const D: usize> {
     points: Points<'a>,
     out: &'a mut [f64],

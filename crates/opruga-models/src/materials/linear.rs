@@ -40,7 +40,7 @@ impl<const D: usize> Material<D> for Linear {
         }
         out
     }
-    /// The result is the same for every F and in every frame.
+    /// The second derivatives are the same for every F and in every frame.
     #[inline(always)]
     fn principal<S: Lane>(p: &Parameters<S>, _f: &Matrix<S, D>, _sigma: &[S; D]) -> Principal<S, D> {
         let mut principal = Principal::zeros();

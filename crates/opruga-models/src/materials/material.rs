@@ -35,7 +35,8 @@ pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>);
     /// The second derivatives by the principal stretches σ of F: ∂P/∂F in the frame of its singular vectors [Pa].
     fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>, sigma: &[S; D]) -> Principal<S, D>;
-    /// The derivatives by tr FᵀF and det F, for a law that depends on nothing else. They are all that its tangent needs.
+    /// The derivatives by tr FᵀF and det F, for a law that depends on nothing else. Its tangent follows from these derivatives
+    /// alone.
     #[inline(always)]
     fn invariants<S: Lane>(_p: &Parameters<S>, _f: &Matrix<S, D>) -> Option<Invariants<S>> {
         None
@@ -98,7 +99,7 @@ pub struct Principal<S, const D: usize> {
 }
 
 impl<S: Lane, const D: usize> Principal<S, D> {
-    /// Zeros in every entry.
+    /// Returns second derivatives that are all zero.
     #[inline(always)]
     pub fn zeros() -> Self {
         Principal { second: matrix::zeros(), difference: matrix::zeros(), sum: matrix::zeros() }
@@ -140,7 +141,7 @@ impl<S: Lane, const D: usize> Principal<S, D> {
         }
     }
 
-    /// These derivatives without negative eigenvalues.
+    /// Returns these derivatives without negative eigenvalues.
     #[inline(always)]
     pub fn clamped(&self) -> Self {
         let mut own = *self;
@@ -304,8 +305,8 @@ pub(crate) fn add_cofactor_derivative<S: Lane, const D: usize>(to: &mut Tangent<
     }
 }
 
-/// Adds the tangent of a stress F·S with S = 2μE + λ tr E 1, except the term with S itself: μ ((F Fᵀ)ᵢₖ δⱼₗ + Fᵢₗ Fₖⱼ) + λ Fᵢⱼ
-/// Fₖₗ.
+/// Adds the tangent of a stress F·S with S = 2μE + λ tr E 1, without the term that contains S itself: μ ((F Fᵀ)ᵢₖ δⱼₗ + Fᵢₗ
+/// Fₖⱼ) + λ Fᵢⱼ Fₖₗ.
 #[inline(always)]
 pub(crate) fn add_strain_tangent<S: Lane, const D: usize>(to: &mut Tangent<S, D>, mu: S, lambda: S, f: &Matrix<S, D>) {
     let left = matrix::product_transposed(f, f);

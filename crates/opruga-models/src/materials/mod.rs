@@ -2,9 +2,9 @@
 //!
 //! Functions of the deformation gradient F, one file each, for every model of a solid: [`Linear`], [`StVenantKirchhoff`],
 //! [`Corotated`], [`FixedCorotated`], [`NeoHookean`], [`StableNeoHookean`], [`MooneyRivlin`]. Each has an energy density ψ(F),
-//! P = ∂ψ/∂F and ∂P/∂F, in space and in plane strain. Plane stress derives a law in the plane from the law in space: at every
-//! point the thickness has the stretch for which the out-of-plane stress is zero, and this stretch is condensed out of the
-//! tangent. Thermal expansion applies any of these laws to F/g (file `heat`).
+//! P = ∂ψ/∂F and ∂P/∂F, in space and in plane strain. In plane stress, a law in the plane is derived from the law in space. At
+//! every point the thickness has the stretch for which the out-of-plane stress is zero, and this stretch is condensed out of
+//! the tangent. Thermal expansion applies any of these laws to F/g (file `heat`).
 //!
 //! Clamped tangents come from the analytic eigensystem of isotropic energies ([`material::Principal`]; Smith et al. 2019).
 
@@ -43,7 +43,7 @@ use plane_stress::PlaneStress;
 /// An entry of the list of materials: its name and its laws.
 pub(crate) struct Entry {
     pub(crate) name: &'static str,
-    /// At the reference temperature.
+    /// The laws if all points are at the reference temperature.
     pub(crate) cold: Laws,
     /// The laws if the temperature of any point may differ from the reference.
     pub(crate) heated: Laws,

@@ -4,7 +4,7 @@ use super::Refusal;
 use opruga_core::error::BuildError;
 use opruga_core::spec::Values;
 
-/// μ and λ [Pa] of Young's modulus [Pa] and Poisson's ratio.
+/// Returns μ and λ [Pa] for Young's modulus [Pa] and Poisson's ratio.
 pub(crate) fn lame(modulus: f64, ratio: f64) -> [f64; 2] {
     [modulus / (2.0 * (1.0 + ratio)), modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio))]
 }

@@ -1,5 +1,5 @@
-//! Data at points of elements in packs: deformation gradients, parameters, tangents, and functions that read and write a part of
-//! a pack.
+//! Data at points of elements, in packs: deformation gradients, parameters and tangents. Functions read and write a part of a
+//! pack.
 
 use super::material::{Parameters, Tangent};
 use opruga_math::matrix::Matrix;
@@ -30,7 +30,8 @@ pub(crate) struct Points<'a> {
 pub(crate) const INVARIANTS: usize = 4;
 
 /// The number of matrices of a tangent in the frame of the singular vectors: U, V, the second derivatives by stretches, and for
-/// pairs of axes the components of the tangent times u_a v_bᵀ (a < b): along itself at [a][b], along u_b v_aᵀ at [b][a].
+/// pairs of axes a < b the components of the tangent times u_a v_bᵀ. The component along u_a v_bᵀ is at [a][b], and the one
+/// along u_b v_aᵀ at [b][a].
 pub(crate) const PRINCIPAL: usize = 4;
 
 /// Reads the parameters and F of a part of a pack of points.

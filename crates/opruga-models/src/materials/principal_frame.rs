@@ -15,11 +15,11 @@ use opruga_math::matrix::{self, Matrix};
 use opruga_math::singular::singular;
 use opruga_math::{Lane, Pack, Register, Twin, WIDTH, Work};
 
-/// The packs and parts of two registers. Two are processed at a time, because the computation of singular vectors and eigenvalues
-/// waits for square roots and divisions.
+/// The packs and parts of two registers. Two registers are processed at a time, because the computation of singular vectors and
+/// eigenvalues waits for square roots and divisions.
 type Two = [(usize, usize); 2];
 
-/// Two registers of `parts` from `first` on; if their number is odd, the last one is repeated.
+/// Two registers of `parts` from `first` on. If the number of registers is odd, the last one is repeated.
 #[inline(always)]
 fn two<P: Pack>(first: usize, parts: usize) -> Two {
     let second = (first + 1).min(parts - 1);

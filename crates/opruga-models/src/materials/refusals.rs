@@ -28,7 +28,7 @@ messages! {
         #[error("`poissons_ratio` is {ratio}, for which `mooney_rivlin` is not convex with any `mooney_share`")] #[value("{ratio}")] #[parameters("poissons_ratio", "mooney_share")]
         #[allowed("at least {least}, so that {share} <= ν/(1 − 2ν)")] #[hint("a smaller `mooney_share` allows a smaller `poissons_ratio`, down to 0")]
         NeverConvex { ratio: f64, least: String, share: String },
-        /// A second constant of Mooney–Rivlin that is too large.
+        /// A second constant of Mooney–Rivlin that is too large for Poisson's ratio.
         "model.not_convex" #[error("`mooney_share` is {share}, for which the law is not convex with `poissons_ratio` = {ratio}")] #[value("{share}")] #[parameters("mooney_share", "poissons_ratio")]
         #[allowed("at most {most} = ν/(1 − 2ν)")] #[hint("a larger `poissons_ratio` allows a larger `mooney_share`")]
         NotConvex { share: f64, ratio: f64, most: String },

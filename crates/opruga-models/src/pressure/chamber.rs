@@ -11,7 +11,7 @@ use opruga_mesh::Adjacency;
 /// A closed boundary.
 #[derive(Debug)]
 pub(super) enum Boundary {
-    /// Oriented edges in the plane, interior to the left.
+    /// Oriented edges in the plane, with the interior to their left.
     Plane(PairTable),
     /// The ring of neighbours of every node of a triangulated surface, counter-clockwise when seen from outside.
     Space(NodeRings),
@@ -25,7 +25,7 @@ pub(super) struct NodeRings {
     pub(super) width: usize,
     /// The length of the longest ring of each pack of nodes; the slots after it are not used.
     pub(super) widths: Vec<u32>,
-    /// `[node / 8][slot][node % 8]`; a shorter ring repeats its first neighbour, which adds nothing.
+    /// `[node / 8][slot][node % 8]`; a shorter ring repeats its first neighbour, which contributes nothing to the sums.
     pub(super) neighbour: Vec<u32>,
     /// `[node / 8][slot]`: whether the eight neighbours are consecutive, so that they can be read at once.
     pub(super) together: Vec<bool>,
@@ -87,7 +87,7 @@ impl<P: Pack, const D: usize> PairTerm<P, D> for TwiceArea<'_, P, D> {
     }
 }
 
-/// Loads one number of each body. For one body a single number is read, because reading eight numbers that have just been
+/// Loads one number of each body. For one body a single number is read, because a register load of eight numbers that were just
 /// written one by one would stall.
 #[inline(always)]
 fn of_bodies<P: Pack>(layout: Layout, numbers: &[f64]) -> P {
@@ -120,7 +120,7 @@ impl<const D: usize> Work for Push<'_, '_, D> {
     }
 }
 
-/// The position that each body subtracts, so that no digits are lost far from the origin: that of the first node.
+/// The position of the first node of each body. It is subtracted, so that no digits are lost far from the origin.
 #[inline(always)]
 fn origin<P: Pack, const D: usize>(view: &View<D>) -> [P; D] {
     match view.layout {

@@ -49,7 +49,7 @@ const CAP: [Term; 20] = [
     ([3, 4, 5], 16.0 / 15.0),
 ];
 
-/// The nodes of a side by their index in it, and the weight of their product.
+/// The indices of nodes in a side, and the weight of the product of these nodes.
 type Term = ([usize; 3], f64);
 
 /// Facets by the indices of their nodes in a side.
@@ -79,7 +79,8 @@ fn face_alike<const D: usize>(one: &[u32; D], other: &[u32; D]) -> bool {
 }
 
 impl CurvedSides {
-    /// Finds the curved sides of a chamber: those of `sides` whose pieces are among its facets. None if there are none.
+    /// Finds the curved sides of a chamber: those of `sides` whose pieces are among its facets. None if the chamber has no
+    /// curved sides.
     pub(super) fn of<const D: usize>(facets: &[[u32; D]], sides: &[Vec<u32>]) -> Option<CurvedSides> {
         let mut left: BTreeMap<[u32; D], [u32; D]> = facets.iter().map(|facet| (ascending(facet), *facet)).collect();
         let mut terms = Vec::new();
@@ -229,7 +230,7 @@ mod tests {
             |node, by| (0..3).for_each(|d| push[node as usize][d] += by[d]),
         );
         assert!((volume - 1.0).abs() < 1e-14, "{volume}");
-        // Each midpoint of a triangle gets a third of its area, and corners get nothing.
+        // Each midpoint of a side of a triangle gets a third of the area of the triangle, and corners get nothing.
         let mut expected = vec![0.0; all.len()];
         for side in list.iter().filter(|side| side.iter().all(|n| mesh.positions[*n as usize][0] == 1.0)) {
             side[3..].iter().for_each(|middle| expected[*middle as usize] += 0.5 / 3.0);
@@ -257,7 +258,8 @@ mod tests {
         }
     }
 
-    /// A tetrahedron with curved faces encloses the integral of its determinant, and ∂V/∂x is the derivative of that.
+    /// The volume of a tetrahedron with curved faces is the integral of its Jacobian determinant, and ∂V/∂x is the derivative
+    /// of that volume.
     #[test]
     fn curved_sides_enclose_the_volume_of_their_cell() {
         let mut mesh = Mesh::<3> {

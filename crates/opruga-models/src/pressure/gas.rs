@@ -3,10 +3,10 @@
 use opruga_core::spec::Values;
 use opruga_math::Lane;
 
-/// The default of the fraction of the rest volume below which the pressure no longer rises. At this volume, the pressure is
-/// fifty times that at rest. With a thousandth instead, a ball that was thrown or shaken hard enough to be flattened gained
-/// energy without bound, even with steps far below the stable step, because the steps jumped across the narrow range of high
-/// pressure.
+/// The default of `smallest_volume`. Below this fraction of the rest volume the pressure no longer rises. At this volume, the
+/// pressure is fifty times that at rest. With a thousandth instead, a ball that was thrown or shaken hard enough to be
+/// flattened gained energy without bound, even with steps far below the stable step, because the steps jumped across the narrow
+/// range of high pressure.
 pub(super) const SMALLEST_VOLUME: f64 = 0.02;
 
 /// How the temperature of the gas behaves.
@@ -83,7 +83,7 @@ impl Gas {
     /// nRT₀ that has entered up to a time, minus the amount that has been lost [J].
     pub(super) fn cold_at(&self, time: f64, lost: f64) -> f64 {
         let ramp = if self.ramp > 0.0 { (time / self.ramp).larger(0.0).smaller(1.0) } else { 1.0 };
-        // If a ramp is lengthened while it lasts, less may have entered than was lost.
+        // If a ramp is lengthened while it lasts, less gas may have entered than was lost.
         (self.amount * ramp - lost).larger(0.0)
     }
     /// T/T₀ at a time.
@@ -97,9 +97,10 @@ impl Gas {
     pub(super) fn amount_at(&self, time: f64, lost: f64) -> f64 {
         self.cold_at(time, lost) * self.warmth(time)
     }
-    /// The remaining nRT₀ [J] after leaking for h [s] at constant volume.
+    /// The nRT₀ [J] that remains after a leak of h [s] at constant volume.
     ///
-    /// With dP/dt = −λ (P − P_a), P becomes P_a + (P − P_a) e^(−λh) for any λh, and the gas changes in proportion.
+    /// With dP/dt = −λ (P − P_a), P becomes P_a + (P − P_a) e^(−λh) for any λh, and the amount of gas changes in proportion to
+    /// P.
     pub(super) fn after_leak(&self, cold: f64, warmth: f64, volume: f64, h: f64) -> f64 {
         if self.leak <= 0.0 || warmth <= 0.0 {
             return cold;
@@ -110,7 +111,7 @@ impl Gas {
         if pressure > 0.0 {
             return cold * (after / pressure);
         }
-        // For an empty chamber: the amount of gas that has unit pressure.
+        // If the chamber is empty, this is the amount of gas that has unit pressure.
         let v = volume.larger(self.smallest_volume * self.rest_volume);
         let unit = match self.process {
             Process::Isothermal => v,
@@ -134,8 +135,8 @@ impl Gas {
     /// The state at a volume V for this nRT (at the rest volume).
     ///
     /// Below the volume V_s (a fraction of the rest volume, or the volume at which the largest pressure is reached) the
-    /// pressure stays P(V_s), and the energy continues along its tangent, also at zero volume and for inverted bodies. U is a
-    /// function of V with a continuous slope, so no energy is created, and the force still inflates the body.
+    /// pressure stays P(V_s), and the energy continues along its tangent. This also holds at zero volume and for inverted
+    /// bodies. U is a function of V with a continuous slope, so no energy is created, and the force still inflates the body.
     pub(super) fn at(&self, volume: f64, amount: f64) -> GasState {
         let v0 = self.rest_volume;
         let mut least = self.smallest_volume * v0;
@@ -161,8 +162,8 @@ impl Gas {
             limited,
         }
     }
-    /// The pressure at a volume, and whether it is limited. This is all that a step needs; a gas of constant temperature takes no
-    /// logarithms.
+    /// The pressure at a volume, and whether it is limited. A step needs no more than this. For a gas of constant temperature
+    /// no logarithm is computed.
     pub(super) fn pressure_at(&self, volume: f64, amount: f64) -> (f64, bool) {
         if self.process == Process::Isothermal {
             let mut least = self.smallest_volume * self.rest_volume;

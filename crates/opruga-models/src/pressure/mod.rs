@@ -35,7 +35,7 @@ use opruga_core::tile::Tile;
 use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
 use opruga_mesh::{Mesh, MeshError};
 
-/// The kind `pressure`.
+/// The kind of model that scenes name `pressure`.
 #[derive(Debug)]
 pub struct PressureModel;
 
@@ -68,7 +68,7 @@ const NUMBERS: usize = 4 * WIDTH;
 /// chamber enclosed no volume, and the full nRT₀ [J] to which the loss refers.
 const MEMORY: usize = 4 * WIDTH;
 
-/// The loss of a gas since it was filled [J], from the memory of its chamber; zero if the scene has set another amount since.
+/// The loss of a gas since it was filled [J], from the memory of its chamber; zero if the scene has since set another amount.
 fn lost(gas: &Gas, memory: &[f64], body: usize) -> f64 {
     if memory[3 * WIDTH + body] == gas.amount { memory[body] } else { 0.0 }
 }
@@ -116,7 +116,7 @@ impl<const D: usize> Model<D> for PressureModel {
                 Boundary::Plane(PairTable::new(ingredients.layout, nodes, &edges, false))
             } else {
                 let triangles: Vec<[u32; 3]> = facets.iter().map(|f| [f[0], f[1], f[D - 1]]).collect();
-                // Only the surface of this chamber, so that nodes of other chambers have an empty ring.
+                // The mesh contains only the surface of this chamber, so nodes of other chambers have an empty ring.
                 let skin = Mesh::<3> {
                     positions: mesh.positions.iter().map(|p| [p[0], p[1], p[D - 1]]).collect(),
                     facets: triangles.clone(),

@@ -1,4 +1,4 @@
-//! Second derivatives of shape matching: a diagonal and terms of rank one.
+//! Second derivatives of shape matching: a diagonal and terms of rank one. The symbols are those of [`super`].
 //!
 //! For a cluster with the mass M, δ²U = κ (Σ m |δx|² − M |δx̄|² − (1 − β) aᵀ G⁻¹ a − β Σₖ |δcₖ|²), where a = Σ m Rᵀ(R q × δx)
 //! measures the rotation in δx, and G = (tr S) 1 − S with S = Rᵀ A determines how fast R follows.
@@ -114,8 +114,8 @@ impl<const D: usize> Matching<D> {
     }
 }
 
-/// G⁻¹ as Σ w e eᵀ, in the frame of the rest shape. With the inertia I of the cluster at rest, the corresponding part of the
-/// Hessian has no negative eigenvalue if G ⪰ I; the eigenvalues of I^(−½) G I^(−½) show where that fails.
+/// G⁻¹ as Σ w e eᵀ, in the frame of the rest shape. Let I be the inertia of the cluster at rest. The corresponding part of the
+/// Hessian has no negative eigenvalue if G ⪰ I. The eigenvalues of I^(−½) G I^(−½) show about which axes this is not so.
 fn rotations<const D: usize>(
     frame: &[[f64; D]; D],
     stretch: &[[f64; D]; D],
@@ -158,7 +158,7 @@ fn rotations<const D: usize>(
             }
         }
         let ratio = clamped(ratios[k]);
-        // An axis about which nothing rotates contributes nothing.
+        // An axis without inertia contributes nothing.
         if ratio > UNDETERMINED && axis.iter().any(|x| *x != 0.0) {
             out.push((axis, 1.0 / ratio));
         }

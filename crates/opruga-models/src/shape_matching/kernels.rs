@@ -14,7 +14,8 @@ use opruga_math::{Pack, WIDTH, Work, lanes};
 pub(super) struct Stored {
     /// The length of a column.
     pub(super) stride: usize,
-    /// The first columns of the goals Gₖ, of the moments cₖ = Σ m p φₖ and of the rotation R; the centres come first.
+    /// The first columns of the goals Gₖ, of the moments cₖ = Σ m p φₖ and of the rotation R. The columns of the centres
+    /// precede them.
     pub(super) goal: usize,
     pub(super) moments: usize,
     pub(super) rotation: usize,
@@ -34,7 +35,7 @@ impl Stored {
         let slots = if clusters.is_whole { 0 } else { clusters.slots() * clusters.layout.stride() };
         self.forces + D * slots + WIDTH
     }
-    /// Loads a number of a cluster: for one body, the same number eight times; for eight bodies, the number of each.
+    /// Loads a number of a cluster: for one body, the same number eight times; for eight bodies, the number of each body.
     #[inline(always)]
     fn spread<P: Pack>(&self, layout: Layout, scratch: &[f64], column: usize, cluster: usize) -> P {
         match layout {
@@ -134,7 +135,7 @@ impl<const D: usize, const K: usize> Work for Moments<'_, D, K> {
                     }
                 }
                 Layout::Batch => {
-                    // The partial sums that one body has in eight lanes, here one after the other.
+                    // One body has these partial sums in eight lanes. Here they are computed one after the other.
                     let from: [P; D] = load(&view.x, index);
                     let mut firsts = [[P::zero(); WIDTH]; D];
                     let mut all = [[[P::zero(); WIDTH]; K]; D];

@@ -1,4 +1,5 @@
-//! The memory layout of the clusters of a body, or of eight bodies side by side.
+//! The memory layout of the clusters of a body, or of eight bodies side by side. The symbols φₖ and L are those of the file
+//! `shape`.
 //!
 //! A *slot* is a node in a cluster. The slots of a cluster are consecutive and fill whole packs; slots without a node have no
 //! mass. The data of slots and clusters have the layout of the columns of nodes ([`Layout::index`]), so that one body and eight

@@ -11,19 +11,20 @@
 //! f = −κ m (p − (1 − β) R q − β T q̃),  Σ f = 0,  Σ x × f = 0.
 //!
 //! R is the rotation nearest to A = Σ m p qᵀ, with det R = 1 even if the cluster is inverted. T comes from columns φₖ that are
-//! orthonormal with respect to the masses (Σ m φₖ φₗ = δₖₗ): T q̃ = Σ cₖ φₖ with cₖ = Σ m p φₖ, so no matrix is inverted. Columns
-//! that are linearly dependent on the nodes (lines, planes, few nodes) are left out, and those directions stay free.
+//! orthonormal with respect to the masses (Σ m φₖ φₗ = δₖₗ): T q̃ = Σ cₖ φₖ with cₖ = Σ m p φₖ, so no matrix is inverted. If
+//! the nodes of a cluster lie on a line or a plane, or are few, some columns are linearly dependent. Such columns are left out,
+//! and their directions stay free.
 //!
 //! **Hessian** (file `hessian`): κ m on the diagonal, minus terms of rank one: translations, rotations with 1/(σᵢ + σⱼ) of A, and
 //! the D columns cₖ with κβ. A compressed cluster has negative eigenvalues along rotations (σᵢ + σⱼ less than at rest); the
 //! clamped Hessian has none.
 //!
 //! **Frequencies** at rest, if the masses in U are those of the nodes: 0 for rigid motion, √((1 − β)κ) for strains that T
-//! follows, √κ for all else.
+//! follows, √κ for all other motions.
 //!
-//! **As published**, T is divided by the D-th root of det T (of the linear fit), and κ may be α/h². That force has no potential:
-//! only explicit integrators accept it, and its power counts as external work. If det T is not positive, R replaces T. The
-//! paper's quadratic fit keeps its translation; here its columns are centred, so that no momentum arises.
+//! **As published**, T is divided by the D-th root of det T (of the linear fit), and κ may be α/h². That force has no
+//! potential: only explicit integrators accept it, and its power counts as external work. If det T is not positive, R replaces
+//! T. The columns of the paper's quadratic fit are not centred. Here they are, so that no momentum arises.
 //!
 //! Limits: κ is not the stiffness of a material, and refining a body does not change its stiffness. R is not unique if the two
 //! smallest σ are opposite; the singular vectors then determine the choice.
@@ -57,7 +58,7 @@ use opruga_math::{Pack, Simd, WIDTH, Work};
 use piece_kernels::{PieceForces, PieceMaps, PieceMoments};
 use pieces::Pieces;
 
-/// The kind `shape_matching`.
+/// The kind of model that scenes name `shape_matching`.
 #[derive(Debug)]
 pub struct ShapeMatchingModel;
 
@@ -83,7 +84,7 @@ impl<const D: usize> Model<D> for ShapeMatchingModel {
         true
     }
     fn need(&self, counts: &Counts) -> Need {
-        // This is the need of a body that is one cluster: masses and columns. With boxes, a node is in 2ᴰ clusters.
+        // A body that is one cluster needs this memory for masses and columns. With boxes, a node is in 2ᴰ clusters.
         Need { bytes: 150.0 * counts.nodes, couplings: 0.0 }
     }
     fn build(&self, ingredients: &Ingredients<D>) -> Result<Box<dyn Potential<D>>, BuildError> {

@@ -1,7 +1,8 @@
-//! Moments of pieces, their sums in clusters, and sums of the clusters' maps, for every set of vector instructions.
+//! Moments of pieces, their sums in clusters, and sums of the clusters' maps, for every set of vector instructions. The symbols
+//! are those of the file `pieces`.
 //!
-//! For one body the data of a piece or a cluster are rows, `[coordinate][1, Q₁, Q₂, Q₃]`, with two coordinates in a pack, so that
-//! sums need no gathering. For eight bodies every number is a pack. Both add in the same order.
+//! For one body the data of a piece or a cluster are rows, `[coordinate][1, Q₁, Q₂, Q₃]`, with two coordinates in a pack, so
+//! that sums do not gather numbers from several places. For eight bodies every number is a pack. Both add in the same order.
 
 use super::kernels::{Law, Stored};
 use super::layout::Clusters;
@@ -187,8 +188,8 @@ fn of_pieces_side_by_side<P: Pack, const D: usize>(pieces: &Pieces<D>, view: &Vi
     }
 }
 
-/// Computes the maps of all clusters, t + H Q with H = G C, and for every piece their sum over its clusters times its share;
-/// finally x̄.
+/// Computes the maps of all clusters, t + H Q with H = G C. For every piece, sums the maps of its clusters and multiplies the
+/// sum by the share of the piece. Finally computes x̄.
 pub(super) struct PieceMaps<'a, const D: usize> {
     pub(super) clusters: &'a Clusters<D>,
     pub(super) pieces: &'a Pieces<D>,

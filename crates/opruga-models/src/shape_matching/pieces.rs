@@ -7,10 +7,10 @@
 //! nodes ──moments──▶ pieces ──sums──▶ clusters: R, T ──maps t + H Q──▶ pieces, summed ──▶ nodes
 //! ```
 //!
-//! So a node is read and written once, however many clusters it is in. u = x − x₀ and Q = X − X₀ are relative to one node in
-//! the middle of the body for all clusters, so that their sums can be shared. This loses digits: the rounding error grows with
-//! the square of the ratio of the size of the body to that of its smallest cluster. Beyond [`MOST_DIGITS_LOST`] the clusters
-//! are evaluated slot by slot.
+//! So a node is read and written once, however many clusters it is in. For all clusters, u = x − x₀ and Q = X − X₀ are relative
+//! to one node in the middle of the body, so that the clusters can share the sums. This loses digits. The rounding error grows
+//! with the square of the size of the body divided by the size of its smallest cluster. Beyond [`MOST_DIGITS_LOST`] the
+//! clusters are evaluated slot by slot.
 
 use super::layout::Clusters;
 use opruga_core::potential::Ingredients;
@@ -21,7 +21,8 @@ use std::collections::BTreeMap;
 /// The numbers of an affine map of one coordinate: a constant and up to three slopes.
 pub(super) const MAP: usize = opruga_math::ROW;
 
-/// The largest (size of the body / size of the cluster)². Forces keep twelve digits, as the tests of forces require.
+/// The largest allowed (size of the body / size of the cluster)². With this value, forces keep twelve digits, as the tests of
+/// forces require.
 const MOST_DIGITS_LOST: f64 = 1e4;
 
 /// The pieces of one body, or of eight identical ones.
@@ -32,7 +33,7 @@ pub(super) struct Pieces<const D: usize> {
     /// The nodes of each piece, one piece after the other, and the start of each.
     pub(super) nodes: Vec<u32>,
     pub(super) start: Vec<u32>,
-    /// One over the number of clusters that a piece is in.
+    /// One over the number of clusters that contain a piece.
     pub(super) share: Vec<f64>,
     /// For one body: the first row of the piece of each node, in rows of [`MAP`] numbers; filled up to whole packs.
     pub(super) row_of: Vec<u32>,

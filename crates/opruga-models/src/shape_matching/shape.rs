@@ -1,4 +1,5 @@
-//! A cluster at rest: columns that are orthonormal with respect to its masses, as many as its nodes can distinguish.
+//! A cluster at rest: columns that are orthonormal with respect to its masses. It has as many columns as are linearly
+//! independent on its nodes.
 
 use opruga_math::Lane;
 
@@ -38,7 +39,7 @@ impl<const D: usize> Shape<D> {
         let mut raw = linear.clone();
         if quadratic {
             let products = (0..D).map(|d| (d, d)).chain((0..D).flat_map(|a| (a + 1..D).map(move |b| (a, b))));
-            // Products in units of the radius of the cluster, so that all columns have the same magnitude.
+            // Products are computed in units of the radius of the cluster, so that all columns have the same magnitude.
             for (a, b) in products {
                 let product = linear[a].iter().zip(&linear[b]).map(|(x, y)| x * y / radius).collect();
                 raw.push(if radius > 0.0 { centered(product) } else { vec![0.0; positions.len()] });

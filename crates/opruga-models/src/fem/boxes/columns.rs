@@ -1,5 +1,5 @@
-//! Second derivatives of quadrilaterals and hexahedra: converts derivatives by F and β to derivatives by the columns of F and
-//! g.
+//! Second derivatives of quadrilaterals and hexahedra. Converts derivatives by F and β to derivatives by the columns of F and g
+//! (see [`super`]).
 
 use super::super::elements::Shape;
 use super::hourglass::{MOST_MODES, MOST_STRESSES, modes};
@@ -18,7 +18,7 @@ const AMPLITUDES: usize = MOST_MODES * 3;
 pub(super) struct ByColumns<R, const D: usize, const N: usize>(pub(super) [[[[R; N]; N]; D]; D]);
 
 impl<R: Lane, const D: usize, const N: usize> ByColumns<R, D, N> {
-    /// Adds a derivative by two different columns.
+    /// Adds a second derivative by two different columns.
     #[inline(always)]
     fn add(&mut self, [i, c]: [usize; 2], [m, d]: [usize; 2], value: R) {
         if i <= m {
@@ -64,7 +64,7 @@ impl<R: Lane, const D: usize, const N: usize> ByColumns<R, D, N> {
         change: &[Matrix<R, D>; AMPLITUDES],
     ) {
         let (count, size, cofactors) = (modes::<D, N>(), modes::<D, N>() * D, &frame.cofactors);
-        // By F and q, including everything that depends on F.
+        // The derivatives by F and q, including all terms that depend on F.
         let mut whole = by_q.fq;
         for k in 0..size {
             for l in 0..size {
@@ -237,8 +237,9 @@ fn change_of_amplitudes<R: Lane, const D: usize, const N: usize>(
     change
 }
 
-/// Adds the second derivatives of q under the forces u on q: those of φ(J) N : cof F with N = Σ gₐ ⊗ uₐ. Also adds those of the
-/// guard energy ½ (1 − s) Σ kₐ gₐ·gₐ, which replaces the law in a degenerate cell, except those by g alone.
+/// Adds the second derivatives of q under the forces u on q, which are those of φ(J) N : cof F with N = Σ gₐ ⊗ uₐ. Also adds
+/// the second derivatives of the guard energy ½ (1 − s) Σ kₐ gₐ·gₐ, except those by g alone. The guard energy replaces the law
+/// in a degenerate cell.
 #[inline(always)]
 fn add_bent_frame<R: Lane, const D: usize, const N: usize>(
     kept: &Kept<R, D>,

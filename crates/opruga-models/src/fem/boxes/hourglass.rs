@@ -1,15 +1,15 @@
 //! How quadrilaterals and hexahedra resist the motions that do not change their mean deformation.
 //!
 //! The displacement of a cell with N corners is affine except for N − 1 − D *hourglass* modes. Their amplitudes gₐ = Σ xₐ γₐ
-//! belong to vectors γ orthogonal to all affine fields (Flanagan and Belytschko 1981). At small strain, their strain is that of
-//! an assumed stress. It follows from fields s that bend and twist a box exactly (Pian and Sumihara 1984 in the plane, Pian and
-//! Tong 1986 in space; here without their mean) and from the compliance of Hooke's law,
+//! belong to vectors γ orthogonal to all affine fields (Flanagan and Belytschko 1981). At small strain, the strain ε of these
+//! modes is that of an assumed stress. It follows from stress fields s that bend and twist a box exactly (Pian and Sumihara
+//! 1984 in the plane, Pian and Tong 1986 in space; here without their mean) and from the compliance of Hooke's law,
 //!
 //! ε = C⁻¹ Σ s β,  β = H⁻¹ L g,  L = ∫ s : ∇h,  H = ∫ s : C⁻¹ s,
 //!
 //! whose energy is ½ g·Lᵀ H⁻¹ L g. No combination of the fields is a pure pressure, so the energy stays finite as ν → 0.5. H⁻¹
-//! contains the effect of free sides: a box bends with E in plane stress and E/(1 − ν²) in plane strain, and ε is the
-//! corresponding strain.
+//! contains the effect of free sides. A box bends with E in plane stress and with E/(1 − ν²) in plane strain, and ε is the
+//! strain of such bending.
 
 use super::super::elements::{CORNERS, Shape, rest_gradient};
 use super::corners::sums;
@@ -17,7 +17,7 @@ use super::corners::sums;
 /// The number of hourglass modes of a hexahedron.
 pub(super) const MOST_MODES: usize = 4;
 
-/// The number of assumed stresses of a hexahedron, which equals the number of amplitudes: modes times axes.
+/// The number of assumed stresses of a hexahedron. It equals the number of amplitudes, modes times axes.
 pub(super) const MOST_STRESSES: usize = 12;
 
 /// The number of functions of the assumed stresses of a hexahedron.
@@ -75,8 +75,8 @@ pub(super) const fn measures_at<const N: usize>() -> usize {
     (N - 1) * (N - 1)
 }
 
-/// Values below this fraction of the largest of their kind are rounding errors, such as differences between equal cells of a
-/// grid.
+/// Values below this fraction of the largest value of their kind count as rounding errors, such as those between equal cells of
+/// a grid.
 pub(super) const ROUNDING: f64 = 1.0 / (1u64 << 42) as f64;
 
 /// How many numbers describe the material of a cell: X = H⁻¹ L row by row, c, λ − λ′, and kₐ.
@@ -284,7 +284,7 @@ fn shares<const D: usize, const N: usize>(
             weights[a][D + mode] = row[modes + a];
         }
     }
-    // All columns are invariant under translations, so each is a sum of functions.
+    // All columns are invariant under translations, so each is a sum of the functions other than 1.
     let mut shares = [[0.0; N]; N];
     for c in 0..N - 1 {
         let column = sums(&core::array::from_fn::<f64, N, _>(|a| weights[a][c] / N as f64));
@@ -328,7 +328,7 @@ mod tests {
         (0..size).map(|r| (0..size).map(|t| 2.0 * mu * entry(r, t)).collect()).collect()
     }
 
-    /// A box of a × b that bends to the curvature κ has the energy E I κ²/2 per length, I = t b³/12: u = (κ x y, …).
+    /// A box of a × b that bends to the curvature κ, u = (κ x y, …), has the energy E I κ²/2 per length with I = t b³/12.
     #[test]
     fn a_box_bends_as_a_beam_does() {
         let (a, b, mu) = (0.7, 0.2, 3.0);
@@ -338,7 +338,7 @@ mod tests {
             let young = 2.0 * mu * (1.0 + ratio);
             for (c, modulus) in [(ratio, young / (1.0 - ratio * ratio)), (ratio / (1.0 + ratio), young)] {
                 let stiffness = stiffness(&rest, mu, c);
-                // κ x y with x = aξ/2, y = bη/2: the amplitude κ a b/4.
+                // With x = aξ/2 and y = bη/2, the amplitude of κ x y is κ a b/4.
                 let amplitude: f64 = 0.25 * a * b;
                 let energy = 0.5 * stiffness[0][0] * amplitude * amplitude;
                 let expected = 0.5 * modulus * (0.5 * b * b * b / 12.0) * a;

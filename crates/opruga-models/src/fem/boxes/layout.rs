@@ -15,7 +15,7 @@ use opruga_math::{Column, WIDTH};
 pub(in super::super) struct Boxes {
     /// The data that [`stored`] counts, for every pack, or for a full pack and the last one.
     pub(super) geometry: Column,
-    /// The data that [`stiffness_numbers`] counts, likewise.
+    /// The data that [`stiffness_numbers`] counts, laid out in the same way.
     pub(super) stiffness: Column,
     /// Whether the data of one pack serve for all packs.
     pub(in super::super) one_geometry: bool,
@@ -35,7 +35,7 @@ pub(in super::super) struct Plan<'a, const D: usize, const N: usize> {
     pub(in super::super) thickness: f64,
     pub(in super::super) plane_stress: bool,
     pub(in super::super) cells: &'a [Cell<N>],
-    /// Whether the law is also evaluated at the mean.
+    /// Whether the law is also evaluated at the mean deformation gradient.
     pub(in super::super) mean: bool,
 }
 
@@ -90,7 +90,7 @@ impl Boxes {
             }
         }
 
-        // Whether a number is nonzero in any cell.
+        // Whether a number of the data is nonzero in any cell.
         let is = |column: &Column, count: usize, width: usize, k: usize| {
             column.chunks(count * width).any(|pack| pack[k * width..(k + 1) * width].iter().any(|x| *x != 0.0))
         };

@@ -1,10 +1,10 @@
 //! Matrices of quadrilaterals and hexahedra, compiled for every set of vector instructions.
 //!
-//! The energy of [`super`] is first differentiated by F and β, where every point contributes
+//! The energy of a cell (see [`super`]) is first differentiated by F and β. Every point contributes through
 //!
-//! ∂F_q/∂βₛ = f_s(q) F D_s,  ∂F_q/∂F = · (1 + ε_q),
+//! ∂F_q/∂βₛ = f_s(q) F D_s,  ∂F_q/∂F = · (1 + ε_q).
 //!
-//! and then, since β depends on F and g, by F and g (in `columns`). The derivatives by the corners come last.
+//! Since β depends on F and g, the derivatives by F and g follow (in `columns`). The derivatives by the corners come last.
 
 use super::super::elements::Shape;
 use super::super::group::Group;
@@ -159,7 +159,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
         sums
     }
 
-    /// Adds the law at the mean of the cell, whose point follows the others.
+    /// Adds the contribution of the law at the mean of the cell, whose point follows the others.
     #[inline(always)]
     fn add_middle<R: Register>(&self, part: usize, rest: &Rest<'_, R, D, N>, sums: &mut Sums<R, D>) {
         let tangent = self.tangent_at::<R>(self.pack * self.group.points + N, part);

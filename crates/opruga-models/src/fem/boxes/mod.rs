@@ -9,11 +9,12 @@
 //!
 //! U = Σ_q V_q ψ(F_q; μ, λ′) + V ψ(F; 0, λ − λ′) + ½ (λ − λ′) Σ_q V_q tr² ε_q + ½ (1 − s) Σ kₐ gₐ·gₐ,  λ′ = min(λ, 2μ):
 //!
-//! The volumetric stiffness beyond λ′ acts on the mean F, since no cell with so few corners could bend much and keep the volume
-//! of every point (all laws are linear in μ and λ). F⁻¹ is replaced by cof Fᵀ φ(J) with φ = J/(J² + δ² (1 − J)²). This equals
-//! F⁻¹ at rest, is close to it while the cell has a volume, and goes to zero with the volume. Then s = Jφ goes to zero too, and
-//! an isotropic stiffness replaces the law. In space, (J − 3/2)³ times that stiffness is added above 3/2 of the rest volume.
-//! Under `linear`, which does not account for rotations, F_q is F + ε_q and q is g. In plane stress λ′ is λ.
+//! All laws are linear in μ and λ, so the volumetric stiffness beyond λ′ can be separated. It acts on the mean F, since no cell
+//! with so few corners could bend much and keep the volume of every point. F⁻¹ is replaced by cof Fᵀ φ(J) with φ = J/(J² + δ²
+//! (1 − J)²). This equals F⁻¹ at rest, is close to it while the cell has a volume, and goes to zero with the volume. Then s =
+//! Jφ goes to zero too, and an isotropic stiffness replaces the law. In space, (J − 3/2)³ times that stiffness is added above
+//! 3/2 of the rest volume. Under `linear`, which does not account for rotations, F_q is F + ε_q and q is g. In plane stress λ′
+//! is λ.
 
 mod columns;
 mod corners;
@@ -40,7 +41,7 @@ const FLAT: f64 = 0.01;
 
 /// Hexahedra above this volume ratio are guarded against spurious modes. The strain ε of the assumed stresses is symmetric, so
 /// a shear in it reduces det (1 + ε), while a true shear does not. Under a tension p from all sides, this adds −½ p J tr ε² to
-/// the energy, which exceeds the resistance of the law from J = 2.3 on in confined bars.
+/// the energy. In confined bars, this term exceeds the resistance of the law from J = 2.3 on.
 const SWOLLEN: f64 = 1.5;
 
 /// The numbers of a cell that are kept between the steps of a pass: F, g and β.

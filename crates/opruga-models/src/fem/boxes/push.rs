@@ -75,7 +75,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Push<'_, E, D, N> 
                         lost += rest.measures[q] * P::Part::load(&rates.power[from..]);
                     }
                 }
-                // Σ V f p of the pressure that the law includes at the mean instead of at the points.
+                // Σ V f p, where p is the pressure that the law includes at the mean instead of at the points.
                 let mut pressures = [P::Part::zero(); FIELDS];
                 if points > N {
                     let swells = rest.at_points(P::Part::zero(), &strained.traces(&beta));

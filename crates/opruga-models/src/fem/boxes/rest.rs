@@ -14,7 +14,7 @@ use opruga_math::{Lane, Register, WIDTH};
 /// The constant data of one part of a pack of cells.
 pub(super) struct Rest<'a, R, const D: usize, const N: usize> {
     boxes: &'a Boxes,
-    /// The shares of the functions: of eight cells side by side, or of one cell for eight bodies.
+    /// The shares of the functions, either of eight cells side by side or of one cell for eight bodies.
     shares: &'a [f64],
     batch: bool,
     /// The matrix X = H⁻¹ L (see [`super::hourglass`]), and the offset of the part.
@@ -211,7 +211,7 @@ impl<'a, R: Register, const D: usize, const N: usize> Rest<'a, R, D, N> {
         corners::values(&c)
     }
 
-    /// Does the same as [`Rest::at_points`] for matrices, and writes them entry by entry.
+    /// Does the same as [`Rest::at_points`] for matrices, and writes the values entry by entry.
     #[inline(always)]
     pub(super) fn matrices_at_points(
         &self,
@@ -292,7 +292,7 @@ impl<const N: usize> Products<N> {
     };
 }
 
-/// A matrix B times the strains D = sym aₖ ⊗ aₗ − c aₖ·aₗ 1 of the stresses, aₖ the axes of the cell.
+/// A matrix B times the strains D = sym aₖ ⊗ aₗ − c aₖ·aₗ 1 of the stresses, where aₖ are the axes of the cell.
 pub(super) struct Strained<R, const D: usize> {
     by: Matrix<R, D>,
     /// B aₖ, in columns.
