@@ -1,9 +1,11 @@
 //! The common equilibrium of bodies at rest that touch.
 //!
 //! ```text
-//! correction   (K + σM) d = F(x) + f',   x' = x + d        of every body; K the matrix at x, f' the forces of contact at the end of d
-//! contact      f' from the gaps at x and the answers (K + σM)⁻¹ of all bodies, as of implicit rules
+//! (K + σM) d = F(x) + f',   x' = x + d
 //! ```
+//!
+//! This is the correction d of one body from the positions x, with its stiffness matrix K at x and its mass matrix M. The contact forces f' at the
+//! end of the correction follow from the gaps at x and the answers (K + σM)⁻¹ of all bodies, as in a common step of implicit integrators.
 //!
 //! Newton's method finds the equilibrium of all bodies at once. Positions and contact forces are unknowns of the same linear problem, so a body that
 //! only lies on others is supported by them in every correction. If each body found its own end under given forces instead, errors of these forces

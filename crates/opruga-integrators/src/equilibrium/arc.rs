@@ -1,7 +1,7 @@
 //! A step along the curve of equilibria.
 //!
-//! Obstacles hold nodes as in every other step of statics. The set of held nodes is determined anew in every iteration, so the
-//! curve has a kink where a node reaches or leaves a surface, and a step can pass the kink.
+//! Obstacles hold nodes as in every other step of statics. The curve has a kink where a node reaches or leaves a surface. A
+//! step can pass the kink, because the set of held nodes is determined anew in every iteration.
 //!
 //! Two points of the curve are at the given distance from the start of a step: one forward, one back. If the curve turns sharply,
 //! the iteration may find the wrong point, because only the previous step defines the forward direction. So a step in which the
@@ -103,7 +103,7 @@ fn one_step<const D: usize>(
     let Tried { solved, turned, unloaded } = tried;
     (*turned, *unloaded) = (false, false);
     let start = workspace.u.clone();
-    // Only free coordinates: the motion of pins does not show how the curve continues.
+    // Only free coordinates are used, because the motion of pins does not show how the curve continues.
     let free = |k: usize| if workspace.pin_displacement[k].is_nan() { 1.0 } else { 0.0 };
     let before = system.history.vectors(DISPLACEMENT);
     let last: Vec<f64> = (0..start.len()).map(|k| before.map_or(0.0, |u| free(k) * u.0[k % D][k / D])).collect();

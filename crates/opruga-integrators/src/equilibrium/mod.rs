@@ -17,7 +17,7 @@
 //!  load │   ╱╲          ╱        the curve of equilibria of a shallow arch: without `arc_length` the body jumps
 //!     1 ├──╱──╲────────╱──       at the first limit, or the iteration does not converge; with it every point of
 //!       │ ╱    ╲  ____╱          the curve is visited, also those that could not be held by a weight
-//!       └────────────────▶ way
+//!       └────────────────▶ displacement
 //! ```
 //!
 //! Where the body meets obstacles, the curve continues along their surface. A body that only obstacles hold has no curve, because

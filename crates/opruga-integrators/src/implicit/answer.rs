@@ -84,7 +84,7 @@ fn factor<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, bala
     answer.linear.factor(&filter).is_ok()
 }
 
-/// Replaces the forces in `count` consecutive vectors by the displacements of the end of the step that they cause. Returns
+/// Replaces the forces in `count` consecutive vectors by the displacements that they cause at the end of the step. Returns
 /// whether that was possible.
 pub(crate) fn displace<const D: usize>(workspace: &Workspace<D>, vectors: &mut [f64], count: usize) -> bool {
     let answer = &workspace.answer;

@@ -104,7 +104,8 @@ struct Correction {
     /// Which derivatives its direction uses.
     keep: Keep,
     slope: f64,
-    /// The largest displacement of a node due to the direction alone [m], and the part of it that remains after shortening [m].
+    /// The largest displacement of a node due to the direction alone [m], and the part of this displacement that remains after
+    /// shortening [m].
     plain: f64,
     gone: f64,
     /// Whether previous iterations were mixed in.

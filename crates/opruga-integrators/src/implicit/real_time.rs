@@ -51,8 +51,8 @@ const PRODUCTS: u32 = 1000;
 /// motions dominate its residual, so the residual is a poor measure of slow motions such as the bending of a slender body.
 const MANY_PRODUCTS: u32 = 120;
 
-/// The shape in which the matrix was made [m], the velocity at the start of the previous step [m/s] and its length [s]; zero if
-/// its acceleration cannot be continued.
+/// The shape in which the matrix was made [m], the velocity at the start of the previous step [m/s], and the length of that
+/// step [s]. The length is zero if the acceleration of that step cannot be continued.
 const REFERENCE: PerNode = PerNode::new("real_time.reference");
 
 /// The contact forces at the end of the previous step, with friction if nodes slip [N].

@@ -12,7 +12,7 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     const NAME: &'static str;
     /// Whether work is the mean of the values at start and end (the trapezoidal rule) instead of the value in the stage.
     const TRAPEZOID: bool;
-    /// Whether this form of the rule, which made a step, computes work by the trapezoidal rule.
+    /// Whether the form of the rule that made a step computes work by the trapezoidal rule.
     fn is_trapezoid(&self) -> bool {
         Self::TRAPEZOID
     }
@@ -45,6 +45,6 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     fn remembered(&self, _workspace: &Workspace<D>, _k: usize, _h: f64) -> f64 {
         0.0
     }
-    /// Updates the history, after obstacles have acted; `workspace.struck` names the nodes that met one.
+    /// Updates the history, after obstacles have acted; `workspace.struck` lists the nodes that met an obstacle.
     fn remember(&self, _system: &mut System<D>, _workspace: &Workspace<D>, _h: f64) {}
 }

@@ -51,7 +51,7 @@ pub(crate) enum Solver {
 pub(crate) enum Otherwise {
     /// Return an error; the state does not change.
     Error,
-    /// Make the step in two halves, and these again if necessary.
+    /// Make the step in two halves, and halve these again if necessary.
     Halve,
     /// Accept the step, and count it.
     Accept,

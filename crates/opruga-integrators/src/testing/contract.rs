@@ -120,7 +120,7 @@ fn the_ledger_closes_at_the_order_of_the_rule() {
             assert!(damped > 0.01, "{}", rule.name());
             (problems::energy_of_two_nodes(&system) + damped - before).abs()
         };
-        // The order is measured over four halvings, because errors of opposite sign may cancel at single ones.
+        // The order is measured over four halvings, because errors of opposite sign may cancel in a single halving.
         let observed = libm::log2(gap(50) / gap(800)) / 4.0;
         assert!(observed >= order - 0.2, "{}: {observed}", rule.name());
     }

@@ -246,7 +246,8 @@ fn rotation_traction<const D: usize>(
     let mut traction = force.to_vec();
     factors.solve(&mut traction);
     let most = traction.iter().fold(0.0, |most, x| larger(most, x.abs()));
-    // The displacement of a vertex is the angle times the distance from the axis. The distance from the axis is at most the distance from the mean, so the angle is at least the largest displacement over the largest distance from the mean.
+    // The displacement of a vertex is the angle times the distance from the axis. That distance is at most the distance from the
+    // mean of the vertices. So the angle is at least the largest displacement divided by the largest distance from the mean.
     let moved = motion.chunks_exact(D).map(|x| x.iter().map(|x| x * x).sum::<f64>().sqrt());
     let reach = surface.points.iter().map(|x| x.iter().map(|x| x * x).sum::<f64>().sqrt());
     most * reach.fold(0.0, larger) / moved.fold(0.0, larger)

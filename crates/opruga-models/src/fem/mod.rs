@@ -23,10 +23,10 @@
 //! **Heat**: a point that has expanded by the factor g = 1 + α ΔT has the energy g³ ψ(F/g), or ψ(ε − αΔT 1) under the law of
 //! small strain (file `materials/heat`). Without expansion none of this is computed.
 //!
-//! Limits: energies of quadratic cells are integrated at points of degree 2, exact for straight sides and linear laws. At small
-//! strain, boxes bend according to Hooke's law with their E and ν. In all states, Hooke's law also determines how much a bent
-//! cell expands sideways. Corotated laws have no unique rotation, and so no unique force, if the two smallest stretches are
-//! opposite.
+//! Limits: energies of quadratic cells are integrated with rules of degree 2, which are exact for straight sides and linear
+//! laws. At small strain, boxes bend according to Hooke's law with their E and ν. In all states, Hooke's law also determines
+//! how much a bent cell expands sideways. Corotated laws have no unique rotation, and so no unique force, if the two smallest
+//! stretches are opposite.
 
 mod boxes;
 mod builder;

@@ -6,8 +6,9 @@ use std::collections::BTreeMap;
 
 /// The fraction of a spacing by which the cells of a grid may deviate from equal rectangles.
 ///
-/// If spacings vary from node to node, differences of second order become differences of first order. Rest positions have
-/// double precision, so a regular grid is regular to about 1e-12 of a spacing.
+/// If spacings vary from node to node, the error of differences falls with the first instead of the second power of the
+/// spacing. Rest positions have double precision, so a grid that is meant to be regular deviates by only about 1e-12 of a
+/// spacing.
 const DEVIATION: f64 = 1e-6;
 
 /// A body as a grid.

@@ -111,7 +111,7 @@ impl Gas {
         if pressure > 0.0 {
             return cold * (after / pressure);
         }
-        // If the chamber is empty, this is the amount of gas that has unit pressure.
+        // If the chamber is empty, the new amount is the pressure times `unit`, the amount of gas at unit pressure.
         let v = volume.larger(self.smallest_volume * self.rest_volume);
         let unit = match self.process {
             Process::Isothermal => v,
