@@ -110,8 +110,8 @@ pub(super) fn center<const D: usize>(x: &Columns<D>, piece: &[usize]) -> [f64; D
     center
 }
 
-/// The rigid motions of a piece that are prevented neither by pins nor by constraints of nodes along the given directions, with
-/// the nodes at the given positions; translations first.
+/// The rigid motions of a piece that neither pins nor constraints of nodes along the given directions prevent, with the nodes
+/// at the given positions. Translations come first.
 pub(super) fn unpinned_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -147,8 +147,8 @@ pub(super) fn all_motions<const D: usize>(x: &Columns<D>, piece: &[usize]) -> Ve
     motions
 }
 
-/// The motions that are prevented neither by pins, nor by obstacles along the given directions, nor by the stiffness that
-/// `deliver` adds; translations first.
+/// The motions that are not prevented by pins, by obstacles along the given directions, or by the stiffness that `deliver`
+/// adds. Translations come first.
 pub(super) fn loose_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -240,8 +240,8 @@ pub(super) fn of_weights<const D: usize>(motions: &[Motion<D>], weights: Vec<Vec
         .collect()
 }
 
-/// The displacements of all nodes, at the given positions, in a motion of a piece about the given centre. Other nodes do not
-/// move.
+/// The displacements of all nodes in a motion of a piece about the given centre, with the nodes at the given positions. Nodes
+/// outside the piece do not move.
 pub(super) fn shape_at<const D: usize>(
     x: &Columns<D>,
     nodes: usize,

@@ -29,9 +29,9 @@ const NOTHING: f64 = 1e-14;
 /// The angle by which the body is rotated in the other poses [rad].
 pub(super) const TURN: f64 = 0.9;
 
-/// The motions of the body, or of a piece, that nothing prevents: neither pins, nor loads, nor the weight (which holds a
-/// pendulum), nor obstacles that hold nodes along the given directions. The nodes are at the given positions. Translations come
-/// first.
+/// The motions of the body, or of a piece, that nothing prevents. They could be prevented by pins, loads, the weight (which
+/// holds a pendulum), or obstacles that hold nodes along the given directions. The nodes are at the given positions.
+/// Translations come first.
 pub(super) fn free_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -55,7 +55,7 @@ pub(super) fn free_motions<const D: usize>(
     restraint.left()
 }
 
-/// The motions that are prevented neither by pins, nor by loads with a stiffness, nor by obstacles along the given directions.
+/// The motions that are not prevented by pins, by loads with a stiffness, or by obstacles along the given directions.
 pub(super) fn unstiffened_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,

@@ -109,7 +109,7 @@ fn a_truss_is_followed_through_its_snap() {
     assert!((highest - 0.1048).abs() < 1e-3 && (lowest + 0.1048).abs() < 1e-3, "{highest} {lowest}");
     let behind = system.state.x.at(1)[1];
     assert!(behind < -height && (needed(behind) - 1.0).abs() < 1e-9, "{behind}");
-    // The body stays there.
+    // The body stays at this equilibrium.
     arc.step(&mut system, 0.1).unwrap();
     assert!((system.state.x.at(1)[1] - behind).abs() < 1e-9);
 

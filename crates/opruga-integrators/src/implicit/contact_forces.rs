@@ -29,7 +29,7 @@ impl<const D: usize> Contacting<D> {
                 }
                 let friction = contact.along(&force);
                 let size = dot(&friction, &friction).sqrt();
-                // The tangential force of a node that slipped is µ λ, and that of one that stuck is zero.
+                // The recorded tangential force of a node is µ λ if the node slipped, and zero if it stuck.
                 if size > 0.5 * contact.touch.friction * contact.normal_force {
                     (contact.hold, contact.push) = (Hold::Slip, friction.map(|f| f / size));
                 } else {

@@ -1,9 +1,9 @@
 //! The effect of pins on nodes that a consistent mass matrix couples to pinned nodes.
 //!
-//! A pinned node has the velocity of its pin from the moment at which it is pinned; in a step this is the mean velocity w over
-//! the step. If the node had another velocity (because a body is caught in flight, or because a table of motion has corners),
-//! the pin gives an impulse at the start of the step. The impulse acts only on the pinned node, but consistent masses couple
-//! nodes, so its neighbours recoil, as a bat does beyond the grip:
+//! From the moment at which it is pinned, a node has the velocity of its pin. In a step, this is the mean velocity w over the
+//! step. If the node had another velocity (because a body is caught in flight, or because a table of motion has corners), the
+//! pin gives an impulse at the start of the step. The impulse acts only on the pinned node, but consistent masses couple nodes,
+//! so its neighbours recoil, as a bat does beyond the grip:
 //!
 //! M_ff Δv_f + M_fp (w − v_p) = 0.
 //!
@@ -108,7 +108,8 @@ pub fn accelerations<const D: usize>(system: &System<D>, pinned: &[bool], force:
     let blocks: Vec<Block<D>> = (0..system.nodes).map(|node| isotropic(system.mass.at(node))).collect();
     let mut lumped = BlockJacobi::default();
     let mut out = vec![0.0; pinned.len()];
-    // The mass matrix is as well conditioned as that of a single cell, so some tens of products give all digits.
+    // The mass matrix is as well conditioned as the mass matrix of a single cell. So the solution has all digits after some
+    // tens of products.
     let solved = lumped.update(blocks.iter()).and_then(|()| {
         let mut workspace = Directions::default();
         conjugate_gradients(multiply, &lumped, &right, &mut out, 1e-14, 1000, &mut workspace)

@@ -1,9 +1,9 @@
 //! Anderson mixing: uses previous iterations to estimate the effect of terms that the matrix of an iteration omits.
 //!
-//! Some derivatives are not symmetric, or belong to no model: those of damping with respect to position, of friction with
-//! respect to the normal force, and of curved obstacles. Without them, corrections only fall by a constant factor in each
-//! iteration. An iteration is a map z → z + f(z) of the displacements and the forces of the constraints. The next state follows
-//! from the combination of the last few pairs (z, f) with the smallest |f|:
+//! The matrix omits derivatives that are not symmetric or belong to no model: the derivatives of damping with respect to
+//! position, of friction with respect to the normal force, and of curved obstacles. Without these derivatives, corrections only
+//! fall by a constant factor in each iteration. An iteration is a map z → z + f(z) of the displacements and the forces of the
+//! constraints. The next state follows from the combination of the last few pairs (z, f) with the smallest |f|:
 //!
 //! z' = z + f − Σ γⱼ (Δzⱼ + Δfⱼ),  γ = argmin |f − Σ γⱼ Δfⱼ|.
 //!
@@ -22,7 +22,7 @@ const NOTHING_NEW: f64 = 1e-6;
 /// The recorded iterations, in which nothing but the state has changed.
 #[derive(Debug, Default)]
 pub(crate) struct Mixing {
-    /// The last state and its change; empty if there is none.
+    /// The previous state and its change; empty if there is none.
     state: Vec<f64>,
     change: Vec<f64>,
     /// Differences of changes and of states + changes, oldest first.

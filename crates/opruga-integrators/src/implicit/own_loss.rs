@@ -1,7 +1,7 @@
 //! The energy that a rule itself dissipates in a step, from its own formula.
 //!
 //! In a step, every rule changes the momentum by M Δv = h i (F + r + R) + M m. F are the forces of the stage, r is the residual
-//! of the iteration, R are the forces with which obstacles hold nodes, i is the share of the stage ([`Balance::impulse`]), and m
+//! of the iteration, R are the forces of obstacles that hold nodes, i is the share of the stage ([`Balance::impulse`]), and m
 //! is the memory of the rule. The kinetic energy changes by exactly v̄·M Δv, with v̄ = ½ (v₀ + v₁). The rule is responsible for
 //!
 //! J = h i F + M m = M Δv − h i (r + R).

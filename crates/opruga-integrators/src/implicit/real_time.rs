@@ -2,11 +2,11 @@
 //!
 //! Every iteration balances the exact forces; the matrix only determines the correction. If the matrix belongs to another shape
 //! of the body, or if its equations are solved only approximately, a part of the residual remains, and the next step begins
-//! with it. At rest nothing remains. The iteration begins with the positions to which the acceleration of the previous step
+//! with it. At rest no residual remains. The iteration begins with the positions to which the acceleration of the previous step
 //! would lead, and with the contact forces of that step (`contact_forces`).
 //!
-//! The residual of a step shows whether the matrix is still good enough. Near obstacles the residual comes mostly from changes of
-//! contacts; there, the measure is the difference between the forces after an iteration and those that the matrix predicted.
+//! The residual of a step shows whether the matrix is still good enough. Near obstacles the residual comes mostly from changes
+//! of contacts. The measure is then the difference between the forces after an iteration and those that the matrix predicted.
 //!
 //! Residuals are measured in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 

@@ -125,7 +125,7 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
 }
 
 impl<R> Implicit<R> {
-    /// Makes a step with the stage that a given minimiser finds.
+    /// Makes a step, whose stage is found by a given minimiser.
     pub(crate) fn step_by<const D: usize>(
         &self,
         minimiser: &dyn Minimiser<D>,
@@ -203,9 +203,9 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
         Ok(())
     }
 
-    /// Finds the stage and the end of a step. The guards are applied in this order: contact, convergence, obstacles at the end of
-    /// the step, energy of a minimiser that is not exact, energy of the rule. A guard that refuses determines what replaces the
-    /// step.
+    /// Finds the stage and the end of a step. The guards are applied in this order: contact, convergence, obstacles at the end
+    /// of the step, energy of a minimiser that is not exact, energy of the rule. If a guard refuses the step, it determines
+    /// what replaces the step.
     fn find_end(&self, system: &mut System<D>, workspace: &mut Workspace<D>, h: f64) -> Result<Found<R>, StepError> {
         let own = if system.pushes.is_some() { self.rule.pushed() } else { self.rule };
         let in_contact = own.in_contact();

@@ -47,7 +47,7 @@ fn free_fall_is_exact() {
 fn the_spectral_radius_is_the_one_that_was_asked_for() {
     for rho in [0.0, 0.3, 0.8, 1.0] {
         let radius = Integrator::<2>::amplification(&rule(Some(rho)), 1.0, 0.0, 1e7).spectral_radius();
-        // Three eigenvalues coincide there: a perturbation ε moves them by its cube root.
+        // Three eigenvalues coincide at hω → ∞, so a perturbation ε moves them by its cube root.
         assert!((radius - rho).abs() < 2e-4, "{rho}: {radius}");
     }
     for z in [0.1, 1.0, 10.0, 1e4] {

@@ -1,5 +1,5 @@
-//! Compares the dissipation by implicit integrators themselves with the ledger, and with formulas that contain differences of
-//! states.
+//! Compares the energy that implicit integrators themselves dissipate with the ledger, and with formulas that contain
+//! differences of states.
 
 use super::{problems, two_nodes};
 use opruga_core::history::Content;

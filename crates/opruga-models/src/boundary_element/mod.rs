@@ -54,8 +54,8 @@ pub const MOST_VERTICES: usize = 2000;
 #[derive(Debug)]
 pub struct BoundaryElementModel;
 
-/// The memory that the matrices take while they are computed [bytes]: three matrices with D rows for each traction. There are
-/// about 15 % more tractions than vertices.
+/// The memory that the matrices need while they are computed [bytes]. There are three matrices with D rows for each traction.
+/// There are about 15 % more tractions than vertices.
 fn bytes(dimensions: usize, nodes: f64) -> f64 {
     let rows = 1.15 * dimensions as f64 * nodes;
     8.0 * 3.5 * rows * rows

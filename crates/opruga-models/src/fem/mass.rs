@@ -11,7 +11,7 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 
 /// Points and weights of a reference cell: products of Gauss points. For simplices a side of the box is collapsed to a point
-/// (Duffy 1982), which also integrates Nₐ Nᵦ of curved quadratic cells exactly.
+/// (Duffy 1982), and the points then also integrate Nₐ Nᵦ of curved quadratic cells exactly.
 fn points<const D: usize>(simplex: bool) -> Vec<([f64; 3], f64)> {
     let mut out = Vec::new();
     for number in 0..GAUSS.len().pow(D as u32) {
@@ -91,8 +91,8 @@ mod tests {
         })
     }
 
-    /// Row sums are ∫ Nₐ. For a linear field, the matrix gives the exact ∫ x² of a cell, which the lumped masses of linear cells
-    /// overestimate.
+    /// The sum of a row is ∫ Nₐ. For a linear field, the matrix gives the exact ∫ x² of a cell, whereas the lumped masses of
+    /// linear cells overestimate it.
     fn check<E: Shape<D, N>, const D: usize, const N: usize>(nodes: [[f64; D]; N], square: f64) {
         let matrix = of_cell::<E, D, N>(&nodes);
         let mut found = 0.0;

@@ -328,7 +328,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                 let over = if turns { now } else { measure };
                 let stress = sum.map(|row| row.map(|s| s / over));
                 let (cell, volume_ratio) = (cell.number, now / measure);
-                // A simplex has only one J. Taking it from the mean gives both values the same rounding.
+                // A simplex has only one J. It is taken from the mean, so that both values have the same rounding.
                 let smallest_volume_ratio = if E::SIMPLEX { volume_ratio } else { smallest };
                 out.push(CellState { cell, stress, volume_ratio, smallest_volume_ratio, measure });
             }

@@ -72,7 +72,7 @@ pub(super) struct Share {
     pub(super) packs: usize,
     /// The nodes of its elements, ascending, with a row for each.
     pub(super) nodes: Vec<u32>,
-    /// The offset of its scratch in that of the section.
+    /// The offset of the scratch of this share in the scratch of the section.
     pub(super) start: usize,
 }
 

@@ -20,7 +20,7 @@ pub struct Solid<const D: usize> {
     parts: Vec<Box<dyn Part<D>>>,
     /// The shares of all parts.
     shares: Vec<Task>,
-    /// The offset of the scratch of each share, after that of the whole.
+    /// The offset of the scratch of each share, counted from the end of the sums of the whole solid.
     starts: Vec<usize>,
     sums: Sums,
     /// The consistent mass matrix minus the lumped masses.

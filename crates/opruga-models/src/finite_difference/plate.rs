@@ -30,7 +30,8 @@ fn second<S: Lane>(before: &[S; 3], at: &[S; 3], after: &[S; 3]) -> [S; 3] {
     minus(&minus(after, at), &minus(at, before))
 }
 
-/// The contributions of one moment: that of its second difference, and that of the tangents, which rotate the normal.
+/// The contributions of one moment: the force on its second difference, and the forces on the tangents, which rotate the
+/// normal.
 struct Moved<S> {
     by_second: [S; 3],
     by_first: [[S; 3]; 2],

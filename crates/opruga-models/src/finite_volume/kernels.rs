@@ -58,8 +58,8 @@ fn corners<R: Register, C: Cell<D, N>, const D: usize, const N: usize>(
     out
 }
 
-/// The area vector k of a cell, for the lanes of a pack [m²]: for a simplex, Wₐ of the corner k + 1; otherwise that of a dual
-/// face.
+/// The area vector k of a cell, for the lanes of a pack [m²]: for a simplex, Wₐ of the corner k + 1; otherwise the area vector
+/// of a dual face.
 #[inline(always)]
 fn area<R: Register, C: Cell<D, N>, const D: usize, const N: usize>(
     cells: &Cells<C, D, N>,

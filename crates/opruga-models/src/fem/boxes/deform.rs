@@ -33,7 +33,7 @@ fn put_points<R: Register, const N: usize>(to: &mut [f64], part: usize, entry: u
     }
 }
 
-/// Deformation gradients at the Gauss points, followed by the mean one if the law is evaluated there.
+/// Deformation gradients at the Gauss points, followed by the mean deformation gradient if the law is also evaluated for it.
 pub(in super::super) struct Deform<'a, E, const D: usize, const N: usize> {
     pub(in super::super) shape: PhantomData<E>,
     pub(in super::super) group: Group<'a>,
