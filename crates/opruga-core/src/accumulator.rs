@@ -1,18 +1,19 @@
 //! Real time: the number of frames of the simulation that are due when a display shows its next picture.
 //!
 //! The simulation always advances by whole frames of one length, whatever the rate of the display. So the same amount of real
-//! time gives the same number of substeps, and so the same bits, at 30, 60, 144 or 1000 pictures per second. Time that remains
-//! is kept for the next picture, and nothing is lost by rounding.
+//! time gives the same number of substeps, and so the same bits, at 30, 60, 144 or 1000 pictures per second. Time that does not
+//! fill a frame is kept for the next picture, and nothing is lost by rounding.
 
-/// The number of attoseconds in a second. This unit is so small that an `f64` number of seconds below 1000 is hardly rounded.
+/// The number of attoseconds in a second. This unit is so small that the conversion hardly rounds an `f64` number of seconds
+/// below 1000.
 const ATTOSECONDS: f64 = 1e18;
 
-/// The longest time taken at once [s]: longer pauses count as this long.
+/// The longest real time that one call counts [s]. A longer pause counts as this time.
 const LONGEST: f64 = 1e6;
 
 /// Collects real time and hands it out in frames.
 ///
-/// A frame may be handed out early by a thousandth of its length. Otherwise displays whose period (such as 1/60 s) is not a
+/// A frame may be handed out up to a thousandth of its length early. Otherwise displays whose period (such as 1/60 s) is not a
 /// whole number of units of time would be one frame behind now and then. Time handed out early is subtracted later, so there is
 /// no drift.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -12,8 +12,8 @@ use opruga_math::{Pack, Strip, StripMut, WIDTH, Work};
 impl<const D: usize> System<D> {
     /// Evaluates forces in one stage and moves every node by an update: gradient → update → collide, tile by tile.
     ///
-    /// `weight` [s] is the share of this evaluation in the step's work integrals. If the update ends the substep, `step` is its
-    /// length, and obstacles act.
+    /// `weight` [s] is the share of this evaluation in the step's work integrals. If the update ends the substep, `step` is the
+    /// length of the substep [s], and obstacles act on the nodes.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the state.
@@ -36,7 +36,7 @@ impl<const D: usize> System<D> {
             self.take_pinned_motion(0..self.index_count());
         }
         let hindered = self.contacts.is_some() || self.stabilisers.largest_velocity.is_some();
-        // If there are several stages, no single force has moved the nodes.
+        // If there are several stages, no single force has moved the nodes. Obstacles then use the mean force.
         let several = step.is_some() && evaluate != Stage::Current && self.contacts.is_some();
         let mut contact_lanes = 0;
         for tile in 0..self.plan.len() {
@@ -65,7 +65,7 @@ impl<const D: usize> System<D> {
             && contact_lanes != 0
             && several
         {
-            // If bodies are side by side, every lane is a body.
+            // If bodies are side by side, every lane belongs to one body. Otherwise all lanes belong to the same body.
             let lanes = if self.layout == Layout::Batch { contact_lanes } else { u8::MAX };
             let [damping, user] = self.step_work;
             damping.count_by_start(h, lanes, &mut self.work.damping);
@@ -124,7 +124,7 @@ impl<const D: usize> System<D> {
                 }
             }
         }
-        // A pin balances the forces of the models before the stabiliser limits them.
+        // A pin balances the forces of the models, not yet limited by the stabiliser.
         let force_on = |d: usize, index: usize| force[d][index - range.start];
         self.pinned_nodes.add_work_against(&range, weight, force_on, view.v, &mut self.work.user);
         if let Some(limit) = self.stabilisers.largest_force {
@@ -153,7 +153,7 @@ impl<const D: usize> System<D> {
         self.simd.run(Move { update, range, force, inverse_mass: &self.inverse_mass, state: &mut self.state });
     }
 
-    /// Replaces the last force by the mean force of the step of length `h`, m Δv/h, which obstacles use.
+    /// Replaces the force of the last stage by m Δv/h, the mean force over the step of length `h` [s], which obstacles use.
     fn take_mean_force(&mut self, tile: usize, h: f64) {
         let range = self.plan.range(tile);
         let buffer = self.plan.buffer(tile);
@@ -170,7 +170,7 @@ impl<const D: usize> System<D> {
         if self.contacts.is_none() {
             return 0;
         }
-        // The motion that an obstacle takes from a pinned node is restored by its pin.
+        // If an obstacle changes the motion of a pinned node, the pin restores this motion.
         self.give_pinned_motion(range.clone());
         let contact_lanes = self.resolve_contacts(tile, h);
         self.take_pinned_motion(range);

@@ -10,7 +10,7 @@ use opruga_math::{Simd, WIDTH};
 pub struct Moved<'a, const D: usize> {
     /// The indices of the tile.
     pub range: Range<usize>,
-    /// Indices below this one belong to nodes; those from here to the end of the last pack are padding.
+    /// The first index that belongs to no node. Indices from this one to the end of the last pack are padding.
     pub padding_start: usize,
     /// Positions before the step: `before[d][p - range.start]` [m].
     pub before: [&'a [f64]; D],
@@ -22,15 +22,15 @@ pub struct Moved<'a, const D: usize> {
     pub force: [&'a [f64]; D],
     /// Mass of each node [kg].
     pub mass: &'a Parameter,
-    /// One body or eight.
+    /// Whether the columns hold one body, or eight side by side.
     pub layout: Layout,
     /// Time at the end of the step [s].
     pub time: f64,
-    /// The substep [s].
+    /// The length of the substep [s].
     pub h: f64,
-    /// Energy that contact took along the normal [J], eight partial sums.
+    /// Energy that contact dissipated along the normal [J], eight partial sums.
     pub loss_contact: &'a mut [f64; WIDTH],
-    /// Energy that friction took [J], eight partial sums.
+    /// Energy that friction dissipated [J], eight partial sums.
     pub loss_friction: &'a mut [f64; WIDTH],
     /// Work done on the body by obstacles that move [J], eight partial sums.
     pub work_colliders: &'a mut [f64; WIDTH],
@@ -72,7 +72,7 @@ pub trait Contacts<const D: usize>: Send + Sync + Debug {
     /// Calls back with every surface that a node reaches when it moves from `from` to `to` [m] in the step of length `h` that
     /// ends at `time` [s]: those whose gap at the end is at most `reach` [m], and those that it has crossed.
     ///
-    /// For implicit integrators, which constrain nodes while they solve for the end of the step.
+    /// Implicit integrators call this method, because they constrain nodes while they solve for the end of the step.
     fn touch(
         &self,
         _from: &[f64; D],

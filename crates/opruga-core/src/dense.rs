@@ -12,7 +12,8 @@ pub const SIDE: usize = 32;
 /// The number of packs in a row of a tile.
 const PACKS: usize = SIDE / WIDTH;
 
-/// A symmetric matrix in tiles of 32 rows and columns: those below and on the diagonal, one row of tiles after the other.
+/// A symmetric matrix in tiles of 32 rows and columns. Only the tiles below and on the diagonal are stored, one row of tiles
+/// after the other.
 ///
 /// Rows are filled up to whole tiles, with zeros.
 #[derive(Clone, PartialEq)]
@@ -141,8 +142,8 @@ impl<const N: usize> Work for Product<'_, N> {
     }
 }
 
-/// The packs of a row of a tile. This is a loop, because a closure is compiled without the vector instructions of its caller, so
-/// that its loads would be calls.
+/// The packs of a row of a tile. This is a loop, because a closure is compiled without the vector instructions of its caller.
+/// The loads of a closure would therefore be function calls.
 #[inline(always)]
 fn packs_of<P: Pack>(row: &[f64]) -> [P; PACKS] {
     let mut out = [P::zero(); PACKS];
@@ -194,8 +195,8 @@ struct Products<'a> {
     y: &'a mut [f64],
 }
 
-/// The number of rows of a tile that are summed together: their x and their sums stay in registers. With AVX2, two rows take as
-/// long, and eight take a third longer.
+/// The number of rows of a tile that are summed together: their x and their sums stay in registers. With AVX2, a product with
+/// two rows at a time takes equally long, and one with eight takes a third longer.
 const ROWS: usize = 4;
 
 impl Work for Products<'_> {
@@ -233,7 +234,7 @@ fn once<P: Pack>(tile: &[f64], x: &[f64], y: &mut [f64]) {
     }
 }
 
-/// Adds T x, with the x of the columns, to the rows, and Tᵀ x, with the x of the rows, to the columns.
+/// Adds T x to the rows, where x belongs to the columns. Adds Tᵀ x to the columns, where x belongs to the rows.
 #[inline(always)]
 fn twice<P: Pack>(tile: &[f64], of_rows: &[f64], of_columns: &[f64], rows: &mut [f64], columns: &mut [f64]) {
     const BLOCK: usize = ROWS * WIDTH;

@@ -30,8 +30,8 @@ pub type RankOnePart<const D: usize> = (f64, Vec<(usize, [f64; D])>);
 /// stored one after the other, with [`Dense::padded`] numbers each.
 #[derive(Clone, Debug, Default)]
 pub struct Following {
-    /// The part of J that does not change with the state: the k-th column of J is Σ `mix[k][l]` times the l-th vector of `base`.
-    /// Its address does not change.
+    /// The part of J that does not change with the state: the k-th column of J is Σ `mix[k][l]` times the l-th vector of
+    /// `base`. The vectors keep their address, by which parts with the same vectors are recognised.
     pub base: Arc<Vec<f64>>,
     /// The part of J that changes with the state, by rows.
     pub mix: [[f64; 3]; 3],
@@ -106,8 +106,8 @@ impl<const D: usize> DensePart<'_, D> {
     fn turned_back(&self, g: &[f64]) -> [f64; D] {
         core::array::from_fn(|i| self.factor * (0..D).map(|j| self.frame[i][j] * g[j]).sum::<f64>())
     }
-    /// The block of two of its nodes, which are given by their numbers in the list, without the terms that a following frame
-    /// adds.
+    /// Returns the block of two nodes, given by their numbers in the list of nodes. The block does not include the terms that a
+    /// following frame adds.
     pub fn block(&self, a: usize, b: usize) -> [[f64; D]; D] {
         let mut half = [[0.0; D]; D];
         let mut out = [[0.0; D]; D];
@@ -123,8 +123,8 @@ impl<const D: usize> DensePart<'_, D> {
         }
         out
     }
-    /// The terms that a following frame adds to the blocks, as rank-one terms c u uᵀ, two for each axis. Each costs a product
-    /// with K.
+    /// The terms that a following frame adds to the blocks, as rank-one terms c u uᵀ, two for each axis. The terms of each axis
+    /// cost one product with K.
     ///
     /// Tᵀ K T + J Qᵀ + Q Jᵀ = K + J Zᵀ + Z Jᵀ with Z = Q − K V + ½ J VᵀK V, and j zᵀ + z jᵀ is ½ (a j + z/a)(…)ᵀ − ½ (a j −
     /// z/a)(…)ᵀ, where a gives both vectors the same size.

@@ -23,7 +23,7 @@ impl<const D: usize> System<D> {
         Ok(())
     }
 
-    /// Repeats [`System::evaluate`] in the state that was evaluated last; the preparation of the models is still valid.
+    /// Repeats [`System::evaluate`] in the state that was evaluated last. The models need no new preparation there.
     pub fn evaluate_again(&mut self, stage: Stage, time: f64, weight: f64, out: &mut Columns<D>) {
         self.gather_forces(stage, time, weight, out);
     }
@@ -57,7 +57,7 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Adds the forces of other bodies.
+    /// Adds the forces of other bodies to `out`.
     fn add_pushes(&self, out: &mut Columns<D>) {
         for (index, force) in self.pushes.iter().flatten() {
             for d in 0..D {
@@ -81,7 +81,8 @@ impl<const D: usize> System<D> {
             .then(|| self.stored_energy(stage, time) - self.work_of_pushes(stage, time))
     }
 
-    /// Σ F·x of the forces of other bodies, which count as those of a potential because they are constant during the step [J].
+    /// The work Σ F·x of the forces of other bodies [J]. These forces have a potential, because they are constant during the
+    /// step.
     fn work_of_pushes(&self, stage: Stage, time: f64) -> f64 {
         let Some(pushes) = &self.pushes else { return 0.0 };
         let view = self.view(stage, self.time + time);
@@ -138,7 +139,8 @@ impl<const D: usize> System<D> {
         (0..self.nodes).flat_map(|node| columns.at(node)).collect()
     }
 
-    /// The external part of the forces, weight and loads, after [`System::evaluate`] in the same state [N].
+    /// Computes the external force on every node, which is its weight and the loads on it [N], after [`System::evaluate`] in
+    /// the same state.
     pub fn outer_forces(&mut self, stage: Stage, time: f64, out: &mut Columns<D>) {
         let now = self.time + time;
         let view = view(&self.state, self.nodes, self.layout, stage, now, self.threads);
@@ -215,7 +217,7 @@ impl<const D: usize> System<D> {
     }
 
     /// Ends an implicit step of length `h` whose end is in the current state: moves pinned nodes to their positions, limits
-    /// speeds, updates the memory of models and the time.
+    /// speeds, and updates the memory of models and the time.
     pub fn end_implicit(&mut self, h: f64) {
         self.hold(Stage::Current, h);
         self.limit_velocities();

@@ -15,7 +15,7 @@ use opruga_math::Lane;
 pub trait Integrator<const D: usize>: Send + Sync + Debug {
     /// The name of the integrator.
     fn name(&self) -> &'static str;
-    /// The views that it needs of every model; checked when a world is built.
+    /// The quantities that every model must provide for it. They are checked when a world is built.
     fn needs(&self) -> Views {
         Views::default()
     }
@@ -52,7 +52,8 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn same_bits_everywhere(&self, _system: &System<D>) -> bool {
         true
     }
-    /// Whether a step ends in an equilibrium, however far from its start and whatever the velocities.
+    /// Whether every step ends in an equilibrium, even if this is far from the start of the step, and whatever the velocities
+    /// are.
     fn is_static(&self) -> bool {
         false
     }
@@ -91,17 +92,18 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn takes_pushes(&self) -> bool {
         false
     }
-    /// Computes, after a step, how its end responds to forces of other bodies, for [`Integrator::answer`]. Returns the number of
-    /// the matrix that it uses: the same number means the same responses. `None` if it cannot compute the responses.
+    /// Computes, after a step, how the end of this step responds to forces of other bodies, for [`Integrator::answer`]. Returns
+    /// the number of the matrix that it uses: the same number means the same responses. `None` if it cannot compute the
+    /// responses.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses.
     fn prepare_answer(&self, _system: &mut System<D>) -> Result<Option<u64>, StepError> {
         Ok(None)
     }
-    /// Replaces forces on the nodes, which act throughout the step [N], by the displacements that they cause at its end, to
-    /// first order [m]. `_vectors` holds `_count` consecutive vectors, each with the coordinates of one node after the other.
-    /// Returns whether this was possible.
+    /// Replaces forces on the nodes, which act throughout the step [N], by the displacements that they cause at the end of the
+    /// step, to first order [m]. `_vectors` holds `_count` consecutive vectors, each with the coordinates of one node after the
+    /// other. Returns whether this was possible.
     fn answer(&self, _system: &mut System<D>, _vectors: &mut [f64], _count: usize) -> bool {
         false
     }
@@ -174,8 +176,8 @@ impl Amplification {
     /// The largest absolute eigenvalue.
     pub fn spectral_radius(&self) -> f64 {
         let (m, mut size, mut apart) = (&self.rows, self.size, 0.0);
-        // A value on which nothing else depends has its own eigenvalue. It is split off, because rounding would move it together
-        // with close eigenvalues.
+        // A value on which nothing else depends has its own eigenvalue. It is split off, because otherwise rounding would
+        // perturb it together with eigenvalues close to it.
         while size > 2 && m[..size - 1].iter().all(|row| row[size - 1] == 0.0) {
             size -= 1;
             apart = m[size][size].abs().larger(apart);

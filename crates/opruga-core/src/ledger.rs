@@ -56,7 +56,8 @@ impl StepWork {
             }
         }
     }
-    /// Counts the step of length `h` [s] with the power at its start. This is done in some lanes, given by one bit each.
+    /// Replaces the work of the stages of a step by the power at its start times its length `h` [s]. Only the lanes whose bit
+    /// in `lanes` is set change.
     pub(crate) fn count_by_start(&self, h: f64, lanes: u8, account: &mut [f64; WIDTH]) {
         for l in (0..WIDTH).filter(|l| lanes >> l & 1 == 1) {
             account[l] += h * self.at_start[l] - self.counted[l];
@@ -90,7 +91,7 @@ pub struct SolverWork {
     /// The number of steps that ended because forces balance within their rounding errors, although the residual would still
     /// move nodes visibly.
     pub estimated: u64,
-    /// The largest displacement that the residual of such a step would cause [m].
+    /// The largest displacement that the residual of a step counted in `estimated` would cause [m].
     pub error_estimate: f64,
     /// The number of steps in which forces due to rounding of positions exceeded the loads.
     pub conditioned: u64,
@@ -98,7 +99,7 @@ pub struct SolverWork {
     pub conditioning: f64,
     /// How often a body that rested in a degenerate shape was displaced at random.
     pub disturbed: u64,
-    /// How often such a body was still degenerate afterwards.
+    /// How often a body counted in `disturbed` was still degenerate after its random displacement.
     pub stayed_degenerate: u64,
 }
 

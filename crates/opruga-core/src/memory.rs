@@ -5,12 +5,12 @@
 
 use opruga_mesh::Mesh;
 
-/// The needs of a part of a body.
+/// The memory that a part of a body needs, and the pairs of nodes that it couples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Need {
     /// Memory [bytes].
     pub bytes: f64,
-    /// The number of pairs of nodes that it couples: blocks above the diagonal of a matrix.
+    /// The number of pairs of nodes that the part couples. Each is a block above the diagonal of a matrix.
     pub couplings: f64,
 }
 

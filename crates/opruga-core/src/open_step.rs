@@ -11,10 +11,10 @@ use crate::system::System;
 /// Φ = σ/2 |u − y|²_M + U(x₀ + u),   r = ∂Φ/∂u,   A ≈ ∂²Φ/∂u² without negative eigenvalues
 /// ```
 ///
-/// Obstacles hold nodes, and pins move nodes. `prescribed` is how far nodes still have to move. Equations with the matrix A are
-/// solved in the free directions.
+/// Obstacles hold nodes, and pins move nodes. The method `prescribed` returns how far these nodes still have to move. Equations
+/// with the matrix A are solved in the free directions.
 pub trait OpenStep<const D: usize>: Send {
-    /// Ties a body without inertia (statics) to its present position by a term of its masses with y = u and the given σ [1/s²],
+    /// Ties a body without inertia (statics) to its present position by the first term of Φ, with y = u and the given σ [1/s²],
     /// from the next evaluation on. Bodies with inertia ignore this.
     fn stay(&mut self, _sigma: f64) {}
     /// The displacements u [m].
@@ -28,7 +28,7 @@ pub trait OpenStep<const D: usize>: Send {
     fn evaluate(&mut self, system: &mut System<D>, part: f64) -> Result<(), StepError>;
     /// Φ and the size of its terms in the last evaluated state [J]; `None` if there is damping or a model without an energy.
     fn potential(&self, system: &System<D>) -> Option<[f64; 2]>;
-    /// The rounding of Φ in its models [J].
+    /// The rounding error of the terms of Φ that models compute [J].
     fn rounding(&self, system: &System<D>) -> f64;
     /// The part of r that is due to rounding of positions, as the root of the sum of squares [N]. It is computed in the free
     /// directions, with the last derivatives.
@@ -60,7 +60,7 @@ pub trait OpenStep<const D: usize>: Send {
     fn follow(&mut self, system: &System<D>, forces: &[f64], tolerance: f64, out: &mut [f64]) -> bool;
     /// The work that friction on obstacles and the forces that hold nodes do along the correction [J].
     fn given(&mut self) -> f64;
-    /// Decides which nodes obstacles hold, and how; returns whether that has changed.
+    /// Decides which nodes obstacles hold, and how they hold each one. Returns whether this decision has changed.
     fn judge(&mut self, system: &System<D>) -> bool;
     /// The correction below which the search ends [m].
     fn goal(&self) -> f64;

@@ -1,4 +1,4 @@
-//! Nodes that are pinned or moved: their prescribed positions, and the work that this takes.
+//! Nodes that are pinned or moved along a path: their prescribed positions, and the work of the pins.
 
 use core::ops::Range;
 use opruga_math::WIDTH;
@@ -85,7 +85,7 @@ impl<const D: usize> PinnedNodes<D> {
         });
         PinnedNodes(nodes)
     }
-    /// Sets how far pins move in the coming step.
+    /// Stores the mean velocities of moving pins in the coming step of length `h` [s].
     pub(crate) fn learn(&mut self, pins: &[Pin<D>], time: f64, h: f64) {
         for pin in pins.iter().filter(|pin| !pin.motion.is_empty()) {
             let (from, to) = (pin.target(time).0, pin.target(time + h).0);

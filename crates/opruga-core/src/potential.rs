@@ -286,7 +286,7 @@ pub trait Observe<const D: usize> {
     fn facet_states(&self, _view: &View<D>, _body: usize) -> Vec<CellState> {
         Vec::new()
     }
-    /// How often something happened that a user should know of (such as a limit that acted): counts in the memory.
+    /// Counts of events that a user should know of, such as a limit that took effect. The memory holds these counts.
     fn counts(&self, _memory: &[f64]) -> Vec<Count> {
         Vec::new()
     }
@@ -309,12 +309,12 @@ pub trait Observe<const D: usize> {
 pub struct CellState {
     /// The cell, in the order of [`opruga_mesh::Cells::iter`].
     pub cell: u32,
-    /// Its mean Cauchy stress σ [Pa], row by row; in the plane including the stress across it.
+    /// Its mean Cauchy stress σ [Pa], row by row. In 2D, it includes the stress perpendicular to the plane.
     pub stress: [[f64; 3]; 3],
     /// Its volume ratio J: its volume divided by its volume at rest.
     pub volume_ratio: f64,
-    /// The smallest J at its integration points, both of its shape and of the gradient with which its law is evaluated. A cell
-    /// of positive volume may be degenerate or inverted at some of them.
+    /// The smallest J at its integration points: the minimum over the gradients of its shape and those with which its law is
+    /// evaluated. A cell of positive volume may be degenerate or inverted at some of them.
     pub smallest_volume_ratio: f64,
     /// Its volume at rest [m³], in the plane its area times the thickness.
     pub measure: f64,
@@ -329,7 +329,8 @@ impl CellState {
         let shear = square(s[0][1]) + square(s[1][2]) + square(s[2][0]);
         (0.5 * normal + 3.0 * shear).sqrt()
     }
-    /// Whether it has no volume or a negative one somewhere: less than a thousandth of its volume at rest, or NaN.
+    /// Whether its smallest volume ratio is below a thousandth, or NaN. The cell then has no volume, or a negative one,
+    /// somewhere.
     pub fn is_degenerate(&self) -> bool {
         /// Cells below this fraction of their volume count as having none.
         const NO_VOLUME: f64 = 1e-3;
@@ -423,7 +424,7 @@ pub trait Model<const D: usize>: Send + Sync {
     fn batches(&self) -> bool {
         false
     }
-    /// Its needs for one body, besides the mesh and the state.
+    /// The memory and the couplings that it needs for one body, besides the mesh and the state.
     fn need(&self, _counts: &Counts) -> Need {
         Need::default()
     }

@@ -53,7 +53,7 @@ pub enum Role {
     CellsFromFile,
     /// An integrator whose steps end in an equilibrium.
     Statics,
-    /// The integrator that a program offers if the user has named none, or one without a stable step. It is explicit.
+    /// The explicit integrator that a program offers if the user has named none, or has named one without a stable step.
     OfferedExplicit,
     /// The integrator that replaces [`Role::Statics`] if a body has to move. It is stable at any step.
     OfferedImplicit,
@@ -282,7 +282,8 @@ impl Values {
         }
         Ok(())
     }
-    /// Sets a field like [`Values::set`]; if exactly one field of a set may be given, clears the others.
+    /// Sets a field like [`Values::set`]. If the field belongs to a set of which exactly one must be given, clears the other
+    /// fields of the set.
     ///
     /// # Errors
     /// A [`ValueError`] with the allowed values; the values do not change.

@@ -59,7 +59,8 @@ const DISPLACEMENT: f64 = 1e-7;
 /// proportional.
 const PROPORTIONAL: f64 = 1e-7;
 
-/// An integrator that is stable up to this angle ωh per step counts as one without a limit, as implicit integrators are.
+/// An integrator that is stable up to this angle ωh per step counts as one without a limit. Many implicit integrators have
+/// none.
 const LARGEST_PHASE: f64 = 1e6;
 
 /// The ranges of the frequencies and damping of all modes of a system.
@@ -133,7 +134,7 @@ impl Spectrum {
             probe.add_damping(d, out)?;
             probe.add_stiffness(-gamma, d, out)
         })?;
-        // For stiffness-proportional damping, this is the rounding of differences.
+        // For stiffness-proportional damping, such a small offset is only the rounding error of differences.
         let offset = offset.map(|end| if end.abs() <= PROPORTIONAL * damping { 0.0 } else { end });
         Ok(Spectrum { omega, damping, least_damping, offset })
     }
@@ -177,7 +178,7 @@ impl Spectrum {
                 high = middle;
             }
         }
-        // At the limit, growth below the tolerance is still growth. So there must be none at half the step.
+        // The search for the limit tolerates a little growth. An integrator that is stable shows no growth at half the step.
         (worst(integrator, &modes, 0.5 * low) <= 1.0 + SLOWEST).then_some(low)
     }
 

@@ -92,7 +92,7 @@ pub fn load<P: Pack, const D: usize>(columns: &[&[f64]; D], index: usize) -> [P;
     lanes!(P, d => P::load(&columns[d][index..]))
 }
 
-/// A number per index that is often the same everywhere; then eight values represent the whole column.
+/// A number per index. Often all packs hold the same eight numbers, which then represent the whole column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter(Numbers);
 

@@ -11,8 +11,8 @@
 //! nodes: slots by ascending element, corner    ●       ●           added up one after the other
 //! ```
 //!
-//! Every tile evaluates all elements that touch it (both tiles evaluate those across their border). So a node receives the same
-//! numbers in the same order, whatever the tiles and the layout, and its force has the same bits.
+//! Every tile evaluates all elements that touch it. Elements across the border of two tiles are evaluated by both. So a node
+//! receives the same numbers in the same order, whatever the tiles and the layout, and its force has the same bits.
 
 mod clamp;
 mod dual;
@@ -204,7 +204,7 @@ impl<L, const N: usize, const K: usize> Stencils<L, N, K> {
             }
         }
 
-        // From slots to nodes.
+        // Add the slots to the forces on the nodes.
         let start = (block * TILE).max(tile.range.start) / stride;
         let end = ((block + 1) * TILE).min(tile.range.end).div_ceil(stride).min(self.nodes);
         for node in start..end {

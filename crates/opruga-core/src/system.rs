@@ -64,7 +64,7 @@ pub struct Member<const D: usize> {
     pub memory: Vec<f64>,
     /// The results of `prepare`.
     pub scratch: Column,
-    /// The account of its power, if it has any; determined once and not for every tile.
+    /// The account in which its power is recorded, if it has any power. It is determined once and not for every tile.
     pub(crate) flows: Option<Account>,
     /// Whether it begins the forces of tiles.
     pub(crate) begins_tiles: bool,
@@ -220,11 +220,11 @@ impl<const D: usize> System<D> {
         let stride = self.layout.stride();
         let mut spans = Vec::new();
         let mut last = (usize::MAX, usize::MAX);
-        // Nodes of a stencil must not move before the last of them has read the others.
+        // No node of a stencil may move before the force on the last node of the stencil has read the others.
         for member in self.members.iter().filter(|member| !member.potential.properties().forces_in_prepare) {
             member.potential.stencils(&mut |nodes| {
                 let (a, b) = nodes.iter().fold((u32::MAX, 0), |(a, b), node| (a.min(*node), b.max(*node)));
-                // Only pairs of different tiles matter; neighbouring pairs repeat.
+                // Only stencils that span several tiles matter, and neighbouring stencils often span the same ones.
                 let pair = (a as usize * stride, (b as usize + 1) * stride - 1);
                 let tiles = (pair.0 / TILE, pair.1 / TILE);
                 if tiles.0 != tiles.1 && tiles != last {

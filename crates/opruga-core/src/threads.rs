@@ -37,7 +37,7 @@ pub fn together<R>(threads: usize, work: impl FnOnce() -> R) -> R {
         for number in 1..threads {
             let team = Arc::clone(&team);
             scope.spawn(move |_| {
-                // A thread that leads a team may run this job while it waits; it must not serve.
+                // A thread that leads a team may run this job while it waits. It must not serve in another team.
                 if TEAM.with_borrow(Option::is_none) {
                     team.serve(number);
                 }
@@ -66,8 +66,8 @@ pub fn each<T: Send>(threads: usize, pieces: &mut [T], work: impl Fn(&mut T) + S
     }
 }
 
-/// Does the work on every piece on the threads of the pool in which the caller runs. Unlike a team, these threads sleep between calls. Meant for
-/// pieces that take tens of microseconds, between longer work on one thread.
+/// Does the work on every piece on the threads of the pool in which the caller runs. Unlike those of a team, these threads
+/// sleep between calls. This function is meant for pieces that take tens of microseconds, between longer work on one thread.
 pub fn each_in_pool<T: Send>(pieces: &mut [T], work: impl Fn(&mut T) + Sync + Send) {
     match pieces {
         [] => {}
@@ -90,7 +90,7 @@ pub fn part_size(length: usize, threads: usize, least: usize) -> usize {
     size.max(1)
 }
 
-/// Does the same with parts of a slice: each piece of work receives its own `length` entries.
+/// Does the work on every piece like [`each`], and gives every piece its own `length` entries of a slice.
 pub fn each_with<T: Send, U: Send>(
     threads: usize,
     pieces: &mut [T],

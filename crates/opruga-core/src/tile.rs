@@ -40,7 +40,7 @@ impl<const D: usize> Tile<'_, D> {
             simd.run(Settle { tile: self });
         }
     }
-    /// Does the same within code for one set of instructions.
+    /// Does the same as [`Tile::settle`], within code for one set of instructions.
     #[inline(always)]
     pub fn settle_by<P: Pack>(&mut self) {
         let Some(weight) = self.weight.take() else { return };

@@ -37,7 +37,8 @@ impl<const D: usize> Suite<'_, D> {
             for cut in &cuts {
                 tiles += unequal_bits(&columns(&case.forces(best, cut, None)?.0), &whole);
             }
-            // The forces begin with the weight, whether the model adds it or it was added before.
+            // If the forces begin with the weight, the bits must not depend on whether the model adds the weight or it was
+            // added before.
             let mass = Parameter::from_items(case.layout, nodes, |n, l| self.bodies[l].mass[n]);
             if case.potential.properties().begins_tiles {
                 for cut in &cuts {
@@ -56,7 +57,7 @@ impl<const D: usize> Suite<'_, D> {
         add("tiles", tiles, 0.0);
         add("lanes", lanes, 0.0);
 
-        // Each of eight bodies by itself.
+        // Compare eight bodies side by side with each of them by itself.
         let mut batch = 0.0;
         let mut powers = 0.0;
         let (together, power) = eight.forces(best, &regular(eight.index_count(), TILE), None)?;

@@ -1,4 +1,5 @@
-//! Rigid motion changes nothing: energies, forces, net force and torque.
+//! Checks that a rigid motion does not change the energy and only rotates the forces, and that net force and net torque are
+//! zero.
 
 use super::Suite;
 use super::case::{Answer, by_node, difference, largest, mean_edge};

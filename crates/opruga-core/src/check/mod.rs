@@ -57,7 +57,7 @@ pub struct Options {
     pub mirrored: bool,
     /// Whether the model claims the rows on rigid motion, net force and net torque.
     pub rigid: bool,
-    /// Whether the parameters keep the properties that [`Model::views`] claims.
+    /// Whether the model has the properties that [`Model::views`] claims also with these parameters.
     pub views: bool,
     /// Whether the model claims a finite force if all nodes coincide.
     pub coincident: bool,
@@ -94,7 +94,7 @@ impl Default for Options {
     }
 }
 
-/// One comparison.
+/// One comparison of the suite, with its error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// What was compared.
@@ -117,9 +117,9 @@ impl Row {
 /// All comparisons of one model on one mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// The name that was given.
+    /// The name that the caller of the suite gave.
     pub name: String,
-    /// The dimension.
+    /// The dimension of the mesh.
     pub dimension: usize,
     /// The comparisons.
     pub rows: Vec<Row>,
@@ -191,7 +191,7 @@ struct Suite<'a, const D: usize> {
 }
 
 impl<const D: usize> Suite<'_, D> {
-    /// The model of one of the bodies, or of all eight.
+    /// Builds the model of one of the bodies, or of all eight.
     fn build(&self, body: Option<usize>) -> Answer<Box<dyn Potential<D>>> {
         let nodes = self.mesh.positions.len();
         let values: Vec<&Values> = match body {

@@ -1,5 +1,5 @@
-//! Runs in which the second nodes follow the first ones by one: outlines, rows of grids. This is the inner loop of springs and of
-//! gas in the plane.
+//! Runs in which the second node of each pair has the next index after the first node: outlines, rows of grids. This is the
+//! inner loop of springs and of gas in the plane.
 
 use super::PairLaw;
 use super::lone::Lone;
@@ -25,8 +25,8 @@ pub(super) struct Chain<'a, 'v, L, const D: usize> {
 /// One case of the loop.
 struct Walk<'a, 'c, 'v, 't, L, const D: usize, const BATCH: bool, const FRESH: bool, const SAME: bool> {
     chain: &'a Chain<'c, 'v, L, D>,
-    // This is a reference, because numbers stored next to pointers would be read together with them, and that read would wait
-    // until all of them have been written.
+    // This is a reference. Numbers stored next to pointers would be read together with the pointers, and such a read waits
+    // until all these values have been written.
     weight: &'a Weight<'a, D>,
     tile: &'a mut Tile<'t, D>,
     power: &'a mut [f64; WIDTH],
@@ -97,7 +97,7 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
         let &Chain { law, view, a, first, length, .. } = self;
         let next = if BATCH { WIDTH } else { 1 };
         let (start, end) = (tile.range.start.max(a), tile.range.end.min(a + length + next));
-        // The pack before the first node supplies the force of the pair that ends there.
+        // The pack before the first node supplies the force of the pair that ends at the first node.
         let lead = if start > a { if BATCH || start >= a + WIDTH { WIDTH } else { start - a } } else { 0 };
         let packed = (end - start).next_multiple_of(WIDTH);
         let x = Strip::<D>::new(&view.x, start - lead, lead + packed + next);
@@ -128,8 +128,8 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
                 }
             }
         }
-        // Pairs end before the last node. Nodes end with the run or with the tile; later ones belong to another tile, whose
-        // forces may already be stored next to these.
+        // No pair begins at the last node of the run. The nodes of the loop end where the run or the tile ends. Later nodes
+        // belong to another tile, whose forces may already be stored next to these.
         let (pairs, nodes) = (a + length - start, end - start);
         let mut walker =
             Walker { law, next, lead, packed, x, v, p0, p1, p2, same, weight, previous, ahead: [P::zero(); MOST_LAG] };

@@ -147,7 +147,7 @@ impl PairTable {
         let packed = all.len().next_multiple_of(WIDTH);
         let column_length = packed + 2 * WIDTH;
         tile.slots.grow(D * column_length);
-        // One strip from the lower end on serves both ends, so that few pointers stay in registers.
+        // One strip that starts at the lower of the two end nodes serves both ends, so that few pointers occupy registers.
         let base = a.min(b);
         let (to_a, to_b) = (a - base, b - base);
         let span = packed + to_a.max(to_b);
@@ -336,7 +336,7 @@ impl<L: PairLaw<D>, const D: usize> Work for Long<'_, '_, '_, L, D> {
 }
 
 /// Adds slots to `count` forces from `at` on. Each force receives one slot times `sign`. If `BOTH` is set, it receives the slot
-/// of the first node and then `sign` times the slot of the second node. Forces behind these do not change.
+/// of the first node and then `sign` times the slot of the second node. Later forces do not change.
 #[inline(always)]
 fn add_slots<P: Pack, const BOTH: bool>(
     into: &mut [f64],

@@ -27,7 +27,7 @@ pub trait PairLaw<const D: usize>: Copy {
     const DAMPED: bool;
     /// Whether the law reads two numbers that are equal for all pairs of a body ([`PairLaw::uniform`]), and no others.
     const UNIFORM: bool;
-    /// The force on the second node is this times the force on the first: −1 or +1.
+    /// The force on the second node divided by the force on the first: −1 or +1.
     const SECOND: f64;
     /// Whether [`PairLaw::ahead`] computes anything.
     const AHEAD: bool;

@@ -104,8 +104,8 @@ impl PairTable {
             let width = pull.used(self.layout, index);
             for from in (0..width).step_by(AT_ONCE) {
                 let slots = from..(from + AT_ONCE).min(width);
-                // The slow part begins for all partners first. The processor can then compute the rest of the first partners
-                // meanwhile.
+                // The slow part of the law is started for all partners first. While the processor computes it for the later
+                // partners, it can already finish the first ones.
                 let (mut d, mut ahead) = ([[P::zero(); D]; AT_ONCE], [P::zero(); AT_ONCE]);
                 for slot in slots.clone() {
                     let (partner, _) = pull.slot(self.layout, index, slot);

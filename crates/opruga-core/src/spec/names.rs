@@ -27,8 +27,8 @@ const OTHER_NAMES: [(&str, &str); 23] = [
     ("name", "title"),
 ];
 
-/// The candidate that a word means: the one for which it is a common name, or the one that differs from it in the fewest
-/// letters, if it is close enough.
+/// The candidate that a word means. This is the candidate for which the word is a common name. If there is none, it is the
+/// candidate that differs from the word in the fewest letters, if these are few enough.
 pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.collect();
     let spelt: String = word.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
@@ -48,9 +48,9 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
 /// The largest number of candidates that are offered for a word.
 const MOST_OFFERED: usize = 4;
 
-/// All candidates that may be meant by a word, the closest first. They differ from it by a few letters, either as a whole or up
-/// to one of their parts, as `balloon-in-a-box` does from `ballon`. Of two equally close candidates, the one with the longer
-/// common beginning comes first.
+/// All candidates that a word may mean, the closest first. Either the whole candidate or its beginning, up to the end of one of
+/// its parts, differs from the word by a few letters. For example, `ballon` may mean `balloon-in-a-box`. Of two equally close
+/// candidates, the one with the longer common beginning comes first.
 pub fn close_matches<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<String> {
     let candidates: Vec<&str> = candidates.collect();
     let limit = word.chars().count() / 3 + 1;

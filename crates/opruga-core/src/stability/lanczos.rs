@@ -88,7 +88,7 @@ pub(super) fn extremes<const D: usize>(
         for (end, value) in [low, high].into_iter().enumerate() {
             let residual = matrix.residual(value);
             if found[end].is_none() && (last || residual <= TOLERANCE * scale.larger(reference)) {
-                // If the space is exhausted, the values are exact.
+                // If the recurrence has exhausted the space, the Ritz values are exact.
                 let rest = if beta <= 1e-12 * scale || iteration == freedom { 0.0 } else { residual };
                 found[end] = Some(if end == 0 { value - rest } else { value + rest });
             }

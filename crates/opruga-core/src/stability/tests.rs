@@ -184,7 +184,7 @@ fn the_polygon_is_narrow_where_damping_follows_stiffness() {
         spectrum.offset[0].abs() < 0.05 * spectrum.damping && spectrum.offset[1].abs() < 0.05 * spectrum.damping,
         "{spectrum:?}"
     );
-    // Opposite to the stiffness: the softest spring has the strongest damper.
+    // The damping opposes the stiffness: the softest spring has the strongest damper.
     let opposes =
         anchored(Layout::Single, 200, 1, 1.0, stiffness.clone(), stiffness.iter().map(|k| 0.1 * (219.0 - k)).collect());
     let spectrum = Spectrum::of(&opposes).unwrap();
