@@ -1,4 +1,4 @@
-//! What can be said on the command line.
+//! The commands and arguments of the command line.
 
 mod bench;
 mod material;
@@ -243,12 +243,12 @@ pub(crate) struct Pictures {
 }
 
 impl Pictures {
-    /// Whether the call says anything of them.
+    /// Whether the call gives any of these options.
     fn is_given(&self) -> bool {
         self.fps.is_some() || self.no_pictures || self.gif || self.arrows || self.springs
     }
 
-    /// What shall be seen; `notes`: and said, where frames do not have the rate that was asked for.
+    /// The output that the call requests. `notes` selects whether a note reports that pictures have another rate than requested.
     fn wanted(&self, notes: bool) -> Wanted {
         Wanted {
             row_every: None,
@@ -442,26 +442,26 @@ pub(crate) struct Replay {
 }
 
 impl Replay {
-    /// Whether the call says what is to be written.
+    /// Whether the call requests that files are written.
     pub(crate) fn writes(&self) -> bool {
         let formats = [self.vtk, self.vtu, self.obj, self.ply, self.gltf, self.pc2, self.mdd];
         self.out.is_some() || self.pictures.is_given() || formats.contains(&true)
     }
 
-    /// What shall be seen.
+    /// The output that the call requests.
     pub(crate) fn wanted(&self) -> Wanted {
         self.pictures.wanted(!self.json)
     }
 }
 
 impl Run {
-    /// What shall be seen.
+    /// The output that the call requests.
     pub(crate) fn wanted(&self) -> Wanted {
         let wanted = self.pictures.wanted(!self.json && !self.pictures.no_pictures);
         Wanted { row_every: self.diagnostics_every, ..wanted }
     }
 
-    /// What `opruga` without a command does.
+    /// The arguments with which `opruga` runs a scene if it is called without a command.
     pub(crate) fn default_scene() -> Run {
         match Arguments::parse_from(["opruga", "run"]).command {
             Some(Command::Run(run)) => run,
@@ -471,7 +471,7 @@ impl Run {
 }
 
 impl Command {
-    /// Whether errors are wanted as JSON.
+    /// Whether the call requests errors as JSON.
     pub(crate) fn json(&self) -> bool {
         match self {
             Command::Run(run) => run.json,
@@ -494,7 +494,7 @@ impl Command {
     }
 }
 
-/// Reads a number of modes; all are more than any body has.
+/// Reads a number of modes. The word `all` stands for a number larger than that of any body.
 fn count_of_modes(text: &str) -> Result<usize, String> {
     match text {
         "all" => Ok(usize::MAX),

@@ -228,8 +228,8 @@ impl<'a> Keeper<'a> {
     }
 
     /// Writes the table so far and a checkpoint; the previous checkpoint is kept under its second name. Returns the names of the files that then
-    /// exist. At the first call, the files of an earlier run are removed, because they would look like files of this one. If it fails, nothing is
-    /// changed.
+    /// exist. At the first call, the files of an earlier run are removed, because they would look like files of this one. If the call fails, no file
+    /// is changed.
     pub(crate) fn write(&mut self, world: &dyn AnyWorld, table: &NumberTable) -> Result<Vec<String>, WriteError> {
         let saved = SavedRun {
             name: self.source.name.clone(),

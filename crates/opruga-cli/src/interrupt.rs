@@ -13,7 +13,7 @@ static END: AtomicBool = AtomicBool::new(false);
 static SILENT: AtomicBool = AtomicBool::new(false);
 static HANDLER: Once = Once::new();
 
-/// How long the present work may take to end before the user is told that it continues.
+/// How long the present work may take to end before a message reports that it continues.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// The flag that is set when the present work should stop. After the first call, Ctrl-C and termination signals set it. A second signal ends the

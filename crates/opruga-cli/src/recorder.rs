@@ -26,7 +26,7 @@ const LOOKED_AT: u64 = 4_000_000;
 const MOST_ROWS: u64 = 60_000;
 
 /// The largest size of `diagnostics.csv` if the call does not ask for more [bytes]: two to three million numbers, which programs read in seconds.
-/// Frames of 1e-8 s wrote 330 MB (test: `diagnostics.rs`).
+/// Without this limit, a run with frames of 1e-8 s would write 330 MB (test: `diagnostics.rs`).
 const MOST_TABLE_BYTES: u64 = 64 << 20;
 
 /// The size of a number in the table [bytes]: a sign, 17 digits, point, exponent and comma.
@@ -53,7 +53,7 @@ const USUAL_RATE: f64 = 20.0;
 
 /// The data collected in every frame.
 pub(crate) struct Recorder {
-    /// One row for every frame.
+    /// The table `diagnostics.csv`, with a row for every frame that `rows` selects.
     pub(crate) table: NumberTable,
     /// The table for the plots; for small runs it also has rows within frames.
     pub(crate) seen: NumberTable,
@@ -77,7 +77,7 @@ pub(crate) struct Recorder {
 struct Rows {
     /// The number of frames from one row to the next.
     apart: u64,
-    /// The size of a table with a row for every frame [bytes], if the call does not choose the rows and this size exceeds the limit.
+    /// The size of a table with a row for every frame [bytes]; none if the call chooses the rows, or if this size is within the limit.
     too_many: Option<u64>,
     /// The last frame that has a row.
     last: Option<u64>,

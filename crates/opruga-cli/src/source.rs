@@ -90,7 +90,8 @@ impl Source {
 
     fn refused(&self, reading: scene::Reading, options: &scene::Options, world: &Options) -> Failure {
         let refusals = reading.blueprint.as_ref().map_or_else(Vec::new, |rest| rest.problems(world, &self.registries));
-        // Statics refuses bodies that can move freely. If another error may have removed what holds a body, this refusal would be false.
+        // Statics refuses bodies that can move freely. If another error may have removed a pin, a load or an obstacle that holds a body, such a
+        // refusal may be wrong and is omitted.
         let known = reading.knows_what_holds();
         let refusals = refusals.iter().filter(|refusal| known || !refusal.code().starts_with("static."));
         let located: Vec<SceneError> = refusals.map(|refusal| self.locate(refusal, options)).collect();
@@ -166,7 +167,7 @@ fn has_time(message: &dyn Message) -> bool {
 
 /// The name of a file as it must be typed on the command line.
 pub(crate) fn argument(path: &str) -> String {
-    // Otherwise it would look like an option.
+    // Without `./` in front, such a path would look like an option.
     let path = if path.starts_with('-') { format!("./{path}") } else { path.to_string() };
     if path.chars().all(|c| c.is_alphanumeric() || "._-/\\:".contains(c)) {
         path

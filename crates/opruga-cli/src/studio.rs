@@ -100,9 +100,9 @@ fn built(cargo: &OsStr, root: &Path) -> Command {
     command
 }
 
-/// Waits for the end of another program. As soon as this program is asked to end, it asks the other one to end too, so that it saves its work even if
-/// this program does not wait for it. Ctrl-C may already have asked it. If it does not end, it is killed. The window of the studio ends by itself
-/// with the program that supervises it.
+/// Waits for the end of another program. As soon as this program is asked to end, it asks the other program to end too. The other program then saves
+/// its work even if this program does not wait for it. Ctrl-C may already have reached both programs. If the other program does not end, it is
+/// killed. The window of the studio ends by itself with the program that supervises it.
 fn wait(mut child: Child, stop: &AtomicBool) -> std::io::Result<ExitStatus> {
     let mut asked: Option<Instant> = None;
     loop {

@@ -62,7 +62,7 @@ fn again_and_again(
     }
     interrupt::asked_to_stop();
     loop {
-        // A change while the files are being found counts.
+        // The state of the scene is taken before its files are searched for, so a change during the search counts.
         let stamp = Stamp::of(path);
         let (files, mut stamps) = named_files(scene, registries, outside);
         stamps[0] = stamp;
@@ -71,7 +71,7 @@ fn again_and_again(
             let outcome = work();
             match &outcome {
                 Err(Failure::ClosedPipe) => interrupt::stop_work(),
-                // The work was stopped by the change.
+                // The change has stopped the work.
                 Err(Failure::Interrupted) => {}
                 Err(failure) => failure.print(json),
                 Ok(_) => {}

@@ -63,11 +63,11 @@ pub enum Content<const D: usize> {
 }
 
 impl<T: PerBodyValue> PerBody<T> {
-    /// A channel with this name.
+    /// Makes a channel with this name.
     pub const fn new(name: &'static str) -> PerBody<T> {
         PerBody { name, value: PhantomData }
     }
-    /// Its declaration.
+    /// Returns the declaration of the channel.
     pub fn declared(&self) -> Channel {
         // For a value per body the dimension does not matter.
         Channel { name: self.name, holds: T::default().content::<2>().holds() }
@@ -75,11 +75,11 @@ impl<T: PerBodyValue> PerBody<T> {
 }
 
 impl PerNode {
-    /// A channel with this name.
+    /// Makes a channel with this name.
     pub const fn new(name: &'static str) -> PerNode {
         PerNode { name }
     }
-    /// Its declaration.
+    /// Returns the declaration of the channel.
     pub fn declared(&self) -> Channel {
         Channel { name: self.name, holds: Type::Vectors }
     }

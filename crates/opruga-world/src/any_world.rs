@@ -134,7 +134,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn momentum(&self) -> [[f64; 3]; 2];
     /// The readings of the models of a body.
     fn readings(&mut self, body: usize) -> Vec<Reading>;
-    /// The names of the readings of a body; empty if a model refuses the body. Body numbers beyond those of the scene refer to
+    /// The names of the readings of a body; empty if a model refuses the body. Numbers after those of the bodies in the scene refer to
     /// [`AnyWorld::coming_bodies`].
     fn reading_names_of(&self, body: usize) -> Vec<Cow<'static, str>>;
     /// The values of a probe.
@@ -160,7 +160,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// The first point of a body that a ray hits, at most `reach` [m] from its origin. In the plane the third coordinates are ignored.
     ///
     /// # Errors
-    /// As for [`World::cast_ray`].
+    /// The errors of [`World::cast_ray`].
     fn cast_ray(
         &self,
         origin: [f64; 3],
@@ -170,7 +170,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// The point nearest to a given point on the surfaces of all bodies, at most `reach` [m] away.
     ///
     /// # Errors
-    /// As for [`World::nearest_surface_point`].
+    /// The errors of [`World::nearest_surface_point`].
     fn nearest_surface_point(&self, point: [f64; 3], reach: f64) -> Result<Option<SurfacePoint<3>>, WorldError>;
     /// The lowest natural modes of a body about its present state.
     ///

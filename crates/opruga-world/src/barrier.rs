@@ -55,7 +55,8 @@ impl<const D: usize> Meeting<D> {
         outcome
     }
 
-    /// Makes a step of h to a time [s]. If its end is not found and the scene allows it, makes two steps of half the length.
+    /// Makes a step of length h that ends at a given time [s]. If the search does not find its end and the scene allows it, makes two steps of half
+    /// the length.
     fn advance_as_one(
         &mut self,
         islands: &mut [&mut Island<D>],
@@ -84,7 +85,7 @@ impl<const D: usize> Meeting<D> {
         self.advance_as_one(islands, step, kept, (0.5 * h, time), halvings + 1)
     }
 
-    /// Makes a step of h to a time [s]; the step is a part of a whole substep [s].
+    /// Makes a step of length h that ends at a given time [s]. The step may be a part of the substep, which is `whole` [s] long.
     fn find_common_end(
         &mut self,
         islands: &mut [&mut Island<D>],
@@ -145,7 +146,7 @@ impl<const D: usize> Meeting<D> {
 }
 
 impl<const D: usize> Search<'_, '_, D> {
-    /// Ends the steps of all bodies. The forces that they exert on one another are reported as impulses of a whole substep of h [s].
+    /// Ends the steps of all bodies. Reports the forces that the bodies exert on one another as the impulses of a whole substep of h [s].
     fn close(self, h: f64) -> Result<(), Refused> {
         let (iterations, converged, moves) = (self.iterations, self.converged, self.staying.is_none());
         let Search { islands, touching, barrier, opened, coordinates, moved, x, pressed, rubbing, .. } = self;

@@ -143,7 +143,7 @@ impl<const D: usize> Search<'_, '_, D> {
         for _ in 0..MOST_HALVINGS {
             match self.barrier.look(surface, laws, [&self.x, &end], *most) {
                 Ok(()) => return Ok(part * self.barrier.free_part(surface, laws, [&self.x, &end])),
-                // Paths across many bodies have more pairs than the limit allows; half the paths may have few enough.
+                // Paths across many bodies have more pairs than the limit allows. Paths of half the length may have few enough.
                 Err(Trouble::TooMany { .. }) => part *= 0.5,
                 Err(trouble) => return Err(trouble.into()),
             }

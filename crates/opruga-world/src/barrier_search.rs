@@ -236,7 +236,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(())
     }
 
-    /// The force that friction resists on every pair [N], by the features of the pairs.
+    /// The friction force of every pair with the opposite sign [N], which is the multiplier for the next search, by the features of the pairs.
     pub(crate) fn multipliers(&self) -> Vec<(u64, [f64; D])> {
         self.rubbing.iter().map(|rub| (rub.id, scaled(&rub.force(&rub.slip(&self.moved)), -1.0))).collect()
     }
@@ -263,9 +263,9 @@ impl<const D: usize> Search<'_, '_, D> {
         changed <= SETTLED * most
     }
 
-    /// Minimises the sum at given friction by Newton's method, to the tolerance of the bodies; makes only one correction for bodies at rest. Returns
-    /// whether a minimum was found. After a single correction, this means that the bodies were in equilibrium before it, to a fraction of their
-    /// forces.
+    /// Minimises the sum at given friction by Newton's method. If `precise` is set, goes on to the tolerance of the bodies; otherwise makes a single
+    /// correction. Returns whether a minimum was found. After a single correction, this means that the bodies were in equilibrium before it, to a
+    /// fraction of their forces.
     fn find_minimum(&mut self, precise: bool) -> Result<bool, Refused> {
         let (mut first, mut counted) = (0.0, 0);
         self.stretch = if precise { 1.0 } else { self.stretch };
@@ -302,7 +302,8 @@ impl<const D: usize> Search<'_, '_, D> {
             }
             let Some((slope, balanced)) = direction else { return Err(self.not_definite(0)) };
             let part = self.go(slope)?;
-            // A correction that pairs or a rise of the sum have shortened does not count against a budget; otherwise bodies would stop in mid-flight.
+            // A correction that was shortened, because pairs would meet or the sum would rise, does not count against a budget. Otherwise bodies
+            // would stop in mid-flight.
             counted += u32::from(part == 1.0 || !self.has_budget);
             if let Some(staying) = self.staying.as_mut().filter(|_| part == 1.0) {
                 staying.loosen();

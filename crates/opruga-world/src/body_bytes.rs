@@ -1,4 +1,5 @@
-//! Bodies and commands of the program as bytes. Snapshots contain them completely, so that removed bodies and finished commands need not be kept.
+//! Bodies and commands that the program has added, as bytes. Snapshots contain them completely, so that removed bodies and finished commands need not
+//! be kept.
 
 use crate::blueprint::{Action, BodyBlueprint, CommandBlueprint, Mass, PinBlueprint};
 use crate::bytes::{Reader, Writer};
@@ -137,7 +138,7 @@ impl Writer<'_> {
             }
             action => {
                 self.count(0);
-                // All others can be written.
+                // `write_action` can write all other actions.
                 write_action(self, action);
             }
         }

@@ -100,7 +100,7 @@ struct Seats<'a, const D: usize> {
 }
 
 impl<const D: usize> Seats<'_, D> {
-    /// The body in a lane; lanes without a body repeat the first one.
+    /// The body in a lane. A lane without a body of its own repeats the first body.
     fn of_lane(&self, lane: usize) -> usize {
         if lane < self.bodies.len() { lane } else { 0 }
     }
@@ -253,7 +253,7 @@ impl<const D: usize> Builder<'_, D> {
             contact_laws::check(self.blueprint, body, integrator)?;
         }
         self.check_cells(first)?;
-        // Loads provide their derivatives; models may lack them.
+        // Only the models are checked, because loads always provide their derivatives.
         for member in &system.members[..first.models.len()] {
             if !member.potential.properties().views.include(integrator.needs()) {
                 return Err(no_view(&*member.potential, integrator.name()));

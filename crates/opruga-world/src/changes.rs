@@ -340,7 +340,7 @@ impl<const D: usize> World<D> {
                 bodies.entry(number).or_insert((models, integrator));
             }
         }
-        // Bodies of the program keep their present values.
+        // Bodies that the program has added keep their present values.
         bodies.retain(|body, _| self.slots.origin.get(*body) != Some(&Origin::Program));
     }
 

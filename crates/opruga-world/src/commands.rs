@@ -66,7 +66,8 @@ impl<const D: usize> World<D> {
         Some(usual_pull(&self.islands[island].system, lane, &self.blueprint.bodies[body]))
     }
 
-    /// Gives the world a command. It begins at its time, at the beginning of a frame. Once it is over, nothing of it is kept.
+    /// Gives the world a command. The command begins at the start of the first frame that is not before its time. Once the command is over, the world
+    /// keeps nothing of it.
     ///
     /// # Errors
     /// [`WorldError`] if it refers to a body that does not exist, or if a scene could not contain it.
@@ -131,7 +132,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Ends a command at a given time [s] instead of its own.
+    /// Ends a command at a given time [s] instead of its own end.
     ///
     /// # Errors
     /// [`WorldError::Path`] if there is no such command, or if it would not end after its beginning.
@@ -149,8 +150,8 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Begins and ends the commands that are due now, without waiting for the coming frame, which does not repeat them. Call it to see the effect of
-    /// commands at a moment to which the world was rewound.
+    /// Begins and ends the commands that are due now, without waiting for the coming frame, which does not repeat them. Call this method to see the
+    /// effect of commands at a moment to which the world was rewound.
     ///
     /// # Errors
     /// [`WorldError`] of the first command that is refused; the others begin nevertheless.

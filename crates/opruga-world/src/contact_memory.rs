@@ -10,8 +10,7 @@ use crate::island::Island;
 use crate::meeting::Meeting;
 use crate::path_faults::SnapshotFault;
 
-/// The impulses of a pair along its normal and perpendicular to it [N s]; with a barrier, the friction force of its multiplier
-/// [N].
+/// The impulses of a pair along its normal and perpendicular to it [N s]; with a barrier, its friction multiplier [N].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Kept<const D: usize> {
     pub(crate) pair: PairKey,
@@ -68,7 +67,7 @@ impl<const D: usize> ContactMemory<D> {
         self.pushes.retain(|push| !is_gone(push.body as usize));
     }
 
-    /// Takes the results of clusters at the end of a frame.
+    /// Stores the impulses that the clusters have found at the end of a frame.
     pub(crate) fn take(&mut self, clusters: &Clusters<D>) {
         self.clear();
         for meeting in clusters.meetings() {

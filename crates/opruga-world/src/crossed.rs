@@ -44,8 +44,8 @@ struct Boundary<const D: usize> {
 }
 
 impl<const D: usize> World<D> {
-    /// Surfaces that cross among the bodies that contact keeps apart, one pair of facets for each pair of bodies, in ascending order; and bodies that
-    /// lie inside one another. Without a section `[contact]` all bodies are checked, but no body against itself.
+    /// Surfaces that cross, and bodies that lie inside one another, among the bodies that contact keeps apart. There is one pair of facets for each
+    /// pair of bodies, in ascending order. Without a section `[contact]` all bodies are checked, but no body against itself.
     ///
     /// The check is exact for the given coordinates. Wires in space are not checked.
     pub fn crossed_surfaces(&self) -> Vec<Crossed> {
@@ -95,8 +95,8 @@ impl<const D: usize> World<D> {
         (bodies, laws)
     }
 
-    /// Bodies with points inside the closed boundary of another body, in ascending order, among the bodies that contact keeps apart; without a
-    /// section `[contact]`, among all bodies. The check shares no code with the detection of contact.
+    /// Bodies with points inside the closed boundary of another body, in ascending order. Only the bodies that contact keeps apart are checked, or
+    /// all bodies without a section `[contact]`. The check shares no code with the detection of contact.
     pub fn overlaps(&self) -> Vec<Overlap> {
         let (bodies, laws) = self.kept_apart();
         let surfaces = self.surfaces(&bodies);
@@ -204,7 +204,7 @@ impl<const D: usize> Surfaces<D> {
             let outer = boundary.body;
             let mut last = None;
             for (facet, (inner, _)) in self.facets.iter().zip(&self.origin) {
-                // One point of every other body is enough.
+                // One point of every other body is enough, because its surface does not cross the boundary.
                 if *inner == outer || last == Some(*inner) {
                     continue;
                 }

@@ -58,8 +58,8 @@ impl Sums {
     }
 }
 
-/// The hashes of the bodies of a system, which are in the lanes of a batch, or alone in the first lane. In either layout node i of a body is added to
-/// its sums i modulo eight, coordinate by coordinate, positions first.
+/// The hashes of the bodies of a system, which are in the lanes of a batch, or alone in the first lane. In either layout, each body has eight pairs
+/// of sums, and its node i is added to pair i modulo eight, coordinate by coordinate, positions first.
 struct OfBodies<'a, const D: usize>(&'a System<D>);
 
 impl<const D: usize> Work for OfBodies<'_, D> {

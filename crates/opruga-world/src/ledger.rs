@@ -85,7 +85,7 @@ impl<const D: usize> Momentum<D> {
     }
 }
 
-/// A vector with a default.
+/// A vector whose default is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vector<const D: usize>(pub [f64; D]);
 impl<const D: usize> Default for Vector<D> {

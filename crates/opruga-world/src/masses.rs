@@ -6,7 +6,8 @@ use opruga_mesh::{Measure, Share};
 /// The masses of the nodes of a body [kg].
 pub(crate) fn node_masses<const D: usize>(body: &BodyBlueprint<D>) -> Vec<f64> {
     let nodes = body.mesh.nodes();
-    // A mesh without elements, or with elements of different dimensions, has no shares; all of its nodes get the same mass.
+    // A mesh without elements, or with elements of different dimensions, does not determine the shares of its nodes. All of its
+    // nodes then get the same mass.
     let shares = body.mesh.lumped_measures(Share::Proportional).unwrap_or_else(|_| vec![1.0; nodes]);
     let first = shares.first().copied().unwrap_or(0.0);
     // Shares that agree to rounding are made equal, so that a regular ring has bitwise equal masses.

@@ -241,7 +241,7 @@ impl<const D: usize> Meeting<D> {
         });
     }
 
-    /// Begins the next step where the last one ended.
+    /// Begins the next step where the previous one ended.
     pub(crate) fn set_out(&mut self, islands: &mut [&mut Island<D>]) {
         let Touching { before, after, .. } = &mut self.touching;
         std::mem::swap(before, after);
@@ -261,8 +261,8 @@ impl<const D: usize> Meeting<D> {
         Ok(())
     }
 
-    /// Solves the contact of bodies that respond as a whole, including the changes of these bodies that result from it. If one of them fails, its
-    /// outcome contains the error.
+    /// Solves the contact of bodies that respond as a whole, and repeats their steps with the resulting forces. If the step of a body fails, the
+    /// outcome of this body contains the error.
     pub(crate) fn solve_in_turn(
         &mut self,
         islands: &mut [&mut Island<D>],

@@ -88,10 +88,10 @@ pub(crate) fn check<const D: usize>(
     Err(WorldError::Build { part: Part::body(name), source: BuildError::of("memory", refusal) })
 }
 
-/// Whether the system provides this memory: allocates it in one piece and frees it. Without this check, building would abort the program if a limit
-/// of the system were lower.
+/// Whether the system provides this memory: allocates it in one piece and frees it. Without this check, a lower limit of the system would abort the
+/// program while it builds the world.
 fn is_given(bytes: f64) -> bool {
-    /// Smaller amounts are not tested: without them nothing works.
+    /// Smaller amounts are not tested, because without them the program does not work anyway.
     const LITTLE: f64 = 16_777_216.0;
     let mut probe: Vec<u8> = Vec::new();
     bytes < LITTLE || probe.try_reserve_exact(bytes.smaller(isize::MAX as f64) as usize).is_ok()

@@ -1,8 +1,9 @@
 //! Natural frequencies: small oscillations of a body about its present state.
 //!
-//! M q″ + K q = 0 with K = ∂²U/∂x∂x of all present models and loads, and the masses of the nodes, lumped or consistent depending on the models: q = φ
-//! cos ωt with K φ = ω² M φ. Damping is ignored. The state should be an equilibrium; in any other state the frequencies are those of the stiffness of
-//! springs and gas in that state. A negative ω² is reported as it is: the state is unstable, for example that of a body about to buckle.
+//! The small motion q obeys M q″ + K q = 0. K is ∂²U/∂x∂x of all present models and loads. M contains the masses of the nodes, lumped or consistent
+//! depending on the models. The solutions are q = φ cos ωt with K φ = ω² M φ. Damping is ignored. The state should be an equilibrium; in any other
+//! state the frequencies follow from the stiffness that springs and gas have in that state. A negative ω² is reported as it is. It shows that the
+//! state is unstable, for example because the body is about to buckle.
 
 use crate::any_scene::three;
 use crate::error::{Part, WorldError};
@@ -67,7 +68,7 @@ impl<const D: usize> World<D> {
         let name = self.blueprint.bodies[body].name.clone();
         let refuse =
             |refusal: Refusal| WorldError::Build { part: Part::body(&name), source: BuildError::of("modes", refusal) };
-        // Only this body is needed, and not the other bodies of its batch.
+        // The system is built for this body alone, without the other bodies of its batch.
         let mut system = self.island_of(&[body], &BTreeMap::new(), &self.integrator)?.system;
         let has_modes = |views: Views| views.hessian && views.symmetric;
         if let Some(member) = system.members.iter().find(|member| !has_modes(member.potential.properties().views)) {
@@ -108,8 +109,8 @@ struct SmallMotions<const D: usize> {
 }
 
 impl<const D: usize> SmallMotions<D> {
-    /// The small motions of a system whose forces belong to its present state. Refuses a system without frequencies, and a search for `count` modes
-    /// that needs too much memory.
+    /// The small motions of a system whose forces have been computed in its present state. Refuses a system without frequencies, and a search for
+    /// `count` modes that needs too much memory.
     fn about(system: System<D>, count: usize) -> Result<Self, Refusal> {
         let mut stiffness = BlockMatrix::<D>::default();
         stiffness.assemble(system.nodes, 0, |matrix| {

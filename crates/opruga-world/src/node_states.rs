@@ -5,8 +5,8 @@ use opruga_core::potential::CellState;
 
 /// The state of a node: the mean over the cells around it, weighted by their volume at rest, or over the facets, weighted by their area.
 ///
-/// The state of a cell is itself a mean, which is exact if the stress is linear over the cell. At the boundary, where cells lie on one side only, the
-/// mean of a node is therefore that of the centres of the cells.
+/// The state of a cell is itself a mean, which is exact if the stress is linear over the cell. At the boundary, where cells lie on one side only, a
+/// node therefore has the mean of the states at the centres of these cells, and not the state at the boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeState {
     /// Cauchy stress [Pa], row by row; in the plane including the component out of the plane.

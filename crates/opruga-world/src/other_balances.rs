@@ -4,8 +4,8 @@
 //! not show this: an arch that has snapped through consists of good cells. The energy shows it. Let fᵢ = ∂U/∂xᵢ be the forces that hold the shape
 //! against its cells, and yᵢ the rest shape, moved as a rigid body to its best fit. A convex energy satisfies U ≤ Σ fᵢ·(xᵢ − yᵢ) ≤ Σ |fᵢ| |xᵢ − yᵢ|.
 //! The energy of solids that rotate is not convex, but bodies that are bent or stretched from outside have large displacements and satisfy the bound:
-//! U is at most half of it at small strain, and a small part of it in bending with large rotations. A folded body, in contrast, keeps its energy
-//! although the forces on it are small, or act at nodes that have hardly moved.
+//! U is at most half of this bound at small strain, and a small part of it in bending with large rotations. A folded body, in contrast, keeps its
+//! energy although the forces on it are small, or act at nodes that have hardly moved.
 //!
 //! The best fit is the least-squares fit with the weights |fᵢ|: it places the rest shape where something holds the body.
 //!
@@ -122,8 +122,8 @@ impl<const D: usize> World<D> {
         Some(Warning::new(warning, count))
     }
 
-    /// Whether a body has finite elements, or a model whose forces turn with it, and no law of small strain. Such a law has a single shape without
-    /// energy and no other equilibrium.
+    /// Whether a body has finite elements, or a model whose forces rotate with the body, and no law of small strain. Such a law has a single shape
+    /// without energy and no other equilibrium.
     fn is_judged(&self, body: usize) -> bool {
         let models = self.blueprint.bodies[body].models.iter();
         let mut solids = models.filter(|model| model.spec().has_role(Role::OwnsCells)).peekable();

@@ -17,8 +17,8 @@ use opruga_mesh::{Measure, Mesh, Share};
 /// The code of the warning of [`sag`].
 pub(crate) const SAG: &str = "units.sag";
 
-/// Warns about a body that its own weight would stretch by more than its size: millimetres mixed with metres, grams with kilograms, or a stiffness
-/// per metre that was meant per millimetre.
+/// Warns about a body that its own weight would stretch by more than its size. Usual causes are millimetres mixed with metres, grams with kilograms,
+/// or a stiffness per metre that was meant per millimetre.
 ///
 /// In a chain of springs k between nodes of mass m the fastest oscillation is ω = 2 √(k/m), so k ≈ m ω²/4 represents the springs of one node,
 /// whatever the models are. The weight M g of a body of N nodes is carried by rows of springs. In a surface, there are as many rows side by side as
@@ -151,7 +151,7 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// Depths below this fraction of the size of a body are rounding errors in the numbers of the scene.
+/// Depths below this fraction of the size of a body count as rounding errors in the numbers of the scene.
 const SHALLOW: f64 = 1e-6;
 
 impl<const D: usize> World<D> {
@@ -168,7 +168,7 @@ impl<const D: usize> World<D> {
             if !colliders.reach(0.0, 0.0, &box_at(&low), &box_at(&high)) {
                 continue;
             }
-            // Pinned nodes do not move, wherever they are.
+            // Pinned nodes do not count, because obstacles do not move them.
             let pinned = self.pinned_nodes(body);
             let nodes: Vec<u32> =
                 (0..self.node_count(body) as u32).filter(|node| pinned.binary_search(node).is_err()).collect();

@@ -15,13 +15,13 @@ use opruga_core::spec::Values;
 use opruga_math::Lane;
 use std::collections::BTreeMap;
 
-/// The maximum number of warnings about commands that ended because their body was removed, one for each body; the commands of all other bodies are
-/// counted together.
+/// The maximum number of warnings about commands that ended because their body was removed. Each warning names one body. The commands of all further
+/// bodies are counted together.
 const MOST_NAMED: usize = 16;
 
 impl<const D: usize> World<D> {
-    /// Adds a body; returns its number. After its removal nothing is kept of it, and the program may add another body with the same number;
-    /// [`World::handle`] distinguishes them.
+    /// Adds a body; returns its number. After the removal of the body, nothing is kept of it, and another body that the program adds may get the same
+    /// number. [`World::handle`] distinguishes these bodies.
     ///
     /// # Errors
     /// [`WorldError`] if its name is taken, if a scene could not contain it, or if a model refuses it; the world is then unchanged.
@@ -206,7 +206,7 @@ impl<const D: usize> World<D> {
         let square = |x: [f64; D]| x.iter().map(|c| c * c).sum::<f64>();
         let mut gone = Vec::new();
         for island in &self.islands {
-            // The corner of the box that is farthest from the origin. Usually even this corner is near.
+            // The corner of the box that is farthest from the origin. Usually even this corner is within the limit.
             let [low, high] = island.survey.position;
             let corner = core::array::from_fn(|d| low[d].abs().larger(high[d].abs()));
             if square(corner) <= limit * limit {

@@ -25,7 +25,7 @@ impl<const D: usize> World<D> {
         let mut obstacles = Vec::new();
         for (number, collider) in blueprint.colliders.iter().enumerate() {
             if let Some(mut error) = refused(part(Vec::new(), vec![collider.clone()], Vec::new())) {
-                // In its own world it has number 0.
+                // In the world that was built for it alone, the obstacle has number 0.
                 if let WorldError::Build { part: Part::Collider { index }, .. } = &mut error {
                     *index = number;
                 }
@@ -53,7 +53,7 @@ impl<const D: usize> World<D> {
             let mut body = body.clone();
             body.pins = body.pins.iter().filter(|pin| pin.select.fault(&body).is_none()).cloned().collect();
             let body = &body;
-            // Obstacles are included because they may hold it.
+            // Obstacles are included because they may hold the body.
             let Some(first) = refused(part(vec![body.clone()], obstacles.clone(), loads)) else { continue };
             if !all_obstacles && first.code().starts_with("static.") {
                 // A refused obstacle might have held the body, which is not known.

@@ -140,7 +140,8 @@ impl<const D: usize> Meeting<D> {
             if !free_motion(touching, &mut answers) || !touching.find_impulses(h, obstacles, Some(&mut answers))? {
                 return Ok(false);
             }
-            // The last round must only prevent penetration at the end of the last step; the remaining error is left to the next substep.
+            // In the last round, no step is repeated: the end of the present step must only be free of penetration. The remaining error is left to
+            // the next substep.
             let agreed: &[_] = if self.touching.has_budget { &AGREED_IN_BUDGET } else { &AGREED };
             let agreed = agreed.iter().find(|(before, _)| round < *before);
             let enough = agreed.map_or(f64::INFINITY, |(_, part)| part * thickness);

@@ -87,7 +87,7 @@ fn meet<const D: usize>(origin: &[f64; D], direction: &[f64; D], at: &[[f64; D];
         let whole: f64 = weights.iter().sum();
         weights = weights.map(|w| w / whole);
     }
-    // Because of this tolerance, no ray can pass between two facets by rounding.
+    // Because of this tolerance, rounding lets no ray pass between two facets.
     weights.iter().all(|w| *w >= -1e-12).then_some((length, weights))
 }
 

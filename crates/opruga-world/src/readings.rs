@@ -222,7 +222,7 @@ impl<const D: usize> World<D> {
             lost if lost < 0.0 => (-lost, Difference::Gained),
             lost => (lost, Difference::Lost),
         };
-        // Contact begins and ends within steps, whatever the order of an integrator.
+        // Contact begins and ends within steps, so an integrator of higher order does not reduce this error.
         let every = |of: &dyn Fn(&Island<D>) -> bool| self.islands.iter().all(of);
         let help = if every(&|island| island.integrator.measures_its_damping()) {
             ErrorHint::Implicit

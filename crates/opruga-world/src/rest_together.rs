@@ -62,8 +62,8 @@ struct Body<const D: usize> {
     /// The residual, and the size of the forces that balance [N].
     rest: f64,
     size: f64,
-    /// The part of these that is due to rounding of positions [N]. Without this floor, a body without forces would compare rounding errors with each
-    /// other and keep all others from equilibrium (`bodies_without_forces_do_not_keep_others_from_their_balance`).
+    /// The part of the residual that is due to rounding of positions [N]. Without this floor, a body without forces would compare rounding errors
+    /// with each other and keep all others from equilibrium (`bodies_without_forces_do_not_keep_others_from_their_balance`).
     rounding: f64,
     /// Whether obstacles hold other nodes than before, or hold them differently.
     constraints_changed: bool,
@@ -130,7 +130,7 @@ impl<const D: usize> Body<D> {
     }
 
     /// Adds the effect of new contact forces to the correction, and computes the forces at its end. Returns the largest displacement [m] and the part
-    /// of the forces that was not predicted; none if the correction is too long or if a model is not defined there.
+    /// of the forces that was not predicted; none if the correction is too long or if a model is not defined at its end.
     fn end_correction(&mut self, system: &mut System<D>, pushes: Pushes<D>) -> Option<(f64, f64)> {
         let mut change = vec![0.0; self.open.step.displacements().len()];
         for (of, sign) in [(&pushes, 1.0), (system.pushes.as_ref().unwrap_or(&Vec::new()), -1.0)] {
@@ -151,7 +151,8 @@ impl<const D: usize> Body<D> {
         step.evaluate(system, 1.0).ok()?;
         step.filter(&mut change);
         let acting = self.rest + norm(&change);
-        // The right-hand side of another correction is the residual plus the prescribed motion, which this correction has already made.
+        // The right-hand side of another correction is the residual with the terms of the prescribed motion. This correction has already made that
+        // motion, so its terms are removed.
         let (mut left, mut done) = (vec![0.0; change.len()], vec![0.0; change.len()]);
         step.multiply(system, step.prescribed(), &mut done);
         step.filter(&mut done);

@@ -106,7 +106,8 @@ fn slender<const D: usize>(body: &BodyBlueprint<D>) -> Option<Slender> {
 }
 
 /// The thickness of a body at its thinnest [m]: its extent along its shortest axis of inertia, or, if it is curved or hollow, twice its volume over
-/// its surface, which is the thickness of a plate and of a shell. The shortest extent of a block is at most 2D times its volume over its surface.
+/// its surface, which is the thickness of a plate and of a shell. The shortest extent of a block in D dimensions is at most 2D times its volume over
+/// its surface.
 fn thickness<const D: usize>(mesh: &Mesh<D>, volume: f64) -> Option<f64> {
     let mut surface = 0.0;
     for facet in &mesh.facets {

@@ -38,7 +38,7 @@ pub(crate) enum Origin {
     /// None: the slot is free. If its last body was in a batch, its seat is reserved for bodies of the same kind as the body
     /// with this number.
     Free(Option<usize>),
-    /// None yet: the slot is reserved for a body that a command of the scene will add and that is referred to by its number.
+    /// None yet: the slot is reserved for a body that a command of the scene will add, because other commands refer to the body by this number.
     Reserved,
 }
 

@@ -24,7 +24,7 @@ const BEFORE: [u64; 2] = [9, 8];
 impl<const D: usize> World<D> {
     /// The whole state: time, positions, velocities, memory of models, progress of commands, the ledger.
     ///
-    /// A world built from the same blueprint that restores it continues bit for bit, on any number of threads.
+    /// A world that was built from the same blueprint and restores the snapshot continues bit for bit, on any number of threads.
     pub fn snapshot(&self) -> Vec<u8> {
         let mut out = Vec::new();
         self.snapshot_into(&mut out);
@@ -319,7 +319,8 @@ impl<const D: usize> World<D> {
         self.flows = rest.flows;
         self.contact_memory = rest.contact;
         self.refresh_ledger();
-        // The energy in motion is not measured again, because the time of a frame and that of its last substep differ by rounding.
+        // The largest energy in motion is that of the snapshot. It is not measured again, because the time of a frame and that of its last substep
+        // differ by rounding.
         self.flows.largest = rest.flows.largest;
         Ok(true)
     }
@@ -353,7 +354,8 @@ impl<const D: usize> World<D> {
         self.flows = rest.flows;
         self.contact_memory = rest.contact;
         self.refresh_ledger();
-        // The energy in motion is not measured again, because the time of a frame and that of its last substep differ by rounding.
+        // The largest energy in motion is that of the snapshot. It is not measured again, because the time of a frame and that of its last substep
+        // differ by rounding.
         self.flows.largest = rest.flows.largest;
         Ok(())
     }

@@ -78,7 +78,7 @@ impl<const D: usize> World<D> {
         };
         let islands = &mut self.islands;
         let workspaces = &mut self.workspaces;
-        // A single small body has no work to share: waking threads for it would cost more than its frame.
+        // A single small body has no work to share. Waking threads for it would take longer than its frame.
         let alone = |island: &[Island<D>]| matches!(island, [one] if !one.is_shared_by(self.options.threads, 1));
         let pool = self.pool.as_ref().filter(|_| !alone(islands));
         if let Some(clusters) = &mut self.clusters {

@@ -4,7 +4,8 @@
 //! plane, although the energy falls on both sides of it. No solver can leave such a shape by itself, because solvers follow the forces. The world
 //! therefore checks the bodies from time to time. If a body is at rest with degenerate or inverted cells, or is strained although nothing acts on it,
 //! its free nodes are displaced at random, in the same way in every run: first by 10⁻⁴ of its size, then by a hundredth and by a tenth of it. Between
-//! two displacements, the body has time to leave the shape. Every displacement is counted. A shape that remains after the last one is counted too.
+//! two displacements, the body has time to leave the shape. Every displacement is counted. A degenerate shape that remains after the last
+//! displacement is counted too.
 //!
 //! In statics a frame that ends like this is solved again: first from its start, with the motion of pins and the loads divided into parts, because
 //! smaller steps may avoid a fold that one large step makes; then from displaced shapes, up to three times.

@@ -38,8 +38,8 @@ pub struct Options {
     pub allow_unstable: bool,
     /// Whether alike bodies are stepped eight at a time.
     pub batches: bool,
-    /// A request from outside to cancel a frame that takes long. The frame then ends within a substep with [`WorldError::BrokenOff`], and the world
-    /// is at its last good frame. The request can be withdrawn.
+    /// A request from outside to cancel a long frame. The frame then ends within a substep with [`WorldError::BrokenOff`], and the world is at its
+    /// last good frame. The request can be withdrawn.
     pub break_off: Arc<BreakOff>,
     /// The limit for the memory of all bodies together, estimated before they are built [bytes]; none: what the system provides.
     pub most_bytes: Option<u64>,

@@ -1,4 +1,4 @@
-//! How the measurements of `opruga bench` are called.
+//! The arguments of `opruga bench`.
 
 use clap::{Args, Subcommand};
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! What can be said of one law at one point.
+//! The arguments of `opruga material`.
 
 use clap::Args;
 

@@ -1,4 +1,4 @@
-//! What can be said of the cases with closed forms.
+//! The arguments of `opruga verify`.
 
 use clap::Args;
 use std::path::PathBuf;

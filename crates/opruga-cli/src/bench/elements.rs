@@ -1,4 +1,4 @@
-//! `opruga bench elements`: forces and Hessians of every method of the survey.
+//! `opruga bench elements`: measures the forces and Hessians of finite elements and of other methods.
 //!
 //! The body is a bent cube of tetrahedra, hexahedra or quadratic tetrahedra, or a bent ring, on one thread. Hessians are added to the matrix of a
 //! solver, which knows the positions of their blocks after the first time. Finite volumes, finite differences and shape matching are shown next to
@@ -105,7 +105,7 @@ pub(crate) fn bench(call: &BenchElements, registries: &Registries) -> Result<u8,
     Ok(0)
 }
 
-/// E = 1e5 Pa.
+/// The field of Young's modulus with its value in all measurements, 1e5 Pa.
 fn modulus() -> (&'static str, Value) {
     ("youngs_modulus", Value::Number(1e5))
 }

@@ -1,4 +1,4 @@
-//! `opruga bench record`: the cost of recording, compared with the same run without it, in one call.
+//! `opruga bench record`: measures the time that recording takes, from runs of the same scene with and without it.
 
 use super::{Machine, median, processor_time_of_all};
 use crate::arguments::BenchRecord;
@@ -61,7 +61,7 @@ fn of_scene(call: &BenchRecord, opened: &Opened, path: &Path) -> Result<u8, Fail
         bytes = tape.finish(&mut *world)?;
         around.push([0, 1].map(|clock| beginning[clock] + since(end)[clock]));
         with.push(since(start));
-        // A recording that replaces another one would first be synced.
+        // The recording is removed, because replacing it would include the time of a sync.
         let _ = std::fs::remove_file(path);
     }
     let of = |times: &[Times], clock: usize| median(&times.iter().map(|times| times[clock]).collect::<Vec<_>>());

@@ -15,8 +15,8 @@ use std::sync::Arc;
 pub(crate) fn bench(call: &BenchScene, library: &Registries) -> Result<u8, Failure> {
     let Opened { source, reading, options, blueprint, .. } =
         open(&call.scene, library, &call.set, call.allow_outside, call.json)?;
-    // Errors in the scene are reported as by `run`. Explicit integrators call models tile by tile, so reading the clock would take most of the
-    // measured time.
+    // Errors in the scene are reported as by `run`. Only implicit integrators get timed models. Explicit integrators call models tile by tile, so
+    // reading the clock would take most of the measured time.
     let implicit = is_implicit(&*source.build(blueprint.clone(), &reading, &options)?);
     let spent = Arc::new(Spent::default());
     let models = if implicit { registries(library, &spent) } else { library.clone() };

@@ -22,7 +22,7 @@
 //! | rigid motion | no damping force if v = v₀ + ω × x |
 //! | damping matrix | −∂F/∂v with central differences of the force in the velocities |
 //! | power | the power of damping that the model reports is −F·v of the damping force, and not negative |
-//! | coincident | all nodes in one point: energy and force are finite |
+//! | coincident | all nodes at one point: energy and force are finite |
 //!
 //! Rows for properties that a model does not claim ([`Potential::views`], [`Options::rigid`]) are omitted.
 

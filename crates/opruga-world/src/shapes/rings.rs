@@ -79,8 +79,8 @@ impl Circle<'_> {
         if distance + inner.size() < (middle[0] * middle[0] + middle[1] * middle[1]).sqrt() - gap {
             return true;
         }
-        // The circle of the inner ring crosses a side of the outer polygon, which is inside its circle. The inner polygon may still lie inside,
-        // because it is smaller than its circle too.
+        // The circle of the inner ring may cross a side of this polygon. The inner polygon may still lie inside, because it is smaller than its
+        // circle.
         (0..self.nodes.len()).all(|k| {
             let (a, b) = side(k);
             let along = [b[0] - a[0], b[1] - a[1]];
