@@ -44,7 +44,7 @@ impl Outputs<'_> {
         recorder: Recorder,
         keeper: &mut Keeper<'_>,
     ) -> Result<String, Failure> {
-        // The checkpoint comes first: if pictures cannot be written, the run must not be lost.
+        // The checkpoint is written first, so that the run is not lost if pictures cannot be written.
         let mut files = keeper.write(world, &recorder.table)?;
         files.push("final.csv".into());
         let (scene, numbers) = (world.scene(), world.bodies());

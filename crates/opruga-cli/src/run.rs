@@ -87,7 +87,8 @@ pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
 /// The interval of progress lines if there is no terminal for a bar [s].
 const TALK_EVERY: f64 = 10.0;
 
-/// The result of [`default_folder`], or the first of `name-2`, `name-3`, … that is still empty: for a call that does not name its output.
+/// The folder for the output of a call that does not name one: the result of [`default_folder`], or the first of `name-2`, `name-3`, … that is still
+/// empty.
 pub(crate) fn fresh_folder(name: &str) -> PathBuf {
     let first = default_folder(name);
     let used = |path: &PathBuf| path.exists() && !std::fs::read_dir(path).is_ok_and(|mut files| files.next().is_none());
@@ -157,7 +158,7 @@ fn other_simd() -> Option<CallWarning> {
 /// The note that a run ends at another time than requested, because frames are complete.
 pub(crate) fn whole_frames(frames: u64, frame: f64, seconds: f64) -> Option<CallNote> {
     let reached = frames as f64 * frame;
-    // Except for rounding.
+    // Differences due to rounding do not count.
     let apart = (reached - seconds).abs() > 1e-6 * frame;
     apart.then_some(CallNote::WholeFrames { reached, asked: seconds, frames, frame })
 }

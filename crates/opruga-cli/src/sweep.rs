@@ -132,7 +132,7 @@ fn no_sweep(path: &Path) -> Failure {
     Failure::Scene(vec![SceneError { file: shown, ..SceneError::of(CallError::NoSweep { file: QUESTION }) }])
 }
 
-/// The question of a call, with everything that the scene names, and the folder for its answer.
+/// The question that a call asks, with the contents of all files that the scene names, and the folder for the answer.
 fn question_of(call: &Call, registries: &Registries) -> Result<(Question, PathBuf), Failure> {
     if let Some(seconds) = call.seconds.filter(|s| !(0.0..=1e9).contains(s)) {
         return Err(Failure::range("--seconds", seconds, CallRange::Between { least: 0.0, most: 1e9 }));

@@ -12,8 +12,8 @@ use opruga_math::{Pack, Strip, StripMut, WIDTH, Work};
 impl<const D: usize> System<D> {
     /// Evaluates forces in one stage and moves every node by an update: gradient → update → collide, tile by tile.
     ///
-    /// `weight` [s] is the share of this evaluation in the step's work integrals. If the update ends the substep, `step` is the
-    /// length of the substep [s], and obstacles act on the nodes.
+    /// `weight` [s] is the part of the step that this evaluation represents when power is integrated to work. If the update
+    /// ends the substep, `step` is the length of the substep [s], and obstacles act on the nodes.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the state.

@@ -102,7 +102,7 @@ fn at(row: usize, column: usize) -> usize {
     (i * (i + 1) / 2 + j) * SIDE * SIDE + (row % SIDE) * SIDE + column % SIDE
 }
 
-/// The product with few vectors: lanes are columns.
+/// The product with few vectors. The lanes hold neighbouring columns of the matrix.
 struct Product<'a, const N: usize> {
     matrix: &'a Dense,
     x: &'a [f64],
@@ -188,7 +188,7 @@ fn along_columns<P: Pack, const N: usize>(tile: &[f64], x: [&[f64]; N]) -> [[P; 
     packs
 }
 
-/// The product with up to eight vectors: lanes are vectors, whose numbers are side by side.
+/// The product with up to eight vectors. Each lane belongs to one vector, and the numbers of the vectors are side by side.
 struct Products<'a> {
     matrix: &'a Dense,
     x: &'a [f64],

@@ -1,4 +1,5 @@
-//! Data that are kept from step to step besides positions and velocities: channels with a name and a type.
+//! Data that are kept from step to step in addition to positions and velocities. They are stored in channels, each with a name
+//! and a type.
 //!
 //! An integrator that keeps data declares its channels once ([`Integrator::history`](crate::integrator::Integrator::history)).
 //! Snapshots, recordings, rewinding, rebuilding of islands and resets follow from the declaration.
@@ -109,7 +110,7 @@ impl<const D: usize> Content<D> {
             Type::Vectors => Content::Vectors(Columns::zeros(index_count)),
         }
     }
-    /// Its type.
+    /// Returns the type of the content.
     pub fn holds(&self) -> Type {
         match self {
             Content::Number(_) => Type::Number,
@@ -140,7 +141,7 @@ pub struct History<const D: usize> {
 }
 
 impl<const D: usize> History<D> {
-    /// Channels of an owner, such as an integrator, for `index_count` indices; all begin at zero.
+    /// Makes the channels of an owner, such as an integrator, for `index_count` indices. All contents begin at zero.
     pub fn new(owner: &'static str, channels: &[Channel], index_count: usize) -> History<D> {
         let mut history = History { owner, channels: Vec::new() };
         history.add(channels, index_count);
@@ -154,7 +155,7 @@ impl<const D: usize> History<D> {
             }
         }
     }
-    /// The name of the integrator that owns it.
+    /// The name of the owner, such as the integrator that declared the first channels.
     pub fn owner(&self) -> &'static str {
         self.owner
     }
@@ -176,7 +177,7 @@ impl<const D: usize> History<D> {
         self.channels.iter().position(|(channel, _)| channel.name == name)
     }
 
-    /// The value of a channel; the initial one if the system has no such channel.
+    /// The value of a channel; zero or `false` if the system has no such channel.
     pub fn get<T: PerBodyValue>(&self, channel: PerBody<T>) -> T {
         self.find(channel.name).and_then(|k| T::of(&self.channels[k].1)).unwrap_or_default()
     }
@@ -259,7 +260,7 @@ mod tests {
         history.vectors_mut(ACCELERATION).expect("vectors").set(5, [1.0, 2.0]);
         assert_eq!((history.get(LOAD), history.get(TURN), history.get(BEGUN)), (0.25, 3, true));
         assert_eq!(history.vectors(ACCELERATION).expect("vectors").at(5), [1.0, 2.0]);
-        // The name alone does not give access to a channel.
+        // The name alone does not give access to a channel: its type must match too.
         const OTHER: PerBody<f64> = PerBody::new("turn");
         history.set(OTHER, 7.0);
         assert_eq!((history.get(OTHER), history.get(TURN)), (0.0, 3));

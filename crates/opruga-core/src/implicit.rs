@@ -12,7 +12,7 @@ use opruga_math::{WIDTH, sum_in_fixed_order};
 impl<const D: usize> System<D> {
     /// Computes the force of all models and the weight on every node in a state, at a time after the start of the step [N].
     ///
-    /// `weight` [s] is the share of this evaluation in the work integrals of the step; zero for a trial.
+    /// `weight` [s] is the part of the step that this evaluation represents when power is integrated to work; zero for a trial.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the state.

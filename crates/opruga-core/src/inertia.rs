@@ -45,7 +45,7 @@ impl Inertia {
         self.column[range.clone()].iter().zip(&self.value[range]).map(|(column, value)| (*column as usize, *value))
     }
 
-    /// The number of nodes.
+    /// The number of nodes that the matrix couples.
     pub fn nodes(&self) -> usize {
         self.start.len().saturating_sub(1)
     }

@@ -7,7 +7,7 @@ use opruga_math::{Lane, WIDTH};
 pub struct Work8 {
     /// Work of external forces, of moving obstacles and of pins.
     pub user: [f64; WIDTH],
-    /// Energy given to the gas by ramps, heating and leaks.
+    /// Energy that ramps, heating and leaks give to the gas.
     pub gas: [f64; WIDTH],
     /// Energy dissipated by damping.
     pub damping: [f64; WIDTH],
@@ -23,9 +23,9 @@ pub struct Work8 {
     /// ([`crate::integrator::Integrator::measures_its_damping`]). U cancels in the sum over steps, so it is not needed between
     /// them.
     pub numerical: [f64; WIDTH],
-    /// How often a force was limited.
+    /// The number of times that a force was limited.
     pub limited_forces: u64,
-    /// How often a velocity was limited.
+    /// The number of times that a velocity was limited.
     pub limited_velocities: u64,
     /// The work of implicit integrators.
     pub solver: SolverWork,
@@ -104,7 +104,7 @@ pub struct SolverWork {
 }
 
 impl SolverWork {
-    /// Adds work that was done elsewhere or later.
+    /// Adds the work that another system, or a later part of the run, has recorded.
     pub fn add(&mut self, other: &SolverWork) {
         self.steps += other.steps;
         self.iterations += other.iterations;

@@ -17,17 +17,17 @@ pub struct Need {
 /// The counts that determine memory. Sides that cells share are counted by their mean number in large meshes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
-    /// Nodes.
+    /// The number of nodes.
     pub nodes: f64,
-    /// Edges of the mesh: those of cells, or of surfaces and wires if there are no cells.
+    /// The number of edges: those of cells, or of surfaces and wires if there are no cells.
     pub edges: f64,
-    /// Edges of surfaces across which two triangles bend.
+    /// The number of edges of surfaces across which two triangles bend.
     pub hinges: f64,
-    /// Sides of the boundary.
+    /// The number of sides of the boundary.
     pub facets: f64,
-    /// The bytes that finite elements store for the cells.
+    /// The number of bytes that finite elements store for the cells.
     pub cell_bytes: f64,
-    /// Pairs of nodes that have a cell in common.
+    /// The number of pairs of nodes that have a cell in common.
     pub cell_pairs: f64,
     /// Whether the body fills space: factors of its matrix then have many more blocks than those of a surface.
     pub is_bulk: bool,

@@ -55,8 +55,9 @@ pub trait OpenStep<const D: usize>: Send {
     fn filter(&self, x: &mut [f64]);
     /// Replaces x by A⁻¹ x in the free directions.
     fn solve(&self, x: &mut [f64]);
-    /// Adapts the friction of obstacles to the forces that hold nodes, A correction + r + forces. Writes the change of the force
-    /// on the nodes [N], or nothing if this force has settled to within the fraction `tolerance`.
+    /// Adapts the friction of obstacles to the forces that hold nodes. These forces are A times the correction, plus r, plus
+    /// `forces`. Writes the change of the force on the nodes [N], or nothing if this force has settled to within the fraction
+    /// `tolerance`.
     fn follow(&mut self, system: &System<D>, forces: &[f64], tolerance: f64, out: &mut [f64]) -> bool;
     /// The work that friction on obstacles and the forces that hold nodes do along the correction [J].
     fn given(&mut self) -> f64;

@@ -62,9 +62,9 @@ pub type Reading = (Cow<'static, str>, f64);
 /// How often an event happened in a model, per substep and body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Count {
-    /// The event.
+    /// The kind of event, as a message.
     pub what: AnyMessage,
-    /// How often.
+    /// How often the event happened.
     pub count: u64,
 }
 
@@ -385,7 +385,7 @@ impl<const D: usize> Sink<D> for ProductSink<'_, '_, D> {
 pub struct Ingredients<'a, const D: usize> {
     /// The rest shape, the same for all.
     pub mesh: &'a Mesh<D>,
-    /// One body or eight side by side.
+    /// Whether there is one body, or eight side by side.
     pub layout: Layout,
     /// The parameters of each body: one entry, or eight.
     pub values: &'a [&'a Values],

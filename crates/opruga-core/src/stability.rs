@@ -11,12 +11,12 @@
 //! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It computes the same products as
 //! a power iteration from the same start vector, but uses the best combination of them. A power iteration is still 2 % off
 //! after 30 products on a long chain of springs, whose spectrum is dense at its upper end. The estimate is the largest Ritz
-//! value plus its residual; the resulting step is reduced by 2 %. Negative eigenvalues (a body about to buckle) do not affect
-//! the step.
+//! value plus its residual, and the resulting step is reduced by 2 %. Negative eigenvalues, which a body has when it is about
+//! to buckle, do not affect the step.
 //!
-//! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 satisfies μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. So the
-//! pairs (ω², c) of all modes are in the joint numerical range of K and C, whatever their eigenvectors. A polygon encloses this
-//! range. It follows from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
+//! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 satisfies μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. So
+//! the pairs (ω², c) of all modes are in the joint numerical range of K and C, whether or not K and C have the same
+//! eigenvectors. A polygon encloses this range. It follows from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
 //!
 //! ```text
 //!     c │     ______________         0 ≤ ω² ≤ ω²_max,  c_min ≤ c ≤ c_max,
@@ -235,7 +235,7 @@ fn worst<const D: usize>(integrator: &dyn Integrator<D>, points: &[(f64, f64)], 
     worst
 }
 
-/// Evaluates forces in states near that of a system.
+/// Evaluates the forces of a system in states near its present one.
 struct Probe<'a, const D: usize> {
     system: &'a System<D>,
     /// M^-½ for every coordinate that can move, otherwise zero.

@@ -1,4 +1,5 @@
-//! The storage of positions and velocities: one column per coordinate, for one body or for eight identical bodies side by side.
+//! The storage of positions and velocities: one column of numbers for each coordinate of one body, or of eight identical bodies
+//! side by side.
 
 use opruga_math::{Column, Pack, Register, RepeatStrip, StripMut, WIDTH, lanes};
 
@@ -46,7 +47,7 @@ impl Layout {
 pub struct Columns<const D: usize>(pub [Column; D]);
 
 impl<const D: usize> Columns<D> {
-    /// Zeros, with space for a whole pack after the last index.
+    /// Makes columns of zeros, with space for a whole pack after the last index.
     pub fn zeros(index_count: usize) -> Columns<D> {
         Columns(core::array::from_fn(|_| Column::zeros(index_count + WIDTH)))
     }
@@ -113,15 +114,15 @@ impl Parameter {
     /// A parameter that is zero everywhere, for laws that read fewer numbers than the interface provides.
     pub const NONE: Parameter = Parameter(Numbers::Repeated(Eight([0.0; WIDTH])));
 
-    /// The same number everywhere.
+    /// Makes a parameter that has the same number everywhere.
     pub fn uniform(value: f64) -> Parameter {
         Parameter::by_body([value; WIDTH])
     }
-    /// One number for each of eight bodies side by side.
+    /// Makes a parameter that has one number for each of eight bodies side by side.
     pub fn by_body(values: [f64; WIDTH]) -> Parameter {
         Parameter(Numbers::Repeated(Eight(values)))
     }
-    /// A number for every index; stored once if all are the same to the bit.
+    /// Makes a parameter from a number for every index. If all numbers are the same to the bit, they are stored once.
     pub fn column(values: Vec<f64>) -> Parameter {
         let first = values.first().copied().unwrap_or(0.0);
         if values.iter().all(|v| v.to_bits() == first.to_bits()) {
@@ -233,7 +234,7 @@ pub struct View<'a, const D: usize> {
     pub nodes: usize,
     /// One body or eight.
     pub layout: Layout,
-    /// Time [s].
+    /// The simulated time at this state [s].
     pub time: f64,
     /// The number of threads over which work on this state may be distributed ([`crate::threads`]); they do not change the bits.
     pub threads: usize,
@@ -266,7 +267,7 @@ pub struct OrderedSum<P: Pack> {
 }
 
 impl<P: Pack> OrderedSum<P> {
-    /// An empty sum.
+    /// Makes an empty sum.
     #[inline(always)]
     pub fn new(layout: Layout) -> Self {
         OrderedSum { layout, lanes: P::zero(), packs: [P::zero(); WIDTH] }

@@ -58,7 +58,7 @@ pub trait Update<const D: usize> {
 /// One model of a system and its data.
 #[derive(Debug)]
 pub struct Member<const D: usize> {
-    /// The model.
+    /// The model, built for the bodies of the system.
     pub potential: Box<dyn Potential<D>>,
     /// Its memory from step to step; part of the state.
     pub memory: Vec<f64>,
@@ -80,15 +80,15 @@ pub struct System<const D: usize> {
     /// The number of threads over which the work on this system may be distributed; it then runs in a pool of threads. Their
     /// number does not change the bits.
     pub threads: usize,
-    /// One body or eight.
+    /// Whether the columns hold one body, or eight side by side.
     pub layout: Layout,
     /// The number of nodes of one body.
     pub nodes: usize,
     /// The number of bodies: 1 to 8.
     pub bodies: usize,
-    /// Time [s].
+    /// The simulated time at the current state [s].
     pub time: f64,
-    /// Positions, velocities, stages.
+    /// The positions, the velocities and the stages of the integrator.
     pub state: State<D>,
     /// Mass of each node [kg].
     pub mass: Parameter,
@@ -101,7 +101,7 @@ pub struct System<const D: usize> {
     pub(crate) weighing: Option<Parameter>,
     /// Acceleration of gravity [m/s²].
     pub gravity: [f64; D],
-    /// The models.
+    /// The models that act on the bodies.
     pub members: Vec<Member<D>>,
     /// Pinned nodes, by index.
     pub pins: Vec<Pin<D>>,
@@ -112,9 +112,9 @@ pub struct System<const D: usize> {
     pub pushes: Option<Vec<(usize, [f64; D])>>,
     /// The limits of the thesis.
     pub stabilisers: Stabilisers,
-    /// Energy that went in and out.
+    /// The energy that went in and out, and the work of the solver.
     pub work: Work8,
-    /// The memory of the integrator.
+    /// The channels that the integrator keeps from step to step.
     pub history: History<D>,
     /// Data that the integrator keeps between steps to save time; no result depends on them.
     pub cache: Cache,
@@ -132,7 +132,7 @@ pub struct System<const D: usize> {
 }
 
 impl<const D: usize> System<D> {
-    /// A system of bodies at positions `x` with velocities `v`, laid out in columns.
+    /// Makes a system of bodies at positions `x` with velocities `v`, which are laid out in columns.
     pub fn new(
         simd: Simd,
         layout: Layout,

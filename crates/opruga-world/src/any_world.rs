@@ -45,15 +45,15 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn keep_looks(&mut self, every: u32);
     /// Calls `look` with the world in each state that was kept within the last frame, one after another.
     fn look_within(&mut self, look: &mut dyn FnMut(&mut dyn AnyWorld));
-    /// Frames since the start.
+    /// The number of frames since the start.
     fn frames(&self) -> u64;
-    /// The time [s].
+    /// The simulated time at the present state [s].
     fn time(&self) -> f64;
-    /// The substep h [s].
+    /// The length h of a substep [s].
     fn h(&self) -> f64;
     /// The vector instructions in use.
     fn simd(&self) -> Simd;
-    /// Threads in use.
+    /// The number of threads in use.
     fn threads(&self) -> usize;
 
     /// Changes a parameter.

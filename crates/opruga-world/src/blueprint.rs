@@ -151,7 +151,7 @@ pub struct Surroundings<const D: usize> {
     pub unfold: bool,
 }
 
-/// One body.
+/// A body of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyBlueprint<const D: usize> {
     /// Its name, unique in the scene; copies are `name[0]`, `name[1]`, …
@@ -168,7 +168,7 @@ pub struct BodyBlueprint<const D: usize> {
     pub velocity_gradient: [[f64; D]; D],
     /// Additional velocity of every node at the start [m/s], one row per node; empty: none.
     pub node_velocities: Arc<[[f64; D]]>,
-    /// Its mass.
+    /// The mass of the body or of its parts.
     pub mass: Mass,
     /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire, used only for a mass given by density [m].
     pub thickness: f64,
@@ -176,7 +176,7 @@ pub struct BodyBlueprint<const D: usize> {
     pub integrator: Option<Values>,
     /// Its models and their parameters.
     pub models: Vec<Values>,
-    /// Its pins.
+    /// Its pinned nodes.
     pub pins: Vec<PinBlueprint<D>>,
     /// How it touches other bodies (`schema::BODY_CONTACT`); none: as the scene specifies.
     pub contact: Option<Values>,
@@ -211,7 +211,7 @@ pub enum Selector<const D: usize> {
     HalfSpace {
         /// A point of the plane [m].
         point: [f64; D],
-        /// The normal.
+        /// The normal, which points to the selected side.
         normal: [f64; D],
     },
     /// Nodes on one side of the body's bounding box: `left`, `right`, `bottom`, `top`, `back`, `front`.
@@ -235,7 +235,7 @@ pub enum Selector<const D: usize> {
 /// Pinned nodes: held at rest, or moved along a given motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PinBlueprint<const D: usize> {
-    /// Which nodes.
+    /// The nodes that are pinned.
     pub select: Selector<D>,
     /// The pinned axes.
     pub axes: [bool; D],
@@ -264,7 +264,7 @@ pub struct ContactBlueprint {
 pub struct LoadBlueprint<const D: usize> {
     /// The body, by its index in the list.
     pub body: usize,
-    /// Which nodes.
+    /// The nodes on which the force acts.
     pub select: Selector<D>,
     /// The force that acts.
     pub kind: LoadKind<D>,
@@ -287,7 +287,7 @@ pub enum LoadKind<const D: usize> {
     Central {
         /// Its size [N]; negative: away from the point.
         value: f64,
-        /// The point [m].
+        /// The point towards which the forces act [m].
         center: [f64; D],
     },
 }
@@ -299,7 +299,7 @@ pub struct CommandBlueprint<const D: usize> {
     pub at: f64,
     /// When it ends [s]; for an instantaneous action, the same as `at`.
     pub until: f64,
-    /// The action.
+    /// What the command does.
     pub action: Action<D>,
 }
 
@@ -323,27 +323,27 @@ pub enum Action<const D: usize> {
     },
     /// A force on nodes [N].
     Push {
-        /// The body.
+        /// The body, by its index in the list.
         body: usize,
-        /// Which nodes.
+        /// The nodes that are pushed.
         select: Selector<D>,
         /// The force on each node [N].
         force: [f64; D],
     },
     /// Pin nodes at the positions that they have at the beginning of the command.
     Pin {
-        /// The body.
+        /// The body, by its index in the list.
         body: usize,
-        /// Which nodes.
+        /// The nodes to be pinned.
         select: Selector<D>,
-        /// Which axes.
+        /// The axes along which the nodes are to be pinned.
         axes: [bool; D],
     },
     /// Release nodes that the body's own pins or earlier commands hold.
     Free {
-        /// The body.
+        /// The body, by its index in the list.
         body: usize,
-        /// Which nodes.
+        /// The nodes to be released.
         select: Selector<D>,
     },
     /// Change a parameter: its path and its new value.
@@ -355,7 +355,7 @@ pub enum Action<const D: usize> {
     },
     /// Give a moving body other models or another integrator.
     Change {
-        /// The body.
+        /// The body, by its index in the list.
         body: usize,
         /// Its models from now on; none: as before.
         models: Option<Vec<Values>>,
@@ -376,7 +376,7 @@ pub enum Action<const D: usize> {
 pub struct ProbeBlueprint<const D: usize> {
     /// Its name, the first part of the columns' names.
     pub name: String,
-    /// The body.
+    /// The body, by its index in the list.
     pub body: usize,
     /// Selects the nodes. The columns contain the mean over them (for reactions, the sum).
     pub select: Selector<D>,

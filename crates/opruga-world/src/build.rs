@@ -150,7 +150,7 @@ impl<const D: usize> Builder<'_, D> {
         Ok(Island::new(system, integrator, bodies.to_vec(), range))
     }
 
-    /// The masses of the nodes of every body [kg]. Checks that masses and states are in the range that can be computed.
+    /// The masses of the nodes of every body [kg]. Refuses masses and states that are outside the range in which the world can compute.
     fn plausible_masses(&self, seats: &Seats<'_, D>, range: f64) -> Result<Vec<Vec<f64>>, WorldError> {
         let refused = |body: &BodyBlueprint<D>, source| WorldError::Build { part: Part::body(&body.name), source };
         for (body, state) in seats.bodies.iter().zip(seats.states) {

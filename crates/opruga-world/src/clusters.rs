@@ -92,8 +92,8 @@ impl<const D: usize> Clusters<D> {
         self.groups.iter_mut().for_each(|group| group.progress = Progress::Waiting);
     }
 
-    /// Checks where the bodies have moved. If bodies have come close to bodies of other groups, these groups are merged and have to be stepped
-    /// through the frame again. Returns whether there are any such groups.
+    /// Checks where the bodies have moved. If bodies have come close to bodies of other groups, merges these groups, which must then be stepped
+    /// through the frame again. Returns whether there are any groups to step.
     pub(crate) fn merge(&mut self, blueprint: &Blueprint<D>, islands: &[Island<D>], plan: &FramePlan<'_, D>) -> bool {
         let Clusters { scene, partition, boxes, order, .. } = self;
         for (number, (island, lane)) in scene.seats.iter().enumerate() {

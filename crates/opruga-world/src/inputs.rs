@@ -27,7 +27,7 @@ pub enum Input<const D: usize> {
     SetNode {
         /// The body, by its number.
         body: usize,
-        /// The node.
+        /// The node, by its number in the body.
         node: u32,
         /// Its new position [m].
         position: [f64; D],

@@ -111,7 +111,7 @@ impl<const D: usize> Saved<D> {
 /// The smallest number of nodes of a body on which threads work together.
 const SHARED_FROM: usize = 1000;
 
-/// The data that a frame needs.
+/// The data that an island needs to step through a frame.
 #[derive(Clone, Copy)]
 pub(crate) struct FramePlan<'a, const D: usize> {
     pub(crate) colliders: Option<&'a Arc<Colliders<D>>>,

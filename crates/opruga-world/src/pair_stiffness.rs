@@ -9,7 +9,7 @@
 
 use opruga_collide::{Pressed, Rubbing, Surface};
 
-/// The matrices of all pairs, without those that are zero.
+/// The matrices of all pairs whose matrix is not zero.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairStiffness<const D: usize> {
     pairs: Vec<Pair<D>>,

@@ -18,10 +18,10 @@ use opruga_collide::{Obstacles, Respond, Touching, Trouble};
 use opruga_core::system::Workspace;
 use opruga_math::{Lane, WIDTH};
 
-/// Pairs of a round and a tolerance, which applies before that round. Steps and contact agree if no point ends farther than the tolerance, relative
-/// to the thickness of surfaces, from the position that the impulses should give it. Exact steps reach the first tolerance in two or three rounds,
-/// and steps with a budget the second one. If contacts, or the nodes that obstacles hold, change in every round, the last tolerance is sufficient;
-/// surfaces begin to overlap at this size.
+/// Pairs of a number of rounds and the tolerance that applies until that number is reached. Steps and contact agree if no point ends farther than the
+/// tolerance, relative to the thickness of surfaces, from the position that the impulses should give it. Exact steps reach the first tolerance in two
+/// or three rounds, and steps with a budget the second one. If contacts, or the nodes that obstacles hold, change in every round, the last tolerance
+/// is sufficient; surfaces begin to overlap at this size.
 const AGREED: [(usize, f64); 3] = [(3, 1e-7), (6, 1e-4), (MOST_ROUNDS, 1e-2)];
 
 /// The same pairs for the case that all bodies have a budget: surfaces with a thickness keep half of it between them.
@@ -195,9 +195,9 @@ impl<const D: usize> Meeting<D> {
         true
     }
 
-    /// Lets contact change velocities after the steps if steps and contact do not agree. If all bodies of the meeting have implicit integrators, they
-    /// keep their last result, which is close. If bodies with explicit integrators have also responded to the impulses, or if a step failed, all
-    /// return to a step without contact forces.
+    /// Lets contact change velocities after the steps, for the case that steps and contact do not agree. If all bodies of the meeting have implicit
+    /// integrators, they keep their last result, which is close. If bodies with explicit integrators have also responded to the impulses, or if a
+    /// step failed, all return to a step without contact forces.
     pub(crate) fn part(&mut self, islands: &mut [&mut Island<D>], step: &Substep<'_, D>) {
         let failed = self.pushed.iter().any(|pushed| islands[pushed.island].outcome.is_err());
         let back = failed || self.pushed.len() < self.bodies.len();

@@ -280,7 +280,8 @@ impl<const D: usize> World<D> {
         let there = self.laws_saved.iter().filter(|(body, _)| self.slots.is_there(**body));
         there.map(|(body, saved)| saved.saturating_sub(self.laws_on(*body))).sum()
     }
-    /// At the end of the run: the number of bodies in equilibrium under only a part of their load, the smallest of these parts, and its body.
+    /// At the end of the run: the number of bodies in equilibrium under only a part of their load, the smallest of these parts, and the name of the
+    /// body under this part.
     fn load_left(&self) -> Option<(u64, f64, String)> {
         let time = &self.blueprint.time;
         if self.frames == 0 || self.time() < time.seconds - 0.5 * time.frame {

@@ -45,7 +45,7 @@ pub(crate) struct MadeFor<const D: usize> {
     pub(crate) built: u64,
     /// The number of islands.
     pub(crate) islands: usize,
-    /// The obstacles.
+    /// The obstacles of the scene at that time.
     pub(crate) colliders: Option<Arc<Colliders<D>>>,
 }
 
@@ -119,7 +119,7 @@ impl<const D: usize> SceneContact<D> {
         self.made_for.is(made_for)
     }
 
-    /// The obstacles.
+    /// The obstacles for which the data were made; none if the scene has no obstacles.
     pub(crate) fn colliders(&self) -> Option<&Arc<Colliders<D>>> {
         self.made_for.colliders.as_ref()
     }

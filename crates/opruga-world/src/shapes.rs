@@ -230,7 +230,7 @@ static TORUS: Spec = Spec {
     roles: &[],
 };
 
-/// All shapes.
+/// Returns the specifications of all shapes.
 pub fn all() -> Vec<&'static Spec> {
     let made: [&'static Spec; 12] = [
         &RING,

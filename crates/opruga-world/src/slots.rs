@@ -15,7 +15,7 @@ pub struct BodyHandle {
     pub index: usize,
     /// Distinguishes the bodies that have been in the slot. Bodies of the scene have 0, because their slots are not reused.
     pub generation: u64,
-    /// The world.
+    /// The world to which the body belongs.
     world: u64,
 }
 
@@ -35,8 +35,8 @@ pub(crate) enum Origin {
     Command(usize),
     /// A call of the program. Once the body is removed, nothing is kept of it, and its slot is free for another one.
     Program,
-    /// None: the slot is free. If its last body was in a batch, its seat is reserved for bodies of the same kind as the body
-    /// with this number.
+    /// None: the slot is free. If its last body was in a batch, the seat of that body is reserved for bodies of the same kind as the body with this
+    /// number.
     Free(Option<usize>),
     /// None yet: the slot is reserved for a body that a command of the scene will add, because other commands refer to the body by this number.
     Reserved,

@@ -7,11 +7,11 @@
 //! two displacements, the body has time to leave the shape. Every displacement is counted. A degenerate shape that remains after the last
 //! displacement is counted too.
 //!
-//! In statics a frame that ends like this is solved again: first from its start, with the motion of pins and the loads divided into parts, because
-//! smaller steps may avoid a fold that one large step makes; then from displaced shapes, up to three times.
+//! In statics a frame that ends in such a shape is solved again: first from its start, with the motion of pins and the loads divided into parts,
+//! because smaller steps may avoid a fold that one large step makes; then from displaced shapes, up to three times.
 //!
-//! A body has left such a shape when it has kept another shape for as long as leaving takes. A body that alternates around the limit keeps its count,
-//! so it eventually gets the last displacement.
+//! A body has left such a shape once it has kept another shape for the time that leaving takes. A body that returns to it earlier keeps the number of
+//! its displacements, so it eventually gets the last one.
 //!
 //! Strained bodies on which a pin, an obstacle or a load acts are left alone, because they may have been meant to snap through. At the end,
 //! `cells.other_balance` reports that they contain more energy than the forces on them account for.
@@ -179,8 +179,8 @@ impl<const D: usize> Island<D> {
         Ok(())
     }
 
-    /// Solves a frame again from the present state, and returns whether this ended in an equilibrium; otherwise the previous one is kept. The
-    /// solver's work counts for both.
+    /// Solves a frame again from the present state, and returns whether this ended in an equilibrium. If it did not, the previous equilibrium is
+    /// kept. The work of the solver is counted in both cases.
     fn solve_again(&mut self, plan: &FramePlan<D>, meets: bool, found: Saved<D>) -> Result<bool, StepError> {
         let before = found.work.solver;
         match self.attempt(plan, meets) {

@@ -25,9 +25,9 @@ pub use crate::faults::{BlueprintFault, NameFault};
 /// An error in a field of a part of the blueprint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// The field.
+    /// The name of the field.
     pub field: &'static str,
-    /// The error.
+    /// The error in the field, as a message.
     pub about: AnyMessage,
 }
 

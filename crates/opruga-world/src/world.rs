@@ -91,7 +91,7 @@ pub struct World<const D: usize> {
     pub(crate) flows: Flows,
     pub(crate) energy: Energy,
     pub(crate) momentum: Momentum<D>,
-    /// Frames since the start.
+    /// The number of frames since the start.
     pub(crate) frames: u64,
     pub(crate) looks: Looks,
     pub(crate) stability: Vec<(String, Stability)>,
@@ -128,15 +128,15 @@ impl<const D: usize> World<D> {
         (self.energy, self.momentum) = self.flows.ledger(self.h(), islands);
     }
 
-    /// The time [s].
+    /// The simulated time at the present state [s].
     pub fn time(&self) -> f64 {
         self.looks.time.unwrap_or(self.frames as f64 * self.blueprint.time.frame)
     }
-    /// Frames since the start.
+    /// The number of frames since the start.
     pub fn frames(&self) -> u64 {
         self.frames
     }
-    /// The substep h [s].
+    /// The length h of a substep [s].
     pub fn h(&self) -> f64 {
         self.blueprint.time.frame / f64::from(self.blueprint.time.substeps)
     }
@@ -144,7 +144,7 @@ impl<const D: usize> World<D> {
     pub fn blueprint(&self) -> &Blueprint<D> {
         &self.blueprint
     }
-    /// The obstacles.
+    /// The obstacles of the scene; none if it has no obstacles.
     pub fn colliders(&self) -> Option<&Colliders<D>> {
         self.colliders.as_deref()
     }
@@ -156,7 +156,7 @@ impl<const D: usize> World<D> {
     pub fn simd(&self) -> Simd {
         self.simd
     }
-    /// Threads in use.
+    /// The number of threads in use.
     pub fn threads(&self) -> usize {
         self.options.threads
     }

@@ -17,7 +17,7 @@ pub(super) struct Body<const D: usize> {
     pub(super) mass: Vec<f64>,
 }
 
-/// Positions and velocities as a model receives them, on one thread.
+/// Returns the view of positions and velocities that a model receives, for one thread.
 fn view<'a, const D: usize>(
     x: &'a Columns<D>,
     v: &'a Columns<D>,
@@ -166,7 +166,7 @@ pub(super) fn regular(index_count: usize, length: usize) -> Vec<Range<usize>> {
     (0..index_count).step_by(length).map(|s| s..(s + length).min(index_count)).collect()
 }
 
-/// Tiles of random sizes, in random order.
+/// Returns tiles of random sizes in random order.
 pub(super) fn irregular(index_count: usize, random: &mut Random) -> Vec<Range<usize>> {
     let mut tiles = Vec::new();
     let mut start = 0;
@@ -194,7 +194,7 @@ pub(super) fn unequal_bits<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f6
     pairs.filter(|(a, b)| a.to_bits() != b.to_bits()).count() as f64
 }
 
-/// The largest entry.
+/// The largest entry by absolute value.
 pub(super) fn largest<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> f64 {
     let mut out = 0.0;
     for n in numbers {

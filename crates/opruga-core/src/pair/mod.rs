@@ -1,8 +1,9 @@
 //! Models that consist of pairs of nodes: springs, edges of a gas chamber.
 //!
-//! Pairs are sorted into *runs*, stretches in which both ends advance by one node: a whole outline, a row of a grid. A run is
-//! evaluated once per pair, eight at a time, without any index. Pairs outside of long runs are evaluated from both of their ends,
-//! node by node (*pull*). Both methods add forces in an order that depends neither on tiles nor on the layout.
+//! Pairs are sorted into *runs*. In a run, both ends advance by one node from each pair to the next, as along an outline or a
+//! row of a grid. Each pair of a run is evaluated once, eight pairs at a time, without a table of indices. Pairs outside of
+//! long runs are evaluated from both of their ends, node by node (*pull*). Both methods add forces in an order that depends
+//! neither on tiles nor on the layout.
 //!
 //! ```text
 //! run of 5:   a   0 1 2 3 4        pull of node 7:   partners 2, 9, 12
@@ -54,7 +55,7 @@ pub trait PairTerm<P: Pack, const D: usize>: Copy {
     fn of(&self, parameters: [P; 3], a: [P; D], b: [P; D]) -> P;
 }
 
-/// A stretch of pairs (a + k, b + k); `first` is the number of its first pair.
+/// A run of pairs (a + k, b + k); `first` is the number of its first pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Run {
     a: u32,

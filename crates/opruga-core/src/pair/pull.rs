@@ -25,7 +25,7 @@ impl<L: PairLaw<D>, const D: usize> Work for Gather<'_, '_, '_, L, D> {
     }
 }
 
-/// Pairs gathered node by node: up to `width` partners of every node of a range.
+/// Tables of the pairs that are evaluated node by node: up to `width` partners of every node.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pull {
     pub(super) width: usize,

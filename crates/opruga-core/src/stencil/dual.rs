@@ -5,22 +5,22 @@ use opruga_math::Lane;
 
 /// A number and its derivative with respect to one variable (forward differentiation).
 ///
-/// Comparisons use only the value; if a formula selects one of two branches, so does its derivative.
+/// Comparisons use only the value. If a formula selects one of two branches, the derivative is that of the selected branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<S> {
-    /// The value.
+    /// The value of the number.
     pub value: S,
     /// Its derivative.
     pub slope: S,
 }
 
 impl<S: Lane> Dual<S> {
-    /// A constant.
+    /// Returns a constant: its derivative is zero.
     #[inline(always)]
     pub fn constant(value: S) -> Dual<S> {
         Dual { value, slope: S::zero() }
     }
-    /// The variable itself.
+    /// Returns the variable of the differentiation: its derivative is one.
     #[inline(always)]
     pub fn variable(value: S) -> Dual<S> {
         Dual { value, slope: S::one() }
