@@ -52,8 +52,8 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn same_bits_everywhere(&self, _system: &System<D>) -> bool {
         true
     }
-    /// Whether every step ends in an equilibrium, even if this is far from the start of the step, and whatever the velocities
-    /// are.
+    /// Whether every step ends in an equilibrium, which may be far from the start of the step and does not depend on
+    /// velocities.
     fn is_static(&self) -> bool {
         false
     }

@@ -104,7 +104,7 @@ pub struct SolverWork {
 }
 
 impl SolverWork {
-    /// Adds the work that another system, or a later part of the run, has recorded.
+    /// Adds the work of another system, or of another part of the run.
     pub fn add(&mut self, other: &SolverWork) {
         self.steps += other.steps;
         self.iterations += other.iterations;

@@ -220,7 +220,8 @@ impl<const D: usize> System<D> {
         let stride = self.layout.stride();
         let mut spans = Vec::new();
         let mut last = (usize::MAX, usize::MAX);
-        // No node of a stencil may move before the force on the last node of the stencil has read the others.
+        // No node of a stencil may move before the force on the last node of the stencil is known, because this force depends
+        // on all of its nodes.
         for member in self.members.iter().filter(|member| !member.potential.properties().forces_in_prepare) {
             member.potential.stencils(&mut |nodes| {
                 let (a, b) = nodes.iter().fold((u32::MAX, 0), |(a, b), node| (a.min(*node), b.max(*node)));

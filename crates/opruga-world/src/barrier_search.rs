@@ -263,9 +263,9 @@ impl<const D: usize> Search<'_, '_, D> {
         changed <= SETTLED * most
     }
 
-    /// Minimises the sum at given friction by Newton's method. If `precise` is set, goes on to the tolerance of the bodies; otherwise makes a single
-    /// correction. Returns whether a minimum was found. After a single correction, this means that the bodies were in equilibrium before it, to a
-    /// fraction of their forces.
+    /// Minimises the sum at given friction by Newton's method. If `precise` is set, continues to the tolerance of the bodies. Otherwise makes a
+    /// single correction. Returns whether a minimum was found. After a single correction, this means that the bodies were in equilibrium before it,
+    /// to a fraction of their forces.
     fn find_minimum(&mut self, precise: bool) -> Result<bool, Refused> {
         let (mut first, mut counted) = (0.0, 0);
         self.stretch = if precise { 1.0 } else { self.stretch };

@@ -16,7 +16,7 @@ pub(crate) struct BodyState<const D: usize> {
 /// The history of one body, by channels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct BodyHistory<const D: usize> {
-    /// The name of the integrator that declared the channels.
+    /// The name of the owner, which is the integrator that declared the first channels.
     pub(crate) owner: String,
     /// Name and content.
     pub(crate) channels: Vec<(String, Kept<D>)>,

@@ -204,7 +204,7 @@ impl<const D: usize> Surfaces<D> {
             let outer = boundary.body;
             let mut last = None;
             for (facet, (inner, _)) in self.facets.iter().zip(&self.origin) {
-                // One point of every other body is enough, because its surface does not cross the boundary.
+                // One point of every other body is enough: a body that lies inside the boundary lies there with all of its points.
                 if *inner == outer || last == Some(*inner) {
                     continue;
                 }

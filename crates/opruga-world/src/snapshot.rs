@@ -18,7 +18,7 @@ use std::sync::atomic::Ordering;
 
 const VERSION: u64 = 10;
 /// Earlier versions that can be read. The first is the previous version, which has no state of contact. The second is the version before it, which
-/// has no names of the channels of a history; it can be read if no integrator kept anything.
+/// has no names of the channels of a history. It can be read only if no integrator kept anything.
 const BEFORE: [u64; 2] = [9, 8];
 
 impl<const D: usize> World<D> {

@@ -12,7 +12,8 @@ use opruga_core::spec::Role;
 /// The code of the warning.
 const TURNED: &str = "law.turned";
 
-/// The cosine of 20°. Larger rotations count: the law treats a rotation by 20° as a strain of 6 %, which is beyond its range.
+/// The cosine of 20°. Rotations by more than this angle count, because the law treats a rotation by 20° as a strain of 6 %, which is beyond its
+/// range.
 const FAR: f64 = 0.939_692_620_785_908_4;
 
 /// |R − 1|² of a rotation by 20°: 4 (1 − cos θ).

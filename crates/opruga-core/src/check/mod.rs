@@ -57,7 +57,7 @@ pub struct Options {
     pub mirrored: bool,
     /// Whether the model claims the rows on rigid motion, net force and net torque.
     pub rigid: bool,
-    /// Whether the model has the properties that [`Model::views`] claims also with these parameters.
+    /// Whether the model has the properties that [`Model::views`] claims, also with the parameters of this check.
     pub views: bool,
     /// Whether the model claims a finite force if all nodes coincide.
     pub coincident: bool,
