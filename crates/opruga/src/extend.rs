@@ -14,8 +14,8 @@ pub use opruga_math::{Pack, Simd};
 
 use std::ops::Range;
 
-/// An integrator that moves every coordinate independently to the end of the step, one after the other. It is short to write; the integrators of this
-/// library process eight numbers at a time instead.
+/// An integrator that moves the coordinates to the end of the step one after another, each independently of the others. It is short to write, whereas
+/// the integrators of this library process eight numbers at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct ByCoordinate<F> {
     /// The substep [s].

@@ -48,7 +48,8 @@ pub fn catalogue() -> io::Catalogue {
     catalogue_of(&Registries::default())
 }
 
-/// Everything that scenes can name in a program with its own models or integrators: the kinds for the plane, then those that exist only in space.
+/// Everything that scenes can name in a program with its own models or integrators: first the kinds for the plane, then the kinds that exist only in
+/// space.
 pub fn catalogue_of(registries: &Registries) -> io::Catalogue {
     let both = |plane: Vec<&'static Spec>, space: Vec<&'static Spec>| {
         let same = |a: &Spec, b: &Spec| (a.kind, a.dimensions) == (b.kind, b.dimensions);
@@ -68,7 +69,7 @@ pub fn catalogue_of(registries: &Registries) -> io::Catalogue {
 #[doc = include_str!("../../../docs/library.md")]
 struct Library;
 
-/// README.md may contain a program, too.
+/// The program in README.md, if there is one, for the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 struct Readme;

@@ -1,4 +1,4 @@
-//! Records a world while a program steps it, and plays the recording, which includes the actions of the program.
+//! Records a world while a program steps it, and plays the recording. The recording includes the actions of the program.
 //!
 //! ```
 //! use opruga::io::recording::{Header, Recording};
@@ -45,20 +45,20 @@ use std::path::{Path, PathBuf};
 
 /// The time to encode and write one byte of a state [ns].
 const BYTE: f64 = 2.1;
-/// The fixed time to keep a state [ns].
+/// The time to keep a state, however small it is [ns].
 const STATE: f64 = 3_000.0;
-/// The fixed time of a frame [ns].
+/// The time that every frame takes, however small the scene is [ns].
 const FRAME: f64 = 4_000.0;
-/// A lower bound on the time that a node, a cell and a facet in space add to a step of an explicit integrator [ns].
+/// Lower bounds on the time that a node, a cell, and a facet in space each add to a step of an explicit integrator [ns].
 const WORK: [f64; 3] = [1.0, 3.0, 4.0];
-/// A lower bound on the factor by which a step of an implicit integrator takes longer.
+/// A lower bound on the duration of a step of an implicit integrator, divided by that of an explicit one.
 const IMPLICIT: f64 = 500.0;
-/// The fraction of the time of a run that keeping states may take; the hashes of all frames may take as much again.
+/// The fraction of the time of a run that may be spent on keeping states. The hashes of all frames may take as much again.
 const SHARE: f64 = 0.05;
-/// The work that may be lost if the process is killed [ns]. Small frames are written in groups, because writing each of them separately would take as
-/// long as computing it.
+/// The computing time whose results may be lost if the process is killed [ns]. Small frames are written in groups, because writing each of them
+/// separately would take as long as computing it.
 const TOGETHER: f64 = 100_000.0;
-/// The largest number of frames from one kept state to the next that the header of a recording can store.
+/// The largest number that the header of a recording can store for the frames from one kept state to the next.
 const FARTHEST: f64 = u32::MAX as f64;
 
 /// A lower bound on the time that a frame of a world takes on a common machine [ns]. It depends only on the scene, so that the same run gives the
@@ -77,8 +77,8 @@ fn work(world: &dyn AnyWorld) -> f64 {
 }
 
 /// The default number of frames from one kept state to the next, chosen so that keeping states and the hashes of all frames slow the run down by less
-/// than a tenth. To show a frame that is not kept, at most this number of frames must be computed. In every scene, this takes about twenty times as
-/// long as keeping a state: 0.05 s for a state of 100,000 numbers.
+/// than a tenth. To show a frame that is not kept, at most this number of frames must be computed. In every scene, computing that many frames takes
+/// about twenty times as long as keeping a state: 0.05 s for a state of 100,000 numbers.
 pub fn states_apart(world: &dyn AnyWorld) -> u64 {
     let scene = world.scene();
     let nodes: usize = scene.bodies().map(|body| body.nodes()).sum();
@@ -88,8 +88,8 @@ pub fn states_apart(world: &dyn AnyWorld) -> u64 {
     if apart < FARTHEST { apart as u64 } else { FARTHEST as u64 }
 }
 
-/// The number of frames that are written together, and that may be lost if the process is killed: one, or in small scenes as many as are computed in
-/// a tenth of a millisecond.
+/// The number of frames that are written together, and that may be lost if the process is killed: as many as are computed in a tenth of a
+/// millisecond, but at least one.
 pub fn frames_together(world: &dyn AnyWorld) -> u64 {
     let together = TOGETHER / work(world);
     if together > 1.0 { together as u64 } else { 1 }
@@ -106,7 +106,7 @@ pub struct Tape {
     together: u64,
     /// The first frame.
     first: u64,
-    /// The last frame whose state was kept.
+    /// The latest frame whose state was kept.
     kept: u64,
 }
 
@@ -120,7 +120,7 @@ opruga_math::messages! {
 }
 
 opruga_math::terms! {
-    /// What helps if a recording cannot continue.
+    /// The remedies if a recording cannot continue.
     pub enum TapeHint = "part.tape_hint" {
         RunEnded = "the run ended here; --resume continues from its checkpoint, and --record then needs another file",
     }
@@ -139,14 +139,14 @@ pub enum TapeError {
     /// The file could not be read.
     #[error(transparent)]
     Read(#[from] RecordingError),
-    /// The world refused something.
+    /// The world refused a step or an action.
     #[error(transparent)]
     World(#[from] WorldError),
 }
 
 impl Tape {
-    /// Makes the file with its header. From now on the world logs the actions of the program. The present frame is the first; earlier actions of the
-    /// program are not in the recording.
+    /// Makes the file with its header. From now on the world logs the actions of the program. The recording begins with the present frame and does
+    /// not contain earlier actions of the program.
     ///
     /// # Errors
     /// The errors of [`RecordingFile::create`].
@@ -169,12 +169,12 @@ impl Tape {
         Ok(self.push(world)?)
     }
 
-    /// Adds the actions of the program since the last frame, and then the present frame of the world, which must follow the last one. Its hash is
-    /// always kept, its state only if it is due.
+    /// Adds the actions of the program since the previous frame, and then the present frame of the world, which must follow the previous one. The
+    /// hash of the frame is always kept, its state only if one is due.
     ///
     /// # Errors
-    /// [`WriteError`] if the file cannot be written, if the frame is not the next one, or if an action cannot be recorded (`recording.input`), as for
-    /// bodies and forces that the program has made itself. The earlier frames are intact.
+    /// [`WriteError`] if the file cannot be written, if the frame is not the next one, or if an action cannot be recorded (`recording.input`), such
+    /// as adding a body or a force of a type that the program defines itself. The earlier frames are intact.
     pub fn push(&mut self, world: &mut dyn AnyWorld) -> Result<(), WriteError> {
         let frame = world.frames();
         self.inputs(world, frame)?;
@@ -191,7 +191,7 @@ impl Tape {
         self.file.keep(world.frames(), world.frame_hash(), |out| world.snapshot_into(out))
     }
 
-    /// Adds the actions of the program before a frame.
+    /// Adds the actions that the program took before a frame.
     fn inputs(&mut self, world: &mut dyn AnyWorld, frame: u64) -> Result<(), WriteError> {
         for input in world.take_inputs() {
             let bytes = input.map_err(|error| WriteError::of(&self.path, TapeFault::Input { error }))?;
@@ -200,7 +200,7 @@ impl Tape {
         Ok(())
     }
 
-    /// Writes the state of the last frame and the end; the state includes the actions of the program after that frame.
+    /// Writes the state of the last frame, which includes the actions of the program after that frame, and the end of the file.
     ///
     /// # Errors
     /// The errors of [`Tape::push`].
@@ -214,13 +214,13 @@ impl Tape {
     }
 }
 
-/// A recording that is shown in a world of the same scene, or computed again.
+/// A recording whose frames are shown in a world of the same scene, or computed again in it.
 #[derive(Debug)]
 pub struct Playback<R> {
     recording: Recording<R>,
     /// The actions of the program, each with the frame that followed.
     inputs: Vec<(u64, Vec<u8>)>,
-    /// The frame that was shown last, and the hash of its state, if the next frame can be computed from it.
+    /// The frame that was shown last, and the hash of its state; none if the next frame cannot be computed from it.
     shown: Option<(u64, u64)>,
 }
 
@@ -243,7 +243,7 @@ impl<R: Read + Seek> Playback<R> {
         self.recording.kept(frame) == Ok(frame)
     }
 
-    /// The bytes of a frame whose state is kept, as returned by [`AnyWorld::snapshot`].
+    /// Returns the bytes of the state of a frame whose state is kept, as [`AnyWorld::snapshot`] returns them.
     ///
     /// # Errors
     /// [`RecordingError`] if there is no such state, or it is damaged.
@@ -251,7 +251,7 @@ impl<R: Read + Seek> Playback<R> {
         self.recording.read(frame)
     }
 
-    /// The hash of a frame, as returned by [`AnyWorld::frame_hash`]; every frame has one.
+    /// Returns the hash of a frame, as [`AnyWorld::frame_hash`] returns it. Every frame has one.
     ///
     /// # Errors
     /// [`RecordingError`] if there is no such frame, or it is damaged.
@@ -259,7 +259,8 @@ impl<R: Read + Seek> Playback<R> {
         self.recording.hash(frame)
     }
 
-    /// Brings a world to a frame: without a step if its state is kept, otherwise by steps from the last kept state.
+    /// Brings a world to a frame. If the state of the frame is kept, no step is needed; otherwise, steps lead there from the nearest kept state
+    /// before it.
     ///
     /// # Errors
     /// [`TapeError`] if the frame cannot be read or computed. The world does not change, unless a step was refused.

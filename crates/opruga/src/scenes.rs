@@ -106,12 +106,12 @@ pub fn title(text: &str) -> &str {
     line(text, "title")
 }
 
-/// The authors of the drawings, maps or surfaces in a scene, and their licence: the line `credit = "…"` of its text.
+/// The authors and the licence of the drawings, maps or surfaces in a scene: the line `credit = "…"` of its text.
 pub fn credit(text: &str) -> &str {
     line(text, "credit")
 }
 
-/// The text of a line `name = "…"`; empty if there is none.
+/// The text between the quotes of a line `name = "…"`; empty if there is no such line.
 fn line<'t>(text: &'t str, name: &str) -> &'t str {
     let value = |l: &'t str| l.strip_prefix(name)?.strip_prefix(" = \"")?.strip_suffix('"');
     text.lines().find_map(value).unwrap_or("")
@@ -124,10 +124,10 @@ opruga_math::messages! {
         /// No similar name exists.
         "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("scenes that come with the program: {scenes}")]
         NoScene { scenes: String },
-        /// One scene or file has a similar name.
+        /// Exactly one scene or file has a similar name.
         "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("did you mean {closest}?")]
         NoSceneNear { closest: String },
-        /// Several have similar names.
+        /// Several scenes or files have similar names.
         "read.failed" #[error("there is no such file, and no such scene comes with the program")] #[hint("did you mean {closest} or {last}?")]
         NoSceneNearOf { closest: String, last: String },
     }
@@ -136,8 +136,8 @@ opruga_math::messages! {
 /// All messages of scenes by name, for catalogues.
 pub const MESSAGES: &[&[Variant]] = &[NoSuchScene::VARIANTS];
 
-/// The error for a name that is neither that of a file nor that of a scene of the library, with the scenes and the files of its folder that have
-/// similar names.
+/// The error for a name that belongs to no file and to no scene of the library. It lists the scenes, and the files in the folder, that have similar
+/// names.
 pub fn missing(name: &str) -> SceneError {
     let path = Path::new(name);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());

@@ -19,7 +19,7 @@ use quantity::{push_quantity, strain};
 pub use rest::rest_of;
 use rest::{is_shown, rest_lines};
 
-/// The largest number of arrows of a body in the plane, and in space, where those at the back are hidden.
+/// The largest number of arrows of a body: in the plane, and in space, where the arrows at the back are hidden.
 const MOST_ARROWS: [usize; 2] = [40, 130];
 /// The largest number of bodies for which arrows are drawn; with more, the arrows could not be distinguished.
 const MOST_BODIES: usize = 64;
@@ -47,7 +47,7 @@ struct Fixed {
     facets: Facets,
     cells: Vec<[u32; 3]>,
     segments: Vec<[u32; 2]>,
-    /// Edges and their rest lengths, for colours of the strain.
+    /// The edges and their rest lengths, from which the strain is computed for the colours.
     edges: Vec<([u32; 2], f64)>,
     pinned: Vec<u32>,
     nodes_drawn: bool,
@@ -55,7 +55,7 @@ struct Fixed {
     node_spacing: f64,
     /// Its larger side at rest [m].
     extent: f64,
-    /// Its initial position, if that is shown.
+    /// Its outline or sharp edges at its initial position, if these are shown.
     rest: RestPicture,
     label: String,
     /// The depth of a body in the plane [m].
@@ -64,7 +64,7 @@ struct Fixed {
     arrow_nodes: Vec<u32>,
     /// The skin that is drawn instead of the facets.
     skin: Option<Skin>,
-    /// The springs, if they are drawn independently of other options.
+    /// The springs, if they are drawn whatever the other options are.
     springs: Option<Vec<[u32; 2]>>,
 }
 
@@ -77,8 +77,8 @@ pub struct Moment {
     coordinates: Vec<f32>,
     /// The quantity that the colours show.
     quantity: Quantity,
-    /// That quantity at every node, computed beforehand because the coordinates are not precise enough for strains. Empty if bodies have plain
-    /// colours.
+    /// That quantity at every node. It is computed before the coordinates are rounded, because the rounded ones are not precise enough for strains.
+    /// Empty if bodies have plain colours.
     scalars: Vec<f32>,
     /// The existing bodies.
     bodies: Vec<usize>,
@@ -93,7 +93,7 @@ impl Scenery {
         let (scene, pictured) = (world.scene(), world.scene().pictured());
         let (present, flat) = (scene.body_count(), scene.dimension() == 2);
         let many = present > 64;
-        // A single body is named by the title, and the names of copies carry no information.
+        // The title names a single body, and the names of copies carry no information.
         let named = (2..=8).contains(&present) && scene.bodies().all(|body| !body.name().contains('['));
         let fixed = |(number, body): (usize, &dyn AnyBody)| {
             let positions = body.rest_positions();
@@ -158,10 +158,10 @@ impl Scenery {
         }
     }
 
-    /// Draws every spring and every node that it connects, and the body itself instead of a skin.
+    /// Makes the pictures show every spring with the nodes that it connects, and the body itself instead of its skin.
     pub fn show_springs(&mut self, world: &dyn AnyWorld) {
         for (number, fixed) in self.bodies.iter_mut().enumerate() {
-            // A body that a model refuses is reported when it is added.
+            // If a model refuses a body, the world reports this when the body is added.
             fixed.springs = world.springs_of(number);
         }
     }
@@ -393,7 +393,7 @@ fn collider(placed: Placed<3>) -> ColliderPicture {
     }
 }
 
-/// Up to `most` nodes of a body, each as far as possible from the previous ones.
+/// Chooses up to `most` nodes of a body, each as far as possible from those chosen before it.
 fn spread(positions: &[[f64; 3]], most: usize) -> Vec<u32> {
     if positions.len() <= most {
         return (0..positions.len() as u32).collect();
@@ -416,7 +416,7 @@ fn spread(positions: &[[f64; 3]], most: usize) -> Vec<u32> {
     chosen
 }
 
-/// The surface that belongs to each node [m²]: half of the edges in a plane, a third of the triangles in space.
+/// The surface that belongs to each node [m²]: half of each adjacent edge in the plane, a third of each adjacent triangle in space.
 fn surfaces(fixed: &Fixed, positions: &[[f64; 3]]) -> Vec<f64> {
     let mut out = vec![0.0; fixed.nodes];
     let arm =

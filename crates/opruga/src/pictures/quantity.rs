@@ -12,9 +12,9 @@ pub enum Quantity {
     /// The mean elongation of the edges at each node [%].
     #[default]
     Strain,
-    /// The force on each node of the models that store energy, without gas [N].
+    /// The force on each node from all models that store energy, except the gas [N].
     ElasticForce,
-    /// The pressure of the gas [Pa]: that of the chamber that a node bounds, or of the only one; bodies without gas have no colour.
+    /// The pressure of the gas in the chamber that the node bounds, or in the only chamber [Pa]; bodies without gas have no colour.
     Pressure,
     /// The speed of each node [m/s].
     Speed,
@@ -38,7 +38,8 @@ impl Quantity {
         Quantity::Plain,
     ];
 
-    /// The default quantity for some bodies: none if one is painted in its own colours, stress if all are solids with a stress, otherwise strain.
+    /// The default quantity for the bodies of a scene: none if one of them is painted in its own colours, stress if all of them are solids whose
+    /// stress is known, otherwise strain.
     pub(super) fn of(scene: &dyn AnyScene) -> Quantity {
         let mut areas = scene.bodies().filter_map(|body| body.skin()).flat_map(|skin| &skin.areas);
         if areas.any(|area| area.colour.is_some()) {
@@ -61,14 +62,15 @@ impl Quantity {
             Quantity::VolumeRatio => ("volume / volume at rest", ""),
             Quantity::Plain => return None,
         };
-        // Most of a body has little stress, and the shading of a body is visible only if its colour is light.
+        // In most parts of a body the stress is small. These parts have a light colour, because the shading is visible only on light colours.
         let stress = matches!(self, Quantity::VonMises | Quantity::ElasticForce);
         let map = if stress { ColourMap::Embers } else { ColourMap::default() };
         Some(Legend { label: label.into(), unit: unit.into(), range: None, map })
     }
 }
 
-/// Strains below this, and stresses of such strains, are rounding errors of positions, which otherwise would fill the whole range of colours at rest.
+/// Strains below this value, and the stresses of such strains, are rounding errors of positions. If they were shown, they would fill the whole range
+/// of colours of a body at rest.
 const ROUNDING: f64 = 1e-11;
 
 /// Adds a quantity at every node of a body.

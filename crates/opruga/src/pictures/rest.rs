@@ -1,15 +1,15 @@
-//! The positions of bodies before their deformation, as lines.
+//! The outlines and sharp edges of bodies at their initial positions.
 
 use crate::AnyBody;
 use crate::draw::{BodyPicture, Facets, RestPicture};
 use opruga_core::spec::{Role, Values};
 use std::collections::BTreeMap;
 
-/// An edge is drawn if the angle between its two facets exceeds this, given as a cosine.
+/// The cosine of an angle. An edge is drawn if the normals of its two facets differ by more than this angle.
 const SHARP: f64 = 0.8;
 
-/// Whether pictures of a body show its initial position: they do for every body in statics, and otherwise for pinned bodies that own their cells,
-/// because these bend about that position.
+/// Whether pictures of a body show its initial position. They show it for every body in statics and for pinned bodies that own their cells, because
+/// these bend about that position. They do not show it for bodies with a skin.
 pub(super) fn is_shown(body: &dyn AnyBody, of_scene: &Values) -> bool {
     let integrator = body.integrator().unwrap_or(of_scene).spec();
     let pinned_solid = body.is_pinned_at_rest() && body.has_role(Role::OwnsCells);
@@ -30,7 +30,7 @@ pub(super) fn rest_lines(facets: &Facets, positions: Vec<[f64; 3]>) -> RestPictu
     RestPicture { positions, segments }
 }
 
-/// Edges of a single triangle, and those at which two triangles meet at an angle.
+/// Returns the edges that belong to one triangle only, and those at which two triangles meet at an angle.
 fn sharp_edges(triangles: &[[u32; 3]], positions: &[[f64; 3]]) -> Vec<[u32; 2]> {
     let normal = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|k| positions[k as usize]);

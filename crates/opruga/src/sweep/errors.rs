@@ -110,7 +110,7 @@ pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
 ];
 
 messages! {
-    /// How an earlier question of a sweep differs from the present one.
+    /// The difference between an earlier question of a sweep and the present one.
     #[derive(Clone, Debug, PartialEq)]
     pub enum QuestionDifference {
         "part.question" #[error("the text of the scene was different")]

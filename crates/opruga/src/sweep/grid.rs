@@ -21,7 +21,7 @@ pub struct Axis {
 /// The values of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// Each of these, as a scene file would write them.
+    /// A list of values, each as a scene file would write it.
     Listed(Vec<String>),
     /// Numbers between two ends, including both ends.
     Range(Range),
@@ -34,11 +34,11 @@ pub struct Range {
     pub low: f64,
     /// The upper end.
     pub high: f64,
-    /// The number of values; none if a sample chooses them.
+    /// The number of values; none if a sample chooses the values.
     pub count: Option<usize>,
-    /// Whether neighbours have the same ratio rather than the same distance.
+    /// Whether all pairs of neighbouring values have the same ratio instead of the same difference.
     pub logarithmic: bool,
-    /// Whether numbers are rounded to whole ones.
+    /// Whether the values are rounded to whole numbers.
     pub whole: bool,
 }
 
@@ -61,7 +61,7 @@ pub enum Design {
     },
 }
 
-/// One point of a sweep: a value for each parameter; none if it is as in the scene.
+/// One point of a sweep: a value for each parameter; none where the parameter has the value of the scene.
 pub type Point = Vec<Option<String>>;
 
 impl Axis {
@@ -133,7 +133,7 @@ impl Axis {
     }
 }
 
-/// The ratio of the largest distance to the smallest.
+/// The ratio of the largest distance to the smallest: 1 for equally spaced values.
 fn uneven(distances: &[f64]) -> f64 {
     let (low, high) = distances.iter().fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), d| {
         (if *d < low { *d } else { low }, if *d > high { *d } else { high })
@@ -191,7 +191,7 @@ impl Range {
         } else {
             self.low + fraction * (self.high - self.low)
         };
-        // Fifteen digits, without the rounding errors of the last ones; counts of vertices are whole.
+        // Only fifteen digits are written, because later ones would show rounding errors. Numbers such as counts of vertices are whole.
         let x = number(&format!("{:.14e}", if self.whole { x.round() } else { x })).unwrap_or(x);
         format!("{x}")
     }
@@ -221,7 +221,7 @@ fn split_list(text: &str) -> Vec<String> {
 ///
 /// # Errors
 /// `sweep.axes` if nothing varies, `sweep.range` if a range lacks its number of values or has one in a sample, or if a sample has no points,
-/// `sweep.too_many` above [`MOST_POINTS`].
+/// `sweep.too_many` if there are more than [`MOST_POINTS`].
 pub(super) fn points(axes: &[Axis], design: Design) -> Result<Vec<Point>, SceneError> {
     if axes.is_empty() {
         return Err(SceneError::of(SweepError::NothingVaries {}));

@@ -19,7 +19,7 @@ pub const WORDS: [(&str, &str); 5] = [
     ("nanoseconds_per_step", "processor time of a substep of the whole world"),
 ];
 
-/// The kinetic energy counts as settled below this fraction of its largest value.
+/// A run counts as settled once the kinetic energy stays below this fraction of its largest value.
 const SETTLED: f64 = 0.01;
 
 /// A number that is measured in every run.
@@ -32,13 +32,13 @@ pub struct Metric {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Quantity {
-    /// For a body, or for the first one if none is named.
+    /// The height to which a body bounces, for the named body or, without a name, for the first one.
     BounceHeight(Option<String>),
     SettlingTime,
     EquilibriumRadius(Option<String>),
     EnergyDrift,
     NanosecondsPerStep,
-    /// A column of a probe, over all frames.
+    /// A statistic of a column of a probe over all frames.
     Probe(String, Statistic),
 }
 
@@ -144,7 +144,7 @@ impl Metric {
         }
     }
 
-    /// Whether it is a wall-clock or processor time, which differs from run to run.
+    /// Whether the metric is a wall-clock or processor time, which differs from run to run.
     pub fn is_timing(&self) -> bool {
         self.quantity == Quantity::NanosecondsPerStep
     }
@@ -194,7 +194,7 @@ enum Gauge {
     Drift {
         drift: f64,
     },
-    /// Measured elsewhere with a clock.
+    /// The time of a step, which is not measured here but by separate runs with a clock.
     Speed,
     Probe {
         number: usize,
@@ -246,7 +246,7 @@ impl Meter {
         Meter { gauges, frames }
     }
 
-    /// Whether the time within frames matters, because an impact lasts only one substep.
+    /// Whether the world must also be measured within frames, because an impact may last only one substep.
     pub(crate) fn looks_within(&self) -> bool {
         self.gauges.iter().any(|gauge| matches!(gauge, Gauge::Bounce { .. }))
     }
@@ -300,7 +300,7 @@ impl Meter {
         }
     }
 
-    /// The results in the order of the metrics; none for times, and for numbers that the run does not have.
+    /// Returns the results in the order of the metrics; none for times, and for numbers that the run does not provide.
     pub(crate) fn finish(self) -> Vec<Option<f64>> {
         let finite = |x: f64| Some(x).filter(|x| x.is_finite());
         self.gauges
@@ -322,7 +322,7 @@ impl Meter {
     }
 }
 
-/// A body by its name; without a name, the first existing one.
+/// Finds a body by its name or, without a name, the first existing body.
 fn found(world: &dyn AnyWorld, name: Option<&str>) -> Option<usize> {
     match name {
         Some(name) => world.body(name),
@@ -340,7 +340,8 @@ fn radius(world: &dyn AnyWorld, body: usize) -> f64 {
     positions.iter().map(distance).sum::<f64>() / nodes
 }
 
-/// The first of these times after which the kinetic energy stays below its limit; none if it does not settle.
+/// Returns the first of the given times from which on the kinetic energy stays below its limit; none if the run does not settle. `kinetic` lists
+/// pairs of time and kinetic energy.
 fn settled(kinetic: &[[f64; 2]]) -> Option<f64> {
     let largest = kinetic.iter().fold(0.0, |largest, row| if row[1] > largest { row[1] } else { largest });
     match kinetic.iter().rposition(|row| row[1] > SETTLED * largest) {

@@ -54,7 +54,7 @@ use opruga_world::blueprint::AnyBlueprint;
 use opruga_world::{AnyScene, AnyWorld, Registries};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The processor time after which a speed is known precisely enough [s].
+/// The total processor time of the runs that measure a speed, after which the speed is known precisely enough [s].
 const TIMED: f64 = 0.1;
 
 /// The question of a sweep. The same question always has the same answer, except for times.
@@ -66,7 +66,7 @@ pub struct Sweep {
     pub file: String,
     /// The text of the scene.
     pub text: String,
-    /// Where the files that it names are.
+    /// The location of the files that the scene names.
     pub files: Files,
     /// Parameters that are changed for all points, each with a path and a value.
     pub fixed: Vec<(String, String)>,
@@ -85,9 +85,10 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Checks the question and returns the points: the scene must be readable, and must have every parameter that varies and every measured quantity.
+    /// Checks the question and returns the points. The scene must be readable, and must have every parameter that varies and every quantity that is
+    /// measured.
     ///
-    /// If the scene refuses a point only because of its value, this is not an error; its row reports it.
+    /// If the scene refuses a point only because of a value, this is not an error here; the row of the point reports it.
     ///
     /// # Errors
     /// The errors of the scene, of [`Axis`] and of [`Metric`].
@@ -168,7 +169,7 @@ impl Sweep {
     }
 }
 
-/// Why a point has no numbers.
+/// The reason why a point has no numbers.
 enum Failed {
     Stopped,
     Refused(String, String),
@@ -180,7 +181,7 @@ impl Failed {
     }
 }
 
-/// Joins the message, the allowed values and the hint in one line, as for errors of worlds.
+/// Joins the message, the allowed values and the hint in one line, as errors of worlds do.
 impl From<SceneError> for Failed {
     fn from(error: SceneError) -> Failed {
         let mut message = error.message;
@@ -237,12 +238,12 @@ impl Run<'_> {
         Ok(world.frame()?)
     }
 
-    /// The processor time of a substep [ns] in the fastest of several runs: as many as fit into a tenth of a second, but at least one. These runs are
-    /// separate and measure nothing else.
+    /// Returns the processor time of a substep in the fastest of several runs [ns]. Runs are repeated until they have taken a tenth of a second
+    /// together. They are separate from the other runs and measure nothing else.
     fn speed(&self, blueprint: &AnyBlueprint, frames: u64) -> Result<Option<f64>, Failed> {
         let steps = frames as f64 * f64::from(blueprint.scene().time().substeps);
         let (mut fastest, mut spent) = (f64::INFINITY, 0.0);
-        // If a clock does not advance, it is read only this often.
+        // The number of runs is limited, because the clock might not advance.
         for _ in 0..50 {
             let mut world = blueprint.clone().build_with(self.options.clone(), &self.sweep.registries)?;
             let start = (self.clock)();

@@ -4,11 +4,11 @@ use super::table::Status;
 use super::{Axis, Design, Row, Sweep, number};
 use opruga_draw::{Chart, DrawError, HeatMap, HeatPanel, Line, Marker, Nothing, Panel, format_value};
 
-/// The names and texts (SVG) of all plots.
+/// Returns all plots, each with its name and its text (SVG).
 ///
 /// If one parameter varies, or several one after the other, each plot shows a metric over a parameter. For a grid of two parameters, each plot is a
-/// map of a metric, with marks where runs have failed. For more parameters, or a sample, each plot shows a metric over a parameter as points. The
-/// credit is below each plot.
+/// map of a metric, with marks where runs have failed. For a grid of more parameters, or for a sample, each plot shows a metric over a parameter as
+/// separate points. The credit is below each plot.
 ///
 /// # Errors
 /// [`DrawError`] if nothing can be drawn.
@@ -53,7 +53,7 @@ impl Plots<'_> {
         let words = axis.numbers().is_none().then_some(listed).flatten();
         let lines = !matches!(self.sweep.design, Design::Sample { .. })
             && (self.sweep.axes.len() == 1 || self.sweep.design == Design::Each);
-        // Words are placed at 1, 2, 3, ….
+        // Values that are words have the positions 1, 2, 3, … on the axis.
         let at = |value: &str| match &words {
             Some(words) => words.iter().position(|word| word == value).map(|k| k as f64 + 1.0),
             None => number(value),
@@ -65,7 +65,7 @@ impl Plots<'_> {
                 let Some(x) = row.values[index].as_deref().and_then(at) else { continue };
                 points.push([x, row.numbers[column].unwrap_or(f64::NAN)]);
                 if !lines {
-                    // A gap: points that are not neighbours are not connected.
+                    // This makes a gap in the line, because points that are not neighbours are not connected.
                     points.push([f64::NAN; 2]);
                 }
             }
@@ -76,7 +76,7 @@ impl Plots<'_> {
             let mut y = axis_of(&metric.name, &metric.unit(self.length_unit));
             let (low, high) = values().fold((f64::INFINITY, 0.0), wider);
             y.logarithmic = low > 0.0 && high > 100.0 * low;
-            // Small variations are shown as small.
+            // The axis of a time begins at zero, so that small variations look small.
             if metric.is_timing() && !y.logarithmic {
                 y.range = Some([0.0, 1.15 * high]);
             }
@@ -103,7 +103,7 @@ impl Plots<'_> {
             let mut values = vec![vec![f64::NAN; columns.len()]; rows.len()];
             let mut failed = Vec::new();
             for row in self.rows {
-                // The points of a grid: its last parameter varies fastest.
+                // The points of a grid are numbered so that the last parameter varies fastest.
                 let (column, line) = (row.number / rows.len(), row.number % rows.len());
                 values[line][column] = row.numbers[index].unwrap_or(f64::NAN);
                 if row.status != Status::Done {
@@ -136,7 +136,8 @@ impl Plots<'_> {
     }
 }
 
-/// The last two words of a path, and those before a number; the whole path if the other one ends in the same words.
+/// Shortens a path to its last two words or, if the first of these is a number, to more of them, so that it does not begin with a number. The whole
+/// path is kept if the path of the other parameter ends in the same words.
 fn short_path(path: &str, other: &str) -> String {
     let words: Vec<&str> = path.split('.').collect();
     let mut kept = words.len().min(2);
@@ -148,7 +149,7 @@ fn short_path(path: &str, other: &str) -> String {
     if alike { path.to_string() } else { short }
 }
 
-/// Values with three digits, unless two of them would then be equal.
+/// Shortens values to three digits, unless two of them would then be equal.
 fn short_values(values: Vec<String>) -> Vec<String> {
     let short: Vec<String> = values.iter().map(|v| number(v).map_or(v.clone(), format_value)).collect();
     let distinct = short.iter().collect::<std::collections::BTreeSet<_>>().len() == short.len();

@@ -6,11 +6,11 @@ use opruga_world::Registries;
 use std::sync::atomic::AtomicBool;
 
 impl Sweep {
-    /// A sweep over every combination of the values of `axes` (`"body.ball.mass=1,2"`), in a scene that names no files and uses the models and
-    /// integrators of this library; [`Sweep::registries`] can be replaced.
+    /// Makes a sweep over every combination of the values of `axes` (such as `"body.ball.mass=1,2"`). The scene names no files, and uses the models
+    /// and integrators of this library unless [`Sweep::registries`] is replaced.
     ///
     /// # Errors
-    /// [`SceneError`] about an axis that does not vary or cannot be read, or about a metric that does not exist.
+    /// [`SceneError`] about an axis that cannot be read, or about a metric that does not exist.
     pub fn new(name: &str, text: &str, axes: &[&str], metrics: &[&str]) -> Result<Sweep, SceneError> {
         let mut sweep = Sweep {
             name: name.into(),
@@ -28,14 +28,14 @@ impl Sweep {
         for argument in axes {
             match Axis::parse(argument)? {
                 Some(axis) => sweep.axes.push(axis),
-                // A single value does not vary: it applies to all points, as on the command line.
+                // A parameter with a single value does not vary. The value applies to all points, as on the command line.
                 None => sweep.fixed.push(opruga_io::overrides::split(argument)?),
             }
         }
         Ok(sweep)
     }
 
-    /// Runs all points on the calling thread. Speeds (`nanoseconds_per_step`) need a clock: see [`Sweep::measure`].
+    /// Runs all points on the calling thread. Speeds (`nanoseconds_per_step`) are not measured, because they need a clock: see [`Sweep::measure`].
     ///
     /// # Errors
     /// The errors of [`Sweep::points`]. If a point fails, its row reports it.

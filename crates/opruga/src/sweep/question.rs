@@ -1,4 +1,4 @@
-//! The question of a sweep as a file in its folder, from which it can be resumed.
+//! The question of a sweep as a file in the folder of the sweep. The sweep can be resumed from this file.
 
 use super::errors::{QuestionDifference, SweepError};
 use super::{Axis, Design, Metric, Sweep};
@@ -15,17 +15,17 @@ pub struct Question {
     pub schema: u32,
     /// The name of the scene.
     pub name: String,
-    /// The origin of the scene. It does not matter when two questions are compared.
+    /// The file that the scene comes from. It is ignored when two questions are compared.
     pub file: String,
     /// The parameters that vary or are changed for all points, as `PATH=VALUES`.
     pub set: Vec<String>,
     /// The names of the measured quantities.
     pub metrics: Vec<String>,
-    /// Whether one parameter varies after the other.
+    /// Whether the parameters vary one after the other, instead of in all combinations.
     pub each: bool,
-    /// The number of random points; none if points are not random.
+    /// The number of random points; none if the points are not random.
     pub sample: Option<usize>,
-    /// Whether random points are independent.
+    /// Whether the random points are independent of one another; otherwise they form a Latin hypercube.
     pub independent: bool,
     /// The seed of random points.
     pub seed: u64,
@@ -110,12 +110,12 @@ impl Question {
         })
     }
 
-    /// Whether another question has the same answer.
+    /// Whether another question has the same answer as this one.
     pub fn same(&self, other: &Question) -> bool {
         *self == Question { file: self.file.clone(), ..other.clone() }
     }
 
-    /// How an earlier question differs from this one.
+    /// Finds how an earlier question differs from this one.
     pub fn difference(&self, before: &Question) -> QuestionDifference {
         let listed = |list: &[String]| visible(&list.join(" "));
         if self.scene != before.scene {

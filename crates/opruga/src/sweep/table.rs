@@ -1,8 +1,8 @@
 //! The table of a sweep: one row for each point, written when the point is done and read again when the sweep is resumed.
 //!
 //! Each row ends with a checksum of its cells. A resumed sweep uses existing rows as its own results. A row that was changed in the meantime, by hand
-//! or by a program that reformatted its numbers, is refused, and the error names its line. The point is not computed again automatically, because
-//! that would overwrite the changes; to have it computed again, delete the line.
+//! or by a program that reformatted its numbers, is refused, and the error names its line. The point is not computed again automatically, because its
+//! new row would overwrite the changes. To have it computed again, delete the line.
 
 use super::Sweep;
 use super::errors::{RowFault, SweepError};
@@ -16,13 +16,13 @@ use opruga_io::tables::{Digits, cell};
 pub struct Row {
     /// The number of the point, from 0.
     pub number: usize,
-    /// The values of the parameters that vary; none: as in the scene.
+    /// The values of the parameters that vary; none where a parameter has the value of the scene.
     pub values: Point,
     /// How the run ended.
     pub status: Status,
     /// The error in one sentence; empty if there is none.
     pub message: String,
-    /// The results in the order of the metrics; none if the run has no such number.
+    /// The results in the order of the metrics; none where the run does not provide the number.
     pub numbers: Vec<Option<f64>>,
 }
 
@@ -31,7 +31,7 @@ pub struct Row {
 pub enum Status {
     /// It ran to its end.
     Done,
-    /// It was refused or diverged; the text is the code of the error.
+    /// It was refused or has diverged; the text is the code of the error.
     Failed(String),
 }
 
@@ -58,8 +58,8 @@ pub fn head(sweep: &Sweep) -> String {
     cells.join(",") + "\n"
 }
 
-/// The checksum of a row: FNV-1a of 64 bits over the header of its table, the end of that line, and the row up to the comma before the checksum; 16
-/// hexadecimal digits.
+/// The checksum of a row as 16 hexadecimal digits: the 64-bit hash FNV-1a of the header of the table, its line end, and the row up to the comma
+/// before the checksum.
 fn checksum(head: &str, cells: &str) -> String {
     let bytes = head.trim_end().bytes().chain([b'\n']).chain(cells.bytes());
     let hash =
@@ -67,7 +67,7 @@ fn checksum(head: &str, cells: &str) -> String {
     format!("{hash:016x}")
 }
 
-/// A row as a line of the table; unknown values are empty. Numbers have 17 significant digits.
+/// A row as a line of the table. Cells of unknown values are empty. Numbers have 17 significant digits.
 pub fn line(sweep: &Sweep, row: &Row) -> String {
     let flat = |text: &str| cell(&text.split_whitespace().collect::<Vec<_>>().join(" "));
     let mut cells = vec![row.number.to_string()];
@@ -83,7 +83,7 @@ pub fn line(sweep: &Sweep, row: &Row) -> String {
 /// are sorted by their points.
 ///
 /// # Errors
-/// `sweep.damaged` if the table does not belong to this sweep; `sweep.changed_row` for every row that is not as it was written.
+/// `sweep.damaged` if the table does not belong to this sweep; `sweep.changed_row` for every row that was changed after it was written.
 pub fn read_rows(sweep: &Sweep, points: &[Point], text: &str, file: &str) -> Result<Vec<Row>, Vec<SceneError>> {
     let placed = |line: usize, error: SceneError| SceneError {
         file: file.to_string(),
