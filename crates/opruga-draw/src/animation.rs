@@ -21,7 +21,7 @@ impl<W: Write> Mp4Writer<W> {
     /// Adds a frame.
     ///
     /// # Errors
-    /// [`DrawError::Video`] if it has another size; the film can continue without it.
+    /// [`DrawError::Video`] if the frame has another size; the film can continue without it.
     pub fn push(&mut self, image: &Image) -> Result<(), DrawError> {
         Ok(self.0.push([image.width(), image.height()], image.pixels())?)
     }
@@ -69,7 +69,7 @@ impl<W: Write> GifWriter<W> {
         let palette = Palette::of(samples);
         let mut encoder = gif::Encoder::new(out, width, height, palette.colours()).map_err(DrawError::from)?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(DrawError::from)?;
-        // Viewers slow down frames that are shorter than two hundredths of a second.
+        // Viewers show frames that are shorter than two hundredths of a second for longer than requested.
         let delay = (100.0 / frames_per_second).clamp(2.0, 6000.0);
         Ok(GifWriter { encoder, size, palette, last: None, delay, frames: 0 })
     }
@@ -77,7 +77,7 @@ impl<W: Write> GifWriter<W> {
     /// Adds a frame.
     ///
     /// # Errors
-    /// [`DrawError`] if its size differs, or if it cannot be written.
+    /// [`DrawError`] if the frame has another size, or if it cannot be written.
     pub fn push(&mut self, image: &Image) -> Result<(), DrawError> {
         if [image.width(), image.height()] != self.size {
             return Err(DrawError::FrameSize { expected: self.size, found: [image.width(), image.height()] });
@@ -92,7 +92,7 @@ impl<W: Write> GifWriter<W> {
         for row in top..bottom {
             part.extend(&pixels[row * width + left..row * width + right]);
         }
-        // Each frame ends at the nearest hundredth, so that rounding errors do not add up.
+        // The end of each frame is rounded to a hundredth of a second, and not its length, so that rounding errors do not add up.
         let end = |frames: u64| (frames as f64 * self.delay).round() as u64;
         let delay = (end(self.frames + 1) - end(self.frames)) as u16;
         self.frames += 1;
@@ -112,7 +112,7 @@ impl<W: Write> GifWriter<W> {
     }
 }
 
-/// Left, top, right and bottom of the region that differs; one pixel if nothing does.
+/// Returns the left, top, right and bottom of the region in which two images differ; one pixel if they are equal.
 fn changed(a: &[u8], b: &[u8], width: usize) -> [usize; 4] {
     let mut bounds = [width, a.len() / width, 0, 0];
     for (index, (x, y)) in a.iter().zip(b).enumerate() {

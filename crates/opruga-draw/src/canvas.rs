@@ -26,14 +26,14 @@ fn font() -> &'static FontRef<'static> {
     READ.get_or_init(|| FontRef::try_from_slice(FONT).expect("the font of the crate is a font"))
 }
 
-/// The advance of a character. All digits have the same advance, so that changing numbers do not jump.
+/// The advance of a character. All digits have the same advance, so that a number keeps its width while it changes.
 fn advance(sign: char, size: f32) -> f32 {
     let font = font().as_scaled(size * font_scale());
     let wide = if sign.is_ascii_digit() { '0' } else { sign };
     font.h_advance(font.glyph_id(wide))
 }
 
-/// The ratio of the height of a line, which ab_glyph expects, to the size of the letters.
+/// The height of a line divided by the size of the letters. The library ab_glyph expects the height of a line.
 fn font_scale() -> f32 {
     font().height_unscaled() / font().units_per_em().unwrap_or(1000.0)
 }
@@ -86,7 +86,7 @@ impl<'a> Canvas<'a> {
         self.pixmap.fill_path(path, paint, FillRule::EvenOdd, Transform::identity(), None);
     }
 
-    /// Fills everything that the loops of a path enclose, however often. All loops have the same orientation.
+    /// Fills everything that the loops of a path enclose, also where they overlap. All loops have the same orientation.
     pub(crate) fn fill_all(&mut self, path: &Path, paint: &Paint) {
         self.pixmap.fill_path(path, paint, FillRule::Winding, Transform::identity(), None);
     }
@@ -96,7 +96,7 @@ impl<'a> Canvas<'a> {
         self.stroke_dashed(path, width, &[], paint);
     }
 
-    /// Draws the line of a path with dashes, given as lengths of lines and gaps.
+    /// Draws the line of a path with dashes, given as the lengths of dashes and gaps in turn.
     pub(crate) fn stroke_dashed(&mut self, path: &Path, width: f32, dashes: &[f32], paint: &Paint) {
         let stroke = Stroke {
             width,
@@ -152,7 +152,7 @@ impl<'a> Canvas<'a> {
         [self.pixmap.width() as f32, self.pixmap.height() as f32]
     }
 
-    /// The number of pixels of a rectangle (left, top, width, height) whose colour visibly differs from the given one.
+    /// Counts the pixels of a rectangle (left, top, width, height) whose colour visibly differs from the given one.
     pub(crate) fn differing(&self, [left, top, width, height]: [f32; 4], colour: [u8; 3]) -> usize {
         let [wide, tall] = self.size().map(|size| size as usize);
         let (columns, rows) = (

@@ -52,7 +52,7 @@ const CIVIDIS: [[u8; 3]; 10] = [
     [255, 234, 70],
 ];
 
-/// The ends of a map without colours.
+/// The dark and the light end of the grey map.
 const GREY: [[u8; 3]; 2] = [[28, 30, 34], [244, 245, 247]];
 
 /// The stops of a map from a pale grey to dark violet, with evenly decreasing lightness.
@@ -95,7 +95,7 @@ pub const OKABE_ITO: [[u8; 3]; 8] = [
     [240, 228, 66],
 ];
 
-/// The soft colours that bodies without a colour use in turn.
+/// The soft colours that are used in turn for bodies without a given colour.
 pub const BODIES: [[u8; 3]; 6] =
     [[122, 174, 214], [240, 178, 122], [122, 196, 168], [218, 166, 196], [238, 206, 124], [164, 172, 186]];
 
@@ -109,7 +109,7 @@ pub(crate) const FRAME: [u8; 3] = [206, 210, 216];
 pub(crate) const OBSTACLE: [u8; 3] = [226, 228, 232];
 /// The edge colour of an obstacle.
 pub(crate) const OBSTACLE_EDGE: [u8; 3] = [116, 122, 132];
-/// The colour of the rubber line of a pointer.
+/// The colour of the rubber line from a node to the pointer that pulls it.
 pub(crate) const RUBBER: [u8; 3] = [196, 40, 90];
 
 impl ColourMap {
@@ -117,12 +117,12 @@ impl ColourMap {
     pub const ALL: [ColourMap; 5] =
         [ColourMap::Viridis, ColourMap::Cividis, ColourMap::Embers, ColourMap::Grey, ColourMap::Diverging];
 
-    /// Whether its low end is light, so that lines over it must be dark.
+    /// Whether the low end of the map is light, so that lines over it must be dark.
     pub(crate) fn is_light_below(self) -> bool {
         self == ColourMap::Embers
     }
 
-    /// The colour at a fraction of the map from 0 (low) to 1 (high); values outside get the nearest end.
+    /// The colour at a fraction of the map from 0 (low) to 1 (high). Fractions outside this range get the colour of the nearest end.
     pub fn colour(self, fraction: f64) -> [u8; 3] {
         let stops: &[[u8; 3]] = match self {
             ColourMap::Viridis => &VIRIDIS,

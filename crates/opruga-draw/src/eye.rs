@@ -1,4 +1,4 @@
-//! A free camera around a point, for scenes that are rotated by hand, and drawing of a scene without anything around it.
+//! A camera that rotates freely around a point, for scenes that the user rotates. Also draws a scene without a title, a legend or scales.
 
 use crate::error::DrawError;
 use crate::image::Image;
@@ -20,14 +20,14 @@ pub struct Eye {
 }
 
 impl Eye {
-    /// The eye that sees the content of a view.
+    /// Makes an eye that sees the whole content of a view.
     pub fn of(view: &View) -> Eye {
         let half: [f64; 3] = std::array::from_fn(|axis| 0.5 * (view.high[axis] - view.low[axis]));
         let radius = (0.75 * dot(half, half).sqrt()).max(1e-9);
         Eye { target: view.center(), radius, azimuth: view.azimuth, elevation: view.elevation }
     }
 
-    /// The view of this eye, with the scales of another view.
+    /// Makes the view of this eye, with the scales of another view.
     pub fn view(&self, scales: &View) -> View {
         let mut view = View {
             low: self.target.map(|c| c - self.radius),
@@ -36,7 +36,8 @@ impl Eye {
             elevation: self.elevation,
             ..scales.clone()
         };
-        // Ends of a cross in the plane of the picture, so that the distance does not change while the eye rotates.
+        // The camera must see the ends of a cross in the plane of the picture. Because the cross rotates with the eye, the distance of the camera
+        // does not change.
         let [right, up, _] = axes(&view);
         let ends = [(right, 1.0), (right, -1.0), (up, 1.0), (up, -1.0)];
         view.points = ends.map(|(axis, sign)| along(self.target, axis, sign * self.radius)).to_vec();
@@ -73,7 +74,7 @@ impl Lens {
     }
 }
 
-/// Draws a picture without anything around it.
+/// Draws the scene of a picture without a title, a legend or scales around it.
 ///
 /// # Errors
 /// [`DrawError`] for a picture with inconsistent lists, or a size that no image can have.

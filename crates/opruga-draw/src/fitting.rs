@@ -1,4 +1,4 @@
-//! Finds the view of a run, one picture after another.
+//! Finds the view that suits all pictures of a run. The pictures are added one after another.
 
 use crate::error::{DrawError, Nothing};
 use crate::flat::BORDER;
@@ -12,14 +12,14 @@ const SAMPLE: usize = 20_000;
 /// The fraction of the scalars that may be outside the colour range at each end.
 const STRAYS: f64 = 0.03;
 
-/// The extents of a run so far; no picture is kept.
+/// The extents of all pictures added so far. The pictures themselves are not kept.
 #[derive(Clone, Debug)]
 pub struct Fitting {
     /// The box around everything.
     bounds: Bounds,
     /// The farthest points in many directions, for a camera in space.
     farthest: Vec<([f64; 3], f64, [f64; 3])>,
-    /// The planes, each a point and a direction.
+    /// The planes of half spaces, each given by a point and a normal.
     planes: Vec<([f64; 3], [f64; 3])>,
     /// Some of the scalars of every picture.
     scalars: Vec<f64>,
@@ -27,7 +27,7 @@ pub struct Fitting {
     ends: [f64; 2],
     /// The lengths of the vectors of each kind of arrow.
     lengths: BTreeMap<ArrowKind, Vec<f64>>,
-    /// The box around the starts of arrows.
+    /// The box around the points at which arrows start.
     starts: Bounds,
     /// The sizes of the bodies of the first picture.
     sizes: Vec<f64>,
@@ -62,7 +62,7 @@ impl Bounds {
         }
     }
 
-    /// Whether nothing was added.
+    /// Whether no point was added.
     fn is_empty(&self) -> bool {
         self.low[0] > self.high[0]
     }
@@ -203,7 +203,7 @@ impl Fitting {
         self
     }
 
-    /// The view that shows everything seen, or the region that the pictures request.
+    /// Returns the view that shows everything in the pictures, or the region that they request.
     pub fn finish(mut self) -> Result<View, DrawError> {
         if self.bounds.is_empty() {
             return Err(DrawError::Empty { nothing: Nothing::FinitePlace });
@@ -222,7 +222,7 @@ impl Fitting {
         }
         let sight = self.sight.unwrap_or_default();
         if let Some([low, high]) = sight.region {
-            // The border around the visible part is subtracted, so that a flat region is shown exactly as requested.
+            // A picture in the plane later gets a border. The border is subtracted here, so that the requested region is shown exactly.
             let border = if low[2] == high[2] { BORDER / (1.0 + 2.0 * BORDER) } else { 0.0 };
             let side = border * Bounds { low, high }.side();
             self.bounds = Bounds { low, high };
@@ -272,9 +272,9 @@ fn quantile(values: &mut [f64], share: f64) -> f64 {
     values.get(index).copied().unwrap_or(0.0)
 }
 
-/// The colour range of scalars, and whether some are outside it at the low and the high end.
+/// Returns the colour range of scalars, and whether some scalars are below and above it.
 ///
-/// At each end three per cent of the scalars may be outside, if this reduces the range by more than a sixth.
+/// At each end, three per cent of the scalars may be outside the range if leaving them out reduces it by more than a sixth.
 fn range_of(scalars: &mut [f64], ends: [f64; 2]) -> (Option<[f64; 2]>, [bool; 2]) {
     let width = ends[1] - ends[0];
     if width.is_nan() || width < 0.0 || scalars.is_empty() {
@@ -310,7 +310,7 @@ fn add_collider(bounds: &mut Bounds, collider: &ColliderPicture) {
     }
 }
 
-/// Extends the box to the surface of a half space, unless that is far away.
+/// Extends the box to the surface of a half space, unless this surface is far away.
 fn take_plane(bounds: &mut Bounds, point: [f64; 3], normal: [f64; 3], diagonal: f64) {
     let height = |corner: [f64; 3]| (0..3).map(|axis| (corner[axis] - point[axis]) * normal[axis]).sum::<f64>();
     let gap = bounds.corners().map(height).fold(f64::INFINITY, f64::min);

@@ -11,7 +11,7 @@ impl View {
         }
     }
 
-    /// The fraction of the width of a picture that most bodies take along their larger side.
+    /// The larger side of most bodies, as a fraction of the width of the picture.
     pub(crate) fn share_of_body(&self, dimension: u8) -> f64 {
         let [wide, tall] = self.seen(dimension);
         self.body / (wide + 0.08 * wide.max(tall)).max(tall / self.aspect(dimension)).max(1e-12)

@@ -116,8 +116,8 @@ impl Layout {
         }
     }
 
-    /// Writes the line below a scene: lengths at the left, arrows at the right. `bar` contains the maximum length of the scale bar and the number of
-    /// pixels per metre.
+    /// Writes the line below a scene: the length scale at the left, the arrows at the right. `bar` contains the maximum length of the scale bar in
+    /// pixels and the number of pixels per metre.
     pub(crate) fn foot(
         &self,
         canvas: &mut Canvas,
@@ -132,7 +132,7 @@ impl Layout {
         let mut end = if first.dimension == 3 && floored {
             self.squares(canvas, [left, base], first, view)
         } else {
-            // In space the length applies at the centre of the scene, perpendicular to the line of sight.
+            // In space, the scale bar is valid at the centre of the scene, perpendicular to the line of sight.
             self.scale_bar(canvas, [left, base], f64::from(bar), f64::from(scale), &first.length_unit)
         };
         if view.y_down {
@@ -170,7 +170,7 @@ impl Layout {
         left + text_width(&text, size)
     }
 
-    /// Draws one arrow of a round value for each kind of arrow, from the right.
+    /// Draws an arrow with a round value for each kind of arrow, beginning at the right end of the line.
     fn arrow_scales(
         &self,
         canvas: &mut Canvas,
@@ -182,7 +182,7 @@ impl Layout {
     ) {
         let (unit, size) = (self.unit, 13.0 * self.unit);
         let length_unit = &pictures[0].length_unit;
-        // The name of each, the length of its arrow in pixels, and the length of both together.
+        // For each kind of arrow: its text, the length of its arrow, and the width of both together, in pixels.
         let entries = |most: f32| -> Vec<(ArrowKind, String, f32, f32)> {
             let drawn = |kind| pictures.iter().any(|picture| picture.arrows.iter().any(|arrow| arrow.kind == kind));
             let entry = |(&kind, &longest): (&ArrowKind, &f64)| {
@@ -207,7 +207,7 @@ impl Layout {
         let gap = 20.0 * unit;
         let total_width =
             |entries: &[(ArrowKind, String, f32, f32)]| entries.iter().map(|(.., wide)| wide + gap).sum::<f32>();
-        // Arrows are as long as possible, but all of them fit.
+        // The longest arrows with which all entries fit are chosen.
         let lengths = [70.0, 45.0, 30.0, 20.0].map(|most| most * unit);
         let whole = lengths.into_iter().map(entries).find(|entries| total_width(entries) - gap <= to - from);
         let mut end = to;
@@ -244,7 +244,7 @@ impl Layout {
             canvas.rectangle([bar[0], bar[1] + row as f32, bar[2], 1.0], legend.map.colour(fraction), 1.0);
         }
         if legend.range.is_none() {
-            // A pointed end shows that a few scalars are beyond it.
+            // A pointed end of the bar shows that a few scalars are beyond this end.
             let ends = [(bar[1] + bar[3], 1.0, 0.0), (bar[1], -1.0, 1.0)];
             for (&(end, outwards, fraction), _) in ends.iter().zip(view.strays).filter(|(_, strays)| *strays) {
                 let tip = [bar[0] + 0.5 * bar[2], end + outwards * 7.0 * unit];
@@ -289,7 +289,7 @@ fn time_text(time: f64) -> String {
     if time.abs() >= 100.0 { format!("t = {time:.1} s") } else { format!("t = {time:.3} s") }
 }
 
-/// Times as texts, all with the number of decimals that the longest needs, but at most three.
+/// Times as texts. All have the number of decimals that the longest of them needs, but at most three.
 pub(crate) fn time_texts(times: &[f64]) -> Vec<String> {
     let exact = |digits: i32| {
         let scale = 10_f64.powi(digits);
@@ -299,7 +299,7 @@ pub(crate) fn time_texts(times: &[f64]) -> Vec<String> {
     times.iter().map(|time| format!("t = {time:.digits$} s")).collect()
 }
 
-/// A length as text; small lengths in millimetres if the unit is the metre.
+/// A length as text. If the unit is the metre, small lengths are given in millimetres.
 fn length_text(length: f64, unit: &str) -> String {
     if unit == "m" && length < 0.0099 {
         format!("{} mm", format_value(length * 1e3))

@@ -2,7 +2,7 @@
 //!
 //! A [`Picture`] describes what is visible at one moment. A [`View`], which is fitted to all pictures of a run, describes how it is seen. From these,
 //! [`draw`] makes an [`Image`], [`strip`] a row of images, and [`Mp4Writer`] or [`GifWriter`] a film.
-// The reproducible elementary functions are only for physics; a picture may differ in the last bit.
+// Only physics needs the reproducible elementary functions; pictures may differ in the last bit between machines.
 #![allow(clippy::disallowed_methods)]
 
 mod animation;
@@ -53,7 +53,7 @@ pub fn draw(picture: &Picture, view: &View, style: &Style) -> Result<Image, Draw
     Ok(image)
 }
 
-/// Draws a picture without anything around it, and returns the number of pixels per metre; in space, at the centre.
+/// Draws the scene of a picture, and returns the number of pixels per metre, which in space applies at the centre of the view.
 fn scene(
     picture: &Picture,
     view: &View,

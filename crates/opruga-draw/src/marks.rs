@@ -6,7 +6,7 @@ use crate::picture::{ArrowKind, ArrowPicture, Picture};
 use crate::view::View;
 use tiny_skia::PathBuilder;
 
-/// If a body has no more pins than this, each may be drawn as a support.
+/// The largest number of pins of a body for which each pin may be drawn as a support.
 const SUPPORTS: usize = 40;
 /// The minimum distance between neighbouring supports, in units of the size of lines.
 const SUPPORT_SPACING: f32 = 17.0;
@@ -42,7 +42,7 @@ pub(crate) fn arrow_name(kind: ArrowKind) -> &'static str {
     }
 }
 
-/// The unit of a kind of arrow, if lengths have a special unit.
+/// The unit of a kind of arrow, given the unit of lengths.
 pub fn arrow_unit(kind: ArrowKind, length: &str) -> String {
     match (kind, length) {
         (ArrowKind::Normal, _) => String::new(),
@@ -54,8 +54,8 @@ pub fn arrow_unit(kind: ArrowKind, length: &str) -> String {
     }
 }
 
-/// Draws the pins, names and rubber lines of a picture, and some arrows. `project` returns the pixel of a point, and `in_sight` whether a point of a
-/// surface is visible.
+/// Draws the pins, names and rubber lines of a picture, and the given arrows. `project` returns the pixel of a point, and `in_sight` returns whether
+/// a point of a surface is visible.
 pub(crate) fn draw_marks(
     canvas: &mut Canvas,
     (picture, arrows): (&Picture, &[ArrowPicture]),
@@ -68,7 +68,7 @@ pub(crate) fn draw_marks(
     for body in &picture.bodies {
         let pins = body.pinned.iter().map(|node| body.positions[*node as usize]);
         let points: Vec<[f32; 2]> = pins.filter(|position| in_sight(*position)).filter_map(project).collect();
-        // Marks that would overlap are merged. Dots replace supports that would form a row.
+        // Marks that would overlap are merged. If supports would be so close that they form a row, dots replace them.
         let supports = marks_apart(&points, 12.0 * unit);
         let row = marks_apart(&supports, SUPPORT_SPACING * unit).len() < supports.len();
         if body.pinned.len() <= SUPPORTS && !row {
@@ -87,7 +87,7 @@ pub(crate) fn draw_marks(
     labels(canvas, picture, background, unit, project);
 }
 
-/// The points that are farther than `apart` from all earlier ones.
+/// Selects the points that are farther than `apart` from all points selected before them.
 fn marks_apart(points: &[[f32; 2]], apart: f32) -> Vec<[f32; 2]> {
     let close = |a: [f32; 2], b: [f32; 2]| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) < apart * apart;
     let mut marked: Vec<[f32; 2]> = Vec::new();
@@ -138,8 +138,8 @@ enum Side {
     Left,
 }
 
-/// Writes the names of bodies: all above or all below them, whichever covers less, so that no name seems to belong to a neighbour. Names that still
-/// cover something are written at a free side; if no side is free, on a light background.
+/// Writes the names of bodies either all above or all below the bodies, whichever covers less. No name then seems to belong to a neighbour. Names
+/// that still cover something are written to the right or to the left of their body; if neither side is free, they get a light background.
 fn labels(
     canvas: &mut Canvas,
     picture: &Picture,
@@ -151,7 +151,7 @@ fn labels(
     let mut all: Vec<Label<'_>> = Vec::new();
     for body in picture.bodies.iter().filter(|body| !body.label.is_empty()) {
         let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
-        // Names stay in place while a body oscillates about its rest position.
+        // The box includes the rest position, so that the name stays in place while the body oscillates about that position.
         for pixel in body.positions.iter().chain(&body.rest.positions).filter_map(|x| project(*x)) {
             for axis in 0..2 {
                 low[axis] = low[axis].min(pixel[axis]);
@@ -166,13 +166,13 @@ fn labels(
     let covered = |canvas: &Canvas, side: Side| -> usize {
         all.iter().map(|label| canvas.differing(rect(label, side), background)).sum()
     };
-    // Names are above unless much more would be covered, so that they do not jump from picture to picture.
+    // Names are above the bodies unless they would cover much more there than below. This prevents them from jumping between pictures.
     let area: f32 = all.iter().map(|label| rect(label, Side::Above)).map(|[.., wide, tall]| wide * tall).sum();
     let much = covered(canvas, Side::Below) + (0.15 * area) as usize;
     let side = if much < covered(canvas, Side::Above) { Side::Below } else { Side::Above };
     for label in &all {
         let own = rect(label, side);
-        // A small overlap with something else does not move a name out of the row.
+        // A name that covers only a little stays in the row.
         let enough = (0.1 * own[2] * own[3]) as usize;
         let free = [Side::Right, Side::Left].map(|side| rect(label, side));
         let free = free.into_iter().find(|rect| canvas.differing(*rect, background) == 0);
@@ -192,7 +192,7 @@ fn labels(
 const LABEL: f32 = 12.0;
 
 impl Label<'_> {
-    /// Left, top, width and height of the name at a side of its body, within the scene.
+    /// The left, top, width and height of the name at the given side of its body, moved so that they are within the scene.
     fn rect(&self, side: Side, scene: [f32; 2], unit: f32) -> [f32; 4] {
         let size = LABEL * unit;
         let (wide, tall, gap) = (text_width(self.text, size) + 4.0 * unit, 1.15 * size, 4.0 * unit);
@@ -207,7 +207,7 @@ impl Label<'_> {
     }
 }
 
-/// Draws an arrow with a filled head, and with a light rim if it is over a scene.
+/// Draws an arrow with a filled head and, over a scene, with a light rim.
 pub(crate) fn arrow(canvas: &mut Canvas, [from, to]: [[f32; 2]; 2], width: f32, colour: [u8; 3], rim: bool) {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = (along[0] * along[0] + along[1] * along[1]).sqrt();
@@ -222,7 +222,7 @@ pub(crate) fn arrow(canvas: &mut Canvas, [from, to]: [[f32; 2]; 2], width: f32, 
     let right = [neck[0] + half * direction[1], neck[1] - half * direction[0]];
     let inner = [neck[0] + 0.2 * head * direction[0], neck[1] + 0.2 * head * direction[1]];
     if rim {
-        // The rim does not cover the outline from which the arrow starts.
+        // The rim begins a little later than the arrow, so that it does not cover the outline from which the arrow starts.
         let start = [from[0] + 3.0 * width * direction[0], from[1] + 3.0 * width * direction[1]];
         canvas.line(&[start, neck], width + 2.0, [255; 3], 0.6);
         canvas.line(&[to, left, right, to], 2.4, [255; 3], 0.75);

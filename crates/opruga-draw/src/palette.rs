@@ -3,7 +3,7 @@
 use crate::image::Image;
 use color_quant::NeuQuant;
 
-/// The bits per channel by which colours are distinguished.
+/// The number of bits per channel that distinguish colours.
 const BITS: u32 = 6;
 /// The maximum number of colours of a palette.
 const MOST: usize = 256;
@@ -18,14 +18,14 @@ pub(crate) struct Palette {
     nearest: Vec<Option<u8>>,
 }
 
-/// The number of a colour at six bits per channel.
+/// The coarse colour of a pixel, as a number of six bits per channel.
 fn coarse(pixel: &[u8]) -> usize {
     pixel[..3].iter().fold(0, |number, channel| (number << BITS) | usize::from(channel >> (8 - BITS)))
 }
 
 impl Palette {
-    /// The palette for some frames: their own colours if there are few, otherwise the most frequent ones and those that a network learns from the
-    /// others (Dekker 1994, "Kohonen neural networks for optimal colour quantization").
+    /// The palette for some frames: their own colours if there are few, otherwise the most frequent colours, and colours that a neural network learns
+    /// from the remaining ones (Dekker 1994, "Kohonen neural networks for optimal colour quantization").
     pub(crate) fn of(samples: &[Image]) -> Palette {
         // The count of each coarse colour, and the sums of its channels.
         let mut sums = vec![[0u64; 4]; 1 << (3 * BITS)];
@@ -41,8 +41,8 @@ impl Palette {
         } else {
             sums.sort_by_key(|sum| std::cmp::Reverse(sum[0]));
             let (kept, others) = sums.split_at(KEPT);
-            // Colours are weighted by the square roots of their counts; otherwise the plain squares of a floor would take the colours that the shades
-            // of bodies need.
+            // Colours are weighted by the square roots of their counts. Otherwise the plain squares of a floor would use up the entries that the
+            // shades of bodies need.
             let learnt: Vec<u8> = others
                 .iter()
                 .flat_map(|sum| {
@@ -68,7 +68,8 @@ impl Palette {
         if let Some(number) = self.nearest[index] {
             return number;
         }
-        // All colours with the same coarse colour get the same entry, the nearest to its centre, so that a still picture does not change.
+        // All pixels with the same coarse colour get the same entry, which is the one nearest to the centre of the coarse colour. A still picture
+        // therefore does not change from frame to frame.
         let middle = [0, 1, 2].map(|c| i32::from(pixel[c] >> (8 - BITS) << (8 - BITS)) + (1 << (7 - BITS)));
         let distance = |colour: &[u8]| -> i32 { (0..3).map(|c| (middle[c] - i32::from(colour[c])).pow(2)).sum() };
         let numbers = self.colours.chunks_exact(3).map(distance).enumerate();

@@ -78,7 +78,7 @@ pub struct Legend {
 /// The surface of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Facets {
-    /// The edges of closed outlines in two dimensions, in any order; a loop within a loop is a hole.
+    /// The edges of closed outlines in two dimensions, in any order. A loop within another loop bounds a hole.
     Edges(Vec<[u32; 2]>),
     /// The triangles of a surface in three dimensions.
     Triangles(Vec<[u32; 3]>),
@@ -87,7 +87,7 @@ pub enum Facets {
 /// An area that is painted on a flat body.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct AreaPicture {
-    /// Red, green, blue and opacity; if it is not given, the body's own colours are drawn, clipped at the border of the area.
+    /// Red, green, blue and opacity. If no colour is given, the area shows the colours of the body, clipped at the border of the area.
     pub colour: Option<[u8; 4]>,
     /// The points that bound the area [m].
     pub positions: Vec<[f64; 3]>,
@@ -121,15 +121,15 @@ pub struct BodyPicture {
     pub scalar: Vec<f64>,
     /// The colour of a body without scalars; if it is not given, the palette provides one.
     pub colour: Option<[u8; 3]>,
-    /// The colour of a line around the visible part of the body, in three dimensions; if it is not given, there is no line.
+    /// The colour of a line around the visible part of the body, in three dimensions; without a colour there is no line.
     pub outlined: Option<[u8; 3]>,
     /// Whether the nodes are drawn as dots.
     pub nodes_drawn: bool,
-    /// The distance of neighbours at the start [m]. If it leaves no space for dots in a flat picture, none are drawn, in any picture of a run. If it
-    /// is not given, dots are always drawn.
+    /// The distance of neighbouring nodes at the start [m]. If it is too small for dots in two dimensions, no picture of the run has dots. If it is
+    /// not given, dots are always drawn.
     pub node_spacing: Option<f64>,
-    /// The larger side of the body at the start [m]. It determines which parts of the body are drawn and how thick lines are, in the same way in all
-    /// pictures of a run. If it is not given, the size in this picture is used.
+    /// The larger side of the body at the start [m]. It determines which parts of the body are drawn and how thick lines are, equally in all pictures
+    /// of a run. If it is not given, the size in this picture is used.
     pub extent: Option<f64>,
     /// Lines of the rest shape, drawn beneath the body; may be empty.
     pub rest: RestPicture,
@@ -188,7 +188,7 @@ pub enum ColliderPicture {
         /// The radius [m].
         radius: f64,
     },
-    /// All points near a segment.
+    /// All points whose distance from a segment is at most a radius.
     Capsule {
         /// One end of the segment [m].
         a: [f64; 3],

@@ -32,7 +32,7 @@ impl Default for StripStyle {
 /// The maximum height of a panel, in pixels of a strip 1400 pixels wide.
 const TALLEST: f32 = 560.0;
 
-/// Selects up to `count` pictures at even distances, including the first and the last.
+/// Selects up to `count` evenly spaced pictures, including the first and the last.
 pub fn spread<T>(pictures: &[T], count: usize) -> Vec<&T> {
     let kept = count.min(pictures.len());
     (0..kept)
@@ -43,7 +43,7 @@ pub fn spread<T>(pictures: &[T], count: usize) -> Vec<&T> {
         .collect()
 }
 
-/// The best ratio of height to width of a strip for readers.
+/// The ratio of height to width of a strip that suits readers best.
 const BEST_SHAPE: f32 = 0.42;
 
 /// The layout of the panels of a strip, in pixels.
@@ -66,7 +66,7 @@ impl Grid {
     fn new(count: usize, columns: usize, aspect: f32, available_width: f32, unit: f32) -> Grid {
         let columns = columns.clamp(1, count.max(1));
         let rows = count.div_ceil(columns);
-        // As few columns as this number of rows permits.
+        // The number of columns is the smallest with which this number of rows is sufficient.
         let columns = count.div_ceil(rows.max(1)).max(1);
         let gap = (10.0 * unit).round();
         let wide = ((available_width - gap * (columns as f32 - 1.0)) / columns as f32).floor();
@@ -82,8 +82,8 @@ impl Grid {
         [wide, rows * (self.panel[1] + self.line) + (rows - 1.0) * 0.4 * self.gap]
     }
 
-    /// The penalty of the grid: a good strip has a suitable shape, no missing panels in the last row, and bodies that are large enough. `body` is the
-    /// fraction of the width of a panel that a body takes.
+    /// Returns the penalty of the grid. A good strip has a suitable shape, a complete last row, and bodies that are large enough. `body` is the
+    /// larger side of a body as a fraction of the width of a panel.
     fn fault(&self, count: usize, available_width: f32, body: f32) -> f32 {
         let [wide, tall] = self.size();
         let empty = (self.columns * self.rows - count) as f32;
@@ -112,20 +112,20 @@ impl Grid {
 
 /// The minimum size in pixels of a body along its larger side, so that it is easy to see.
 const LARGE_ENOUGH: f32 = 130.0;
-/// The penalty of a strip whose bodies have half of that size.
+/// The penalty of a strip whose bodies have half of the size `LARGE_ENOUGH`.
 const SMALL_BODIES: f32 = 1.2;
 
-/// The penalty for each moment that is missing.
+/// The penalty for each panel fewer than nine.
 const MISSED: f32 = 0.12;
 
-/// The number of panels, from nine to twelve or as many as there are, that gives the best strip of a view; fewer if the bodies would be too small to
-/// be seen well.
+/// Returns the number of panels that gives the best strip of a view, at most `most`. It is usually from nine to twelve, and smaller if the bodies
+/// would otherwise be too small to be seen well.
 pub fn best_count(view: &View, dimension: u8, most: usize) -> usize {
     let style = StripStyle::default();
     let (aspect, available_width) = (view.aspect(dimension) as f32, style.width as f32);
     let body = view.share_of_body(dimension) as f32;
     let fault = |count: usize| {
-        // Missing moments are penalised, but not those beyond nine.
+        // Strips with fewer than nine panels are penalised.
         let missed = MISSED * 9_usize.saturating_sub(count) as f32;
         Grid::best(count, aspect, available_width, 1.0, body).fault(count, available_width, body) + missed
     };
@@ -135,7 +135,7 @@ pub fn best_count(view: &View, dimension: u8, most: usize) -> usize {
 /// Draws pictures side by side in rows, with a common view, length scale and legend, and the time below each.
 pub fn strip(pictures: &[&Picture], view: &View, style: &StripStyle) -> Result<Image, DrawError> {
     let times: Vec<f64> = pictures.iter().map(|picture| picture.time).collect();
-    // Pictures without a moment are distinguished by their titles; the title of the first is written above all.
+    // Pictures without a time are distinguished by their titles. The title of the first picture is written above all of them.
     let own =
         |picture: &&Picture| if picture.title == pictures[0].title { String::new() } else { picture.title.clone() };
     let moments = times.iter().all(|time| time.is_finite());
@@ -209,7 +209,7 @@ pub fn captioned_strip(
     Ok(image)
 }
 
-/// A text in lines that are no wider than a limit, unless a single word is.
+/// Breaks a text into lines that are no wider than a limit, unless a single word is wider.
 fn lines_of(text: &str, width: f32, size: f32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {

@@ -1,6 +1,6 @@
 //! Round numbers for axes, legends and scale bars.
 
-/// About `count` values between two limits, a round number apart.
+/// Returns about `count` values between two limits, with a round number between neighbours.
 pub fn nice_ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
     if !(low.is_finite() && high.is_finite()) || high <= low {
         return vec![low];
@@ -58,13 +58,13 @@ fn ten_to(exponent: i32) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(1.0)
 }
 
-/// A number as short text, with the digits that a step between neighbours requires.
+/// A number as short text, with as many digits as are needed to distinguish neighbours that differ by `step`.
 pub fn format_tick(value: f64, step: f64) -> String {
     if value == 0.0 || value.abs() < step.abs() * 1e-6 {
         return "0".to_string();
     }
     let magnitude = value.abs();
-    // Three digits of a power of ten must be enough to distinguish neighbours.
+    // A power of ten is used only if three digits before it are enough to distinguish neighbours.
     let fine = step.abs() < 0.0099 * magnitude && magnitude < 1e12;
     let small = magnitude < 1e-3 && step.abs() < 0.99e-4;
     if small || magnitude >= 1e6 && !fine {

@@ -15,17 +15,17 @@ pub struct View {
     pub low: [f64; 3],
     /// The highest corner of the box that must be visible [m].
     pub high: [f64; 3],
-    /// The extreme points in many directions, including shadows; the camera keeps these points in sight [m].
+    /// The extreme points of the content in many directions, including shadows [m]. The camera keeps these points in sight.
     pub points: Vec<[f64; 3]>,
-    /// The scalars at the ends of the colours, if there are any: the smallest and the largest, except a few outliers.
+    /// The scalars at the ends of the colour map: the smallest and the largest, except for a few outliers. None if there are no scalars.
     pub scalars: Option<[f64; 2]>,
     /// Whether there are outliers below and above the range of `scalars`.
     pub strays: [bool; 2],
     /// Whether y points downwards, as on a screen; only in two dimensions.
     pub y_down: bool,
-    /// For each kind of arrow, the length that 95 per cent of its vectors do not exceed.
+    /// For each kind of arrow, the magnitude that 95 per cent of its vectors do not exceed, in the unit of its kind.
     pub longest: BTreeMap<ArrowKind, f64>,
-    /// The length at which a vector of that length is drawn [m].
+    /// The length at which a vector of the magnitude `longest` is drawn [m].
     pub arrow: f64,
     /// The larger side of most bodies at the start [m]; 0 without bodies.
     pub body: f64,
@@ -64,7 +64,7 @@ impl View {
         crate::ticks::nice_length(0.3 * self.extent())
     }
 
-    /// The fraction from 0 to 1 of a scalar between the ends of a range.
+    /// The position of a scalar between the ends of a range, as a fraction from 0 to 1.
     pub(crate) fn fraction(range: [f64; 2], scalar: f64) -> f64 {
         if range[1] > range[0] || scalar.is_nan() { (scalar - range[0]) / (range[1] - range[0]) } else { 0.5 }
     }

@@ -174,7 +174,7 @@ impl Tape {
     ///
     /// # Errors
     /// [`WriteError`] if the file cannot be written, if the frame is not the next one, or if an action cannot be recorded (`recording.input`), such
-    /// as adding a body or a force of a type that the program defines itself. The earlier frames are intact.
+    /// as a body that the program adds or a force that it defines. The earlier frames are intact.
     pub fn push(&mut self, world: &mut dyn AnyWorld) -> Result<(), WriteError> {
         let frame = world.frames();
         self.inputs(world, frame)?;

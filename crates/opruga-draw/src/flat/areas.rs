@@ -15,7 +15,7 @@ pub(super) fn path(area: &AreaPicture, projection: &Projection) -> Option<Path> 
     for &end in &area.ends {
         let line = &area.positions[from..end];
         from = end;
-        // A line with a node that is not finite has no position.
+        // A line with a point that is not finite cannot be drawn.
         if line.len() < 3 || line.iter().flatten().any(|x| !x.is_finite()) {
             continue;
         }
@@ -37,8 +37,8 @@ pub(super) fn path(area: &AreaPicture, projection: &Projection) -> Option<Path> 
     builder.finish()
 }
 
-/// The region that an area covers: its triangles, all with the same orientation. If a body is folded, the lines around the area overlap and would
-/// leave a hole, but its triangles cover the overlap twice.
+/// The region that an area covers, as a path of its triangles, which all have the same orientation. If a body is folded, the lines around the area
+/// overlap and would leave a hole. The triangles have no hole, because they cover the overlap twice.
 fn covered(area: &AreaPicture, projection: &Projection) -> Option<Path> {
     let mut builder = PathBuilder::new();
     for triangle in &area.triangles {

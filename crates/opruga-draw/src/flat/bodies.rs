@@ -9,7 +9,7 @@ use crate::picture::{BodyPicture, Facets, Picture};
 use crate::view::View;
 use tiny_skia::{FilterQuality, Paint, Path, PathBuilder, Pattern, Pixmap, SpreadMode, Transform};
 
-/// The length in pixels below which an edge of a coloured outline is joined to the next one.
+/// An edge of a coloured outline that is shorter than this is joined to the next edge [pixels].
 const SHORT: f32 = 1.2;
 /// The smallest spacing of nodes at which they are drawn as dots, in units of the size of lines.
 const DOT_SPACING: f32 = 15.0;
@@ -23,7 +23,7 @@ struct Scalars {
 }
 
 impl Scalars {
-    /// The fraction of the map for a scalar.
+    /// The fraction of the colour map that corresponds to a scalar.
     fn fraction(&self, scalar: f64) -> f64 {
         View::fraction(self.range, scalar)
     }
@@ -68,7 +68,7 @@ pub(crate) fn draw(canvas: &mut Canvas, picture: &Picture, view: &View, projecti
     }
 }
 
-/// The colour of a body without scalars; if there are many bodies, the colours have no visible order.
+/// The colour of a body without scalars. If there are many bodies, their colours follow no visible order.
 pub(crate) fn body_colour(index: usize, count: usize) -> [u8; 3] {
     let shuffled = (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 33;
     let choice = if count <= 2 * BODIES.len() { index } else { shuffled as usize };
@@ -123,7 +123,7 @@ impl Drawing<'_> {
         if coloured && !cells.is_empty() && self.size > 4.0 {
             self.fill_cells(canvas, cells, outline.as_ref());
         } else if coloured && outline.is_some() {
-            // The inside of each line, without its holes, has its own colour, because each chamber has its own pressure.
+            // The inside of each closed line, without its holes, gets its own colour, because each chamber has its own pressure.
             for part in parts(&loops, &body.positions) {
                 let Some(path) = self.outline(part.iter().copied()) else { continue };
                 let nodes = part.iter().flat_map(|chain| chain.nodes.iter().copied());
@@ -162,7 +162,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Draws the areas that the body carries; areas without their own colour get the colours of the nodes.
+    /// Draws the areas that the body carries. Areas without their own colour get the colours of the nodes.
     fn carried(&self, canvas: &mut Canvas, cells: &[[u32; 3]]) {
         for area in self.body.areas.iter().filter(|area| area.colour.is_none()) {
             let Some(path) = areas::path(area, self.projection) else { continue };
@@ -177,7 +177,7 @@ impl Drawing<'_> {
         areas::draw(canvas, &self.body.areas, self.projection);
     }
 
-    /// The path of the loops, without repeated points on the same pixel.
+    /// The path through the points of the loops. Consecutive points on the same pixel are merged.
     fn outline<'l>(&self, loops: impl Iterator<Item = &'l Loop>) -> Option<Path> {
         let mut builder = PathBuilder::new();
         for chain in loops {
@@ -200,9 +200,10 @@ impl Drawing<'_> {
         builder.finish()
     }
 
-    /// Fills cells with the colours of their nodes, clipped at the outline of small bodies.
+    /// Fills cells with the colours of their nodes. On small bodies, the cells are clipped at the outline.
     fn fill_cells(&self, canvas: &mut Canvas, cells: &[[u32; 3]], outline: Option<&Path>) {
-        // On large bodies the line is thick enough to hide the hard edges of cells, so cells are not clipped and folds do not look like holes.
+        // On large bodies the outline is thick enough to hide the hard edges of the cells. They need no clipping, which would make folds look like
+        // holes.
         self.fill_within(canvas, cells, outline.filter(|_| self.size < 48.0));
     }
 
@@ -215,7 +216,7 @@ impl Drawing<'_> {
             return;
         };
         let fractions: Vec<f64> = self.body.scalar.iter().map(|&scalar| self.scalars.fraction(scalar)).collect();
-        // The first pass extends beyond the cells, so that the soft edge of the outline has a colour.
+        // With an outline, a first pass fills a little more than the cells, so that the soft edge of the outline also has a colour.
         let passes: &[f32] = if outline.is_some() { &[1.5, 0.01] } else { &[0.01] };
         for &reach in passes {
             for cell in cells {
@@ -269,7 +270,7 @@ impl Drawing<'_> {
             let colour = if filled && self.is_light() { INK } else { darker(self.base) };
             let opacity = match filled {
                 false => 1.0,
-                // These lines coincide with the edges of the cells.
+                // Over a filled body, these lines coincide with the edges of the cells.
                 true if self.is_light() => 0.2,
                 true => 0.45,
             };
@@ -304,7 +305,7 @@ impl Drawing<'_> {
         if self.size > 30.0 {
             canvas.stroke(path, width + 1.4 * self.unit, &paint(INK, 0.85));
         }
-        // Neighbours with nearly the same colour form one line. Fewer colours can be distinguished on small bodies.
+        // Neighbouring edges with nearly the same colour are drawn as one line. Fewer colours can be distinguished on small bodies.
         let shades = if self.size > 60.0 { 64.0 } else { 24.0 };
         let mut points: Vec<[f32; 2]> = Vec::new();
         for chain in loops {
@@ -341,7 +342,8 @@ impl Drawing<'_> {
         points.clear();
     }
 
-    /// Draws the nodes if requested, with smaller dots where they are close together.
+    /// Draws the nodes as dots, if requested. A body with a known node spacing gets no dots if they would be too close together. Otherwise the dots
+    /// shrink with the distance of the nodes.
     fn nodes(&self, canvas: &mut Canvas) {
         if !self.body.nodes_drawn {
             return;
@@ -350,7 +352,7 @@ impl Drawing<'_> {
             Some(spacing) if ((spacing * self.projection.scale) as f32) < DOT_SPACING * self.unit => return,
             Some(_) => 2.6 * self.unit,
             None => {
-                // The distance of neighbours, for nodes around the body or nodes that fill it.
+                // An estimate of the distance of neighbours: for nodes around the body if there are no cells, otherwise for nodes that fill the body.
                 let count = self.pixels.len().max(1) as f32;
                 let spacing = if self.body.cells.is_empty() { 3.0 / count } else { 1.0 / count.sqrt() } * self.size;
                 (0.25 * spacing).clamp(0.8 * self.unit, 2.6 * self.unit)

@@ -108,7 +108,7 @@ fn half_space(canvas: &mut Canvas, point: [f64; 3], normal: [f64; 3], projection
     }
 }
 
-/// Draws a line with short slanted strokes on its left side, as seen in its direction.
+/// Draws a line with short slanted strokes on its left side, as seen by someone who walks along the line.
 fn hatched(canvas: &mut Canvas, from: [f32; 2], to: [f32; 2], unit: f32) {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = (along[0] * along[0] + along[1] * along[1]).sqrt();

@@ -1,4 +1,4 @@
-//! Chaining of unordered edges into loops.
+//! Joins unordered edges into loops.
 
 /// The nodes of one loop, and whether the last is joined to the first.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub(crate) struct Loop {
     pub(crate) closed: bool,
 }
 
-/// Groups loops, each outer line with the holes in it. Outer lines run counter-clockwise, and holes clockwise. If this gives no grouping, all loops
+/// Groups each outer line with the holes in it. Outer lines run counter-clockwise, and holes run clockwise. If a hole is in no outer line, all loops
 /// form one group.
 pub(crate) fn parts<'a>(loops: &'a [Loop], positions: &[[f64; 3]]) -> Vec<Vec<&'a Loop>> {
     let at = |node: u32| [positions[node as usize][0], positions[node as usize][1]];
@@ -43,7 +43,7 @@ pub(crate) fn crosses(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> bool {
     (a[1] > point[1]) != (b[1] > point[1]) && point[0] < a[0] + (point[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
 }
 
-/// Chains edges into loops; an edge may have either direction.
+/// Joins edges, which may have either direction, into loops.
 pub(crate) fn chain(edges: &[[u32; 2]]) -> Vec<Loop> {
     if let Some(whole) = chain_ordered(edges) {
         return vec![whole];
@@ -67,7 +67,7 @@ pub(crate) fn chain(edges: &[[u32; 2]]) -> Vec<Loop> {
     let mut used = vec![false; edges.len()];
     let around = |node: u32| &incident[starts[node as usize] as usize..starts[node as usize + 1] as usize];
     let is_end = |edge: &[u32; 2]| edge.iter().any(|&node| around(node).len() == 1);
-    // Open lines are chained first, from their ends; the rest are closed loops.
+    // Open lines are followed first, beginning at their ends. The remaining edges form closed loops.
     let mut order: Vec<usize> = (0..edges.len()).collect();
     order.sort_by_key(|&index| !is_end(&edges[index]));
     let mut loops = Vec::new();

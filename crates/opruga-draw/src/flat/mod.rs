@@ -68,7 +68,7 @@ pub(crate) fn scene(
         colliders::draw(&mut canvas, collider, &projection, unit);
     }
     let project = |point: [f64; 3]| point.iter().all(|value| value.is_finite()).then(|| projection.pixel(point));
-    // Arrows that point outwards start at the outline and are drawn beneath all bodies, so that they do not cover neighbours.
+    // Arrows of pressure that point out of all bodies start at the outline and are drawn beneath the bodies, so that they do not cover neighbours.
     let (beneath, above): (Vec<ArrowPicture>, Vec<ArrowPicture>) =
         picture.arrows.iter().partition(|arrow| arrow.kind == ArrowKind::Pressure && leaves(picture, view, arrow));
     draw_arrows(&mut canvas, &beneath, view, unit, &project, &|_| true);
@@ -79,7 +79,7 @@ pub(crate) fn scene(
 
 /// Whether an arrow points from its start out of all bodies.
 fn leaves(picture: &Picture, view: &View, arrow: &ArrowPicture) -> bool {
-    // A small part of the arrow as drawn.
+    // The tested point is near the start of the arrow as drawn.
     let share = 0.02 * view.arrow_scale(arrow.kind);
     let point: [f64; 2] = std::array::from_fn(|axis| arrow.from[axis] + share * arrow.vector[axis]);
     picture.bodies.iter().all(|body| {
@@ -138,7 +138,7 @@ mod tests {
         let shaded = at(vec![frame(None)], vec![1.0; 4]);
         assert_eq!(shaded(0.75, 0.0), [253, 231, 37]);
         assert_eq!([shaded(0.0, 0.0), shaded(1.5, 0.0)], [[255; 3]; 2]);
-        // Half of the colour over white.
+        // The colour is mixed with white in equal parts.
         assert_eq!(at(vec![frame(Some([0, 0, 0, 128]))], Vec::new())(0.75, 0.0), [127; 3]);
         let mut broken = frame(None);
         broken.ends = vec![4, 7];
@@ -146,8 +146,8 @@ mod tests {
         assert!(Picture { bodies: vec![body], ..Default::default() }.check().is_err());
     }
 
-    /// An area whose lower half is folded up over its upper half covers the same region, without the hole that the even-odd rule leaves where its
-    /// line overlaps itself.
+    /// An area whose lower half is folded up over its upper half covers the region of the upper half. It has no hole, although the even-odd rule
+    /// leaves one where the line of the area overlaps itself.
     #[test]
     fn a_folded_drawing_has_no_holes() {
         let positions =
@@ -178,7 +178,7 @@ mod tests {
         assert_eq!(seen(&by_lines), [255; 3], "the line alone leaves a hole, which is why triangles are filled");
     }
 
-    /// Whether the cells of a body are drawn is decided once per run, so a squeezed body is drawn as before.
+    /// The decision whether the cells of a body are drawn is made once per run, so a body is drawn in the same way after it is squeezed.
     #[test]
     fn the_lattice_is_drawn_in_all_pictures_of_a_run_or_in_none() {
         let side = 24;
@@ -212,7 +212,7 @@ mod tests {
                     (0..size * size).map(|k| image.pixel(k % size, k / size)).filter(|c| *c != [255; 3]).collect();
                 colours.sort_unstable();
                 colours.dedup();
-                // There is one colour and the soft edge of the body, or there are lines over it.
+                // A plain body has at most two colours: its own, and that of its soft edge. If there are more, there are lines over the body.
                 colours.len() > 2
             })
         };

@@ -38,7 +38,7 @@ pub(super) fn write(map: &HeatMap) -> String {
         }
     }
     svg.text(&map.x_label, [0.5 * (left + right), y + 42.0], SIZE, "middle", INK, "");
-    // All panels have the same rows, so they share one title, which is no longer than their total height.
+    // All panels have the same rows, so they share one title for the rows, which is no longer than their total height.
     let middle = 0.5 * (first + y);
     let turn = format!(r#" transform="rotate(-90 16 {middle:.1})""#);
     let size = SIZE * ((y - first) / width_of(&map.y_label, SIZE).max(1.0)).min(1.0);
@@ -76,7 +76,7 @@ fn mark(panel: &HeatPanel, at: [usize; 2]) -> Option<&'static str> {
     }
 }
 
-/// The texts in the cells: numbers with three digits, and more if cells of different colours would otherwise have the same text.
+/// The texts in the cells: numbers with three digits, or with more if cells of different colours would otherwise have the same text.
 fn texts(map: &HeatMap, panel: &HeatPanel, scale: &Scale) -> Vec<([usize; 2], Option<String>)> {
     let cells: Vec<([usize; 2], Option<f64>)> = cell_indices(map).map(|at| (at, value(panel, at))).collect();
     let largest = cells.iter().filter_map(|cell| cell.1).fold(0.0, |most: f64, value| most.max(value.abs()));

@@ -34,9 +34,9 @@ pub struct Axis {
     pub label: String,
     /// Unit of the quantity; empty if there is none.
     pub unit: String,
-    /// Whether equal distances mean equal ratios; values that are not positive are then omitted.
+    /// Whether the axis is logarithmic: equal distances mean equal ratios, and values that are not positive are omitted.
     pub logarithmic: bool,
-    /// The values at the ends; if they are not given, they are measured.
+    /// The values at the ends of the axis. If they are not given, they are found from the data.
     pub range: Option<[f64; 2]>,
 }
 
@@ -153,7 +153,7 @@ pub struct HeatPanel {
     pub scale: Axis,
     /// The values, row by row; values that are not finite have no colour.
     pub values: Vec<Vec<f64>>,
-    /// The cells, each as column and row, that have no value because of an error.
+    /// The cells that have no value because of an error, each given by its column and row.
     pub failed: Vec<[usize; 2]>,
 }
 

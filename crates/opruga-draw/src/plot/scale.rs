@@ -37,7 +37,7 @@ impl Scale {
             let factor = (high / low).powf(margin).max(1.15);
             return Scale { low: low / factor, high: high * factor, logarithmic };
         }
-        // A line that is constant to a millionth is drawn flat, because its ticks could not be distinguished.
+        // A line that varies by less than a millionth is drawn flat, because the labels of ticks within this range would all be equal.
         let width = if high - low > 1e-6 * low.abs().max(high.abs()) { high - low } else { 0.0 };
         let pad = if width > 0.0 {
             margin * width

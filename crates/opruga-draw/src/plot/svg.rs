@@ -119,7 +119,7 @@ pub(crate) fn write(chart: &Chart) -> String {
     document(svg, chart.width, y + 56.0, &chart.credit, left)
 }
 
-/// A complete SVG file: a white background, the drawing, and below it a credit, no wider than the file.
+/// Makes a complete SVG file: a white background, the drawing, and below it a credit, whose lines are no wider than the file.
 pub(super) fn document(mut svg: Svg, width: f64, mut height: f64, credit: &str, left: f64) -> String {
     if !credit.is_empty() {
         let size = TICK_SIZE * ((width - left - 8.0) / width_of(credit, TICK_SIZE).max(1.0)).min(1.0);
@@ -211,7 +211,7 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, [x, y]: [&Scale; 2], area: [f64; 4],
             let pixel_of = move |point: &[f64; 3]| Some([at_x(x.fraction(point[0])?), at_y(y.fraction(point[end])?)]);
             thinned(line.band.iter().map(pixel_of))
         };
-        // The band runs forward along the upper ends, and back along the lower ones.
+        // The border of the band runs forward along the upper values and back along the lower ones.
         let around = edge(2).into_iter().flatten().chain(edge(1).into_iter().flatten().rev());
         let points: Vec<String> = around.map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
         let (points, colour) = (points.join(" "), hex(colour_of(line, number)));
@@ -251,7 +251,7 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, [x, y]: [&Scale; 2], area: [f64; 4],
     svg.text(&axis_text(&panel.y), [16.0, middle], SIZE, "middle", INK, &turn);
 }
 
-/// Writes the meaning of a level, above or below its line, at the end where the lines of the panel are farthest away.
+/// Writes the meaning of a level above or below its line, at the end of the line that is farthest from the other lines of the panel.
 fn level_label(svg: &mut Svg, panel: &Panel, level: &Level, [x, y]: [&Scale; 2], area: [f64; 4]) {
     let [left, top, right, bottom] = area;
     let Some(fraction) = y.fraction(level.value) else { return };
@@ -298,8 +298,8 @@ fn draw_marker(svg: &mut Svg, marker: Marker, [x, y]: [f64; 2], colour: [u8; 3])
     svg.add(format_args!(r##"<polygon points="{points}" fill="{colour}" stroke="#ffffff" stroke-width="1"/>"##));
 }
 
-/// The pieces of a line between its gaps. Of many points in the same half pixel only the ends and the extremes are kept, so that a line that
-/// oscillates faster than pixels can show fills the full height of its oscillation.
+/// Returns the pieces of a line between its gaps. Of the points in the same half pixel, only the ends and the extremes are kept. A line that
+/// oscillates faster than pixels can show therefore still fills the full height of its oscillation.
 fn thinned(points: impl Iterator<Item = Option<[f64; 2]>>) -> Vec<Vec<[f64; 2]>> {
     let mut pieces = vec![Vec::new()];
     let mut column: Vec<[f64; 2]> = Vec::new();
@@ -391,7 +391,7 @@ mod tests {
 
     #[test]
     fn a_fast_swing_fills_the_height_through_which_it_swings() {
-        // Forty oscillations in each pixel.
+        // The line oscillates forty times in each pixel.
         let swing =
             |index: u32| Some([f64::from(index) / 160.0, (f64::from(index) * std::f64::consts::FRAC_PI_2).sin()]);
         for piece in thinned((0..16_000).map(swing)) {

@@ -49,7 +49,7 @@ pub(crate) fn axes(view: &View) -> [[f64; 3]; 3] {
     [right, cross(right, forward), forward]
 }
 
-/// The points that a camera must see: the extreme points, or the corners of the box of the view.
+/// The points that a camera must see: the extreme points of the view or, if it has none, the corners of its box.
 fn must_see(view: &View) -> Vec<[f64; 3]> {
     if !view.points.is_empty() {
         return view.points.clone();
@@ -78,7 +78,7 @@ pub(crate) struct Camera {
     pub(crate) position: [f64; 3],
     /// The directions to the right, upwards and forwards.
     pub(crate) axes: [[f64; 3]; 3],
-    /// The number of pixels for a tangent of one.
+    /// The distance from the camera axis at which a direction at 45° to this axis is seen [pixels].
     pub(crate) focus: f64,
     /// The pixel on the camera axis.
     pub(crate) middle: [f64; 2],
@@ -105,7 +105,7 @@ impl Camera {
         for _ in 0..16 {
             let seen = seen(target);
             let distance = far_enough(&seen);
-            // Move the target so that both sides have the same free border.
+            // The target is moved so that opposite sides of the picture have the same free border.
             for axis in 0..2 {
                 let at = |p: &[f64; 3]| p[axis] / (distance + p[2]).max(1e-9);
                 let low = seen.iter().map(at).fold(f64::INFINITY, f64::min);

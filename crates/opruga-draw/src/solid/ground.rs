@@ -19,11 +19,11 @@ pub(crate) struct Plane {
     pub(crate) normal: [f64; 3],
 }
 
-/// The parts of a screen in a shadow.
+/// The samples of a screen that are in a shadow.
 pub(crate) struct Shadow {
     /// The shade of each sample, from 0 to 255.
     shade: Vec<u8>,
-    /// The first column and row with a shadow, and one past the last.
+    /// The first column and row with a shadow, and the column and row after the last ones.
     span: [usize; 4],
     /// The direction towards the light.
     light: [f64; 3],
@@ -140,7 +140,7 @@ fn slide(values: &mut [u8], radius: usize, sums: &mut Vec<u32>) {
     }
 }
 
-/// The last of the steps in which squares fade.
+/// The number of the last step in which squares fade into the background.
 const LAST_TONE: f64 = 255.0;
 
 /// The colours of both kinds of squares as they fade into the background.
@@ -153,7 +153,7 @@ fn tones(background: [u8; 3], strength: f64) -> [[[u8; 3]; 256]; 2] {
     })
 }
 
-/// The largest integer not above a number; on machines without an instruction for it, `floor` is a function call.
+/// The largest integer not above a number. `floor` is not used, because it is a function call on machines without an instruction for it.
 #[inline(always)]
 fn below(number: f64) -> i64 {
     let whole = number as i64;

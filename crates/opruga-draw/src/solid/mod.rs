@@ -36,7 +36,7 @@ pub(crate) fn scene(
     unit: f32,
 ) -> Result<(Image, f64), DrawError> {
     let mut screen = Screen::new(width, height, background);
-    // The camera counts in samples.
+    // The camera uses samples as its pixels.
     let camera = Camera::new(view, screen.width as f64, screen.height as f64);
     let light = Light::new(&camera);
     let painter = Painter { picture, view, camera, light, unit: unit * SAMPLES as f32 };
@@ -53,7 +53,7 @@ pub(crate) fn scene(
         let shadow = shadow.as_ref().filter(|_| Some(plane) == floor);
         ground::draw(&mut screen, background, &painter.camera, view, *plane, shadow);
     }
-    // The dot of a node is in front of its position and would hide an arrow that begins there.
+    // The dot of a node is slightly in front of the node and would hide an arrow that begins at the node.
     let dotted = picture.bodies.iter().any(|body| body.nodes_drawn);
     let surfaces = (dotted && !picture.arrows.is_empty()).then(|| screen.inverse_distances.clone());
     for (index, body) in picture.bodies.iter().enumerate() {
@@ -130,7 +130,7 @@ impl Painter<'_> {
         shadow
     }
 
-    /// Whether a point of a surface is not hidden, on a screen of this size with surfaces at these inverse distances.
+    /// Whether a point of a surface is visible on a screen of this size whose samples show surfaces at these inverse distances.
     fn in_sight(&self, [width, height]: [usize; 2], inverse_distances: &[f32], point: [f64; 3]) -> bool {
         let Some(seen) = self.camera.see(point) else { return false };
         let [column, row] = seen.pixel.map(|value| value as usize);
@@ -164,7 +164,7 @@ impl Painter<'_> {
         }
     }
 
-    /// Draws the walls of a container that are seen from inside: their edges, and lines at round distances.
+    /// Draws the walls of a container whose inner side is visible: their edges, and lines at round distances.
     fn container(&self, screen: &mut Screen, min: [f64; 3], max: [f64; 3]) {
         let square = self.view.square();
         for (corners, axis, high) in FACES {
@@ -241,7 +241,7 @@ impl Painter<'_> {
         let width = self.spring(body);
         for &[a, b] in &body.segments {
             if let (Some(from), Some(to)) = (seen[a as usize], seen[b as usize]) {
-                // On a surface of the same colour a line must be darker to be visible.
+                // On a surface of the same colour, a line is visible only if it is darker.
                 let colours = [colour(a), colour(b)].map(|colour| if filled { darker(colour) } else { colour });
                 screen.line([from, to], width, colours);
             }
@@ -310,8 +310,7 @@ mod tests {
     /// Every face of a box has one colour up to its edges: the shading of its neighbours does not affect it.
     #[test]
     fn the_edges_of_a_box_are_sharp() {
-        // One box has two triangles per face, the other four squares per face, so that nodes are at edges, at corners and
-        // inside.
+        // One box has two triangles per face, and the other has four squares per face, so that it has nodes at corners, on edges and inside faces.
         for cells in [1_usize, 2] {
             let found =
                 shapes::shape(&ColliderPicture::Box { min: [0.0; 3], max: [1.0; 3], inside: false }).expect("a box");

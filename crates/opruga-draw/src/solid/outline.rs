@@ -36,11 +36,11 @@ impl Mask {
         }
     }
 
-    /// The samples outside whose distance from the covered region is at most a radius: a disc around each border sample.
+    /// The samples outside the covered region whose distance from it is at most a radius. They are found by drawing a disc around each border sample.
     fn around(&self, radius: f32) -> Vec<bool> {
         let mut around = vec![false; self.covered.len()];
         let reach = radius.floor().max(1.0) as isize;
-        // For every row of a disc, its extent to either side.
+        // For every row of a disc: the number of the row, and half of its width.
         let disc: Vec<(isize, usize)> = (-reach..=reach)
             .map(|y| (y, (radius * radius - (y * y) as f32).max(0.0).sqrt().floor() as usize))
             .collect();
@@ -60,7 +60,7 @@ impl Mask {
         around
     }
 
-    /// Whether a sample is covered and has a neighbour that is not; the border of the picture does not count as border of the body.
+    /// Whether a sample is covered and has a neighbour that is not. The border of the picture does not count as a border of the body.
     fn is_border(&self, row: usize, column: usize) -> bool {
         let index = row * self.width + column;
         self.covered[index]
@@ -71,7 +71,8 @@ impl Mask {
     }
 }
 
-/// Draws the line around a body over a finished picture. Its width is given in pixels, and that of springs in samples, as drawn.
+/// Draws the line around a body over a finished picture. The width of the line is given in pixels, and the width of the springs as drawn is given in
+/// samples.
 pub(super) fn draw(
     image: &mut Image,
     screen: &Screen,
@@ -116,7 +117,7 @@ mod tests {
         })
     }
 
-    /// A sheet folded twice, as a Z: from the front its folds are inside the covered region.
+    /// A sheet folded twice into the shape of a Z. Seen from the front, its folds are inside the covered region.
     fn folded() -> BodyPicture {
         let profile = [[0.0, 0.0], [2.0, 0.4], [0.5, 0.9], [2.5, 1.4]];
         let positions = profile.iter().flat_map(|&[x, z]| [[x, 0.0, -z], [x, 1.5, -z]]).collect();

@@ -25,7 +25,7 @@ pub(crate) struct Cover {
     corners: [Seen; 3],
     /// One divided by twice the area.
     inverse: f32,
-    /// The first column and row, and one past the last.
+    /// The first column and row, and the column and row after the last ones.
     span: [usize; 4],
 }
 
@@ -53,12 +53,12 @@ impl Cover {
         })
     }
 
-    /// The first column and row, and one past the last.
+    /// The first column and row of the samples, and the column and row after the last ones.
     pub(crate) fn span(&self) -> [usize; 4] {
         self.span
     }
 
-    /// Calls a function with the index of each sample and the weights of the corners in it.
+    /// Calls a function with the index of each sample and the weights of the corners at this sample.
     #[inline(always)]
     pub(crate) fn each(&self, width: usize, mut call: impl FnMut(usize, [f32; 3])) {
         let [a, b, c] = self.corners.map(|corner| corner.pixel);
@@ -115,7 +115,7 @@ impl Screen {
         });
     }
 
-    /// Draws a line with a width in samples, slightly nearer to the camera than it is, so that it is visible on a surface.
+    /// Draws a line with a width in samples. The line is moved slightly towards the camera, so that it is visible on a surface.
     pub(crate) fn line(&mut self, ends: [Seen; 2], width: f32, colours: [[u8; 3]; 2]) {
         for corners in line_triangles(ends, width) {
             let corners = corners.map(|corner| Seen { inverse_distance: corner.inverse_distance * 1.004, ..corner });
@@ -136,7 +136,7 @@ impl Screen {
         }
     }
 
-    /// Draws a disc with a radius in samples, slightly nearer to the camera than it is.
+    /// Draws a disc with a radius in samples, moved slightly towards the camera.
     pub(crate) fn disc(&mut self, center: Seen, radius: f32, colour: [u8; 3]) {
         let [x, y] = center.pixel;
         let span = |middle: f32, limit: usize| {

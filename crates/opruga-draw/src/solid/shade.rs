@@ -4,13 +4,13 @@ use super::camera::{Camera, Seen, between, cross, dot, unit};
 use super::raster::Screen;
 use crate::colour::ColourMap;
 
-/// The side in samples below which the light is computed only at the corners of a triangle.
+/// If the larger side of a triangle is shorter than this, the light is computed only at its corners [samples].
 const SMALL: f32 = 40.0;
 
-/// An edge is sharp if the cosine of the angle between its faces is at most this.
+/// An edge is sharp if the cosine of the angle between the normals of its faces is at most this.
 const SHARP: f64 = 0.77;
-/// An edge at a corner is not sharp if the cosine of the angle between a face and the mean of the faces at that corner is above
-/// this.
+/// No edge of a face is sharp at a corner if the cosine of the angle between the normal of the face and the mean of the normals at that corner is
+/// above this.
 const BLUNT: f64 = 0.94;
 
 /// The light of a scene, in the directions of the camera.
@@ -56,7 +56,7 @@ pub(crate) struct Surface<'a> {
 pub(crate) enum Colouring<'a> {
     /// The same colour everywhere.
     Plain([u8; 3]),
-    /// From a fraction of a colour map at each corner.
+    /// The colours of a map at the fractions that are given for the corners.
     Mapped {
         /// The colours of the map, followed by the colour for NaN.
         colours: Vec<[u8; 3]>,
@@ -104,7 +104,7 @@ pub(crate) fn fill(screen: &mut Screen, camera: &Camera, light: &Light, surface:
             let chosen = match normals[node as usize] {
                 _ if !smooth => face,
                 normal if dot(normal, face) > BLUNT => normal,
-                // The shading is smooth over the faces on this side of the edge, and breaks at the edge.
+                // The shading is smooth over the faces on this side of a sharp edge, and changes abruptly at the edge.
                 _ => unit(around.faces(node).fold([0.0; 3], |sum: [f64; 3], other| {
                     let other = faces[other as usize];
                     let beside = dot(unit(other), face) > SHARP;

@@ -4,8 +4,8 @@ use super::camera::{along, cross, unit};
 use crate::picture::ColliderPicture;
 use std::f64::consts::{PI, TAU};
 
-/// The scale at which round obstacles are drawn. They are slightly reduced, because only the nodes of a cloth touch them, and the
-/// cloth lies deeper between its nodes.
+/// The scale at which round obstacles are drawn. They are slightly reduced, because only the nodes of a cloth touch them. Between its nodes, the
+/// cloth is inside the obstacle and would be hidden.
 const ROUND: f64 = 0.985;
 
 /// A surface of triangles.
@@ -17,7 +17,8 @@ pub(crate) struct Shape {
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
-/// The faces of a box as corners, each a number whose bits mean low or high along the axes, with the axis and the side.
+/// The faces of a box, each given by its corners, its axis, and whether it is at the high end of that axis. A corner is a number whose bits mean low
+/// or high along the three axes.
 pub(crate) const FACES: [([usize; 4], usize, bool); 6] = [
     ([0, 4, 6, 2], 0, false),
     ([1, 3, 7, 5], 0, true),
@@ -32,7 +33,7 @@ pub(crate) fn corner(min: [f64; 3], max: [f64; 3], bits: usize) -> [f64; 3] {
     std::array::from_fn(|axis| if bits >> axis & 1 == 0 { min[axis] } else { max[axis] })
 }
 
-/// The surface of an obstacle that has one; rooms, planes and lines have none.
+/// The surface of an obstacle; none for rooms, planes and lines.
 pub(crate) fn shape(collider: &ColliderPicture) -> Option<Shape> {
     match collider {
         ColliderPicture::HalfSpace { .. } | ColliderPicture::Box { inside: true, .. } => None,
@@ -69,7 +70,7 @@ fn capsule(a: [f64; 3], b: [f64; 3], radius: f64) -> Shape {
     let (around, rings) = (48_u32, 26_u32);
     let mut shape = Shape::default();
     for ring in 0..rings {
-        // Two rings at the middle, one at each end of the straight part.
+        // The straight part has a ring at each of its ends, so there are two rings in the middle.
         let half = rings / 2;
         let (end, step) = if ring < half { (a, ring) } else { (b, ring - 1) };
         let angle = PI * f64::from(step) / f64::from(rings - 2);
