@@ -27,12 +27,12 @@ use std::time::Duration;
 /// The scene that is opened first.
 pub const FIRST_SCENE: &str = "ball";
 
-/// The width up to which the properties are in a drawer [points], as on a phone held upright.
+/// In a window that is no wider than this, such as on a phone held upright, the properties are in a drawer [points].
 const NARROW: f32 = 700.0;
 
-/// Two pictures that are at least this far apart [s] do not count as consecutive, unless time passes in the simulation.
+/// Two pictures of the window with at least this time between them do not count as consecutive, unless time passes in the simulation [s].
 const IDLE: f64 = 0.25;
-/// If a frame takes longer than this to compute, the picture counts as outdated.
+/// If a frame takes longer than this to compute, the window marks the picture as outdated.
 const STALE: Duration = Duration::from_millis(700);
 
 /// The whole window.
@@ -55,9 +55,9 @@ pub struct Studio {
     plots_open: bool,
     /// Whether the properties are open in a window that is too narrow to show them permanently.
     drawer_open: bool,
-    /// Whether the properties are those of the right side only.
+    /// Whether the panel of properties shows and changes the right side only.
     right_only: bool,
-    /// A difference of the right side that is applied when the pointer is released, because both sides must be computed again for it.
+    /// A difference of the right side. It is applied only when the pointer is released, because both sides must then be computed again.
     difference: Option<Request>,
     help_open: bool,
     /// The number of presses of the pointer so far.
@@ -66,15 +66,15 @@ pub struct Studio {
     closed: u64,
     /// The messages of each source so far.
     heard: message::Heard,
-    /// The last message, the time since which it is shown, and its position; it disappears by itself.
+    /// The last message, the time since which it has been shown, and its position. The message disappears by itself.
     last_message: (String, f64, message::Placement),
     /// Pictures of the interface per second.
     rate: f64,
-    /// Whether time passed in the previous picture.
+    /// Whether time passed in the simulation in the previous picture of the window.
     played: bool,
-    /// The renderer and its device, if there is a choice.
+    /// The names of the renderer and of its device, if there is a choice.
     drawn_by: Option<[String; 2]>,
-    /// The place where the work is saved in case the window is lost.
+    /// The saving of the work to a file, in case the window is lost.
     #[cfg(not(target_arch = "wasm32"))]
     rescue: Option<crate::rescue::Rescue>,
     /// The state of closing the window.
@@ -139,7 +139,7 @@ impl Studio {
         self.gallery.cache = Some(folder);
     }
 
-    /// Sets the place where the work is saved in case the window is lost.
+    /// Sets how and where the work is saved in case the window is lost.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn keep_at(&mut self, rescue: crate::rescue::Rescue) {
         self.rescue = Some(rescue);
@@ -159,7 +159,7 @@ impl Studio {
         self.gallery.forget_textures();
     }
 
-    /// What is shown now.
+    /// Returns what the window shows now.
     pub fn shown(&self) -> Arc<Shown> {
         self.link.shown()
     }
@@ -201,13 +201,13 @@ impl Studio {
     pub fn show(&mut self, ui: &mut Ui) {
         let shown = self.link.shown();
         let seconds = f64::from(ui.input(|i| i.unstable_dt)).max(1e-4);
-        // If pictures are not consecutive, nothing was drawn between them, and the user was not waiting for a picture.
+        // If two pictures are not consecutive, nothing had to be drawn between them, so the time between them is not a delay.
         let follows = seconds < IDLE || shown.playing && self.played;
         self.played = shown.playing;
         if follows {
             self.rate += 0.05 * (1.0 / seconds - self.rate);
         }
-        // This picture reports what was done, because it may be the last one for a long time.
+        // Finished files are reported in this picture, because the next one may come much later.
         self.keeping.poll(&self.link);
         self.canvas.follow_names(&shown);
         let mut asks = Vec::new();
@@ -245,8 +245,8 @@ impl Studio {
             Panel::bottom("plots").frame(side).resizable(true).default_size(210.0).size_range(200.0..=420.0).show(
                 ui,
                 |ui| {
-                    // In a narrow window curves keep their width and are scrolled. The space below them is for the scroll bar, which is visible
-                    // without searching for it.
+                    // In a narrow window curves keep their width and are scrolled. The space below them is for the scroll bar, so that it is always
+                    // visible.
                     let available = ui.available_size() - egui::vec2(0.0, 10.0);
                     ui.spacing_mut().scroll = egui::style::ScrollStyle::thin();
                     egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
@@ -298,7 +298,7 @@ impl Studio {
         }
     }
 
-    /// The panel of properties. If two scenes are side by side, it shows those of both sides or of the right one.
+    /// Shows the panel of properties. If two scenes are side by side, the panel applies to both sides or to the right one only.
     fn properties(&mut self, ui: &mut Ui, shown: &Arc<Shown>, asks: &mut Vec<Request>) {
         let words = self.language;
         let Some(beside) = &shown.beside else {
@@ -358,7 +358,7 @@ impl Studio {
         }
     }
 
-    /// The toolbar, the palette and the colour settings, over the scene.
+    /// Shows the toolbar, the palette and the colour settings over the scene.
     fn on_canvas(&mut self, ui: &mut Ui, rect: egui::Rect, shown: &Arc<Shown>, asks: &mut Vec<Request>) {
         let words = self.language;
         let spot = rect.min + egui::vec2(10.0, 10.0);
@@ -384,7 +384,7 @@ impl Studio {
                         if ui.button(words.fit()).on_hover_text(format!("{}  (F)", words.fit_hint())).clicked() {
                             self.canvas.fit();
                         }
-                        // A nested layout would not wrap to the next row if it did not fit.
+                        // These controls are not in a nested layout, because such a layout does not wrap to the next row.
                         let focus = ui.add_enabled(self.canvas.selected.is_some(), egui::Button::new(words.focus()));
                         if focus.on_hover_text(format!("{}  (C)", words.focus_hint())).clicked() {
                             self.canvas.focus(shown);
@@ -415,7 +415,7 @@ impl Studio {
     }
 }
 
-/// Converts a request about both sides to a difference of the right one; none if it must concern both.
+/// Converts a request about both sides to a difference of the right side; none if the request must concern both sides.
 fn difference(ask: &Request, shown: &Shown) -> Option<Difference> {
     let name = |number: usize| shown.bodies.iter().find(|body| body.number == number).map(|body| body.name.clone());
     Some(match ask {

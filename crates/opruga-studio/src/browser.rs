@@ -64,7 +64,7 @@ pub(crate) fn store(name: &str, text: &str) {
     }
 }
 
-/// Gives a file to the user as a download.
+/// Downloads a file to the user's machine.
 pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), Report> {
     let failed = |_: JsValue| Report::NoDownload(name.into());
     let parts = Array::of1(&Uint8Array::from(bytes));
@@ -75,7 +75,7 @@ pub(crate) fn download(name: &str, bytes: &[u8]) -> Result<(), Report> {
     anchor.set_href(&address);
     anchor.set_download(name);
     anchor.click();
-    // The download has begun; its data must live until it has ended.
+    // The download has only begun, and its data must exist until it has ended.
     let forget = Closure::once_into_js(move || {
         let _ = web_sys::Url::revoke_object_url(&address);
     });
@@ -96,7 +96,7 @@ pub(crate) async fn read(file: &web_sys::File, most: u64) -> Chosen {
     Ok((name, Uint8Array::new(&buffer).to_vec()))
 }
 
-/// Lets the user choose a file, because files cannot be dropped on a phone.
+/// Lets the user choose a file. This is needed because phones do not allow files to be dropped on a page.
 pub(crate) fn choose(endings: &str, most: u64) -> Receiver<Chosen> {
     let (sender, receiver) = channel();
     let page = window().and_then(|window| window.document());

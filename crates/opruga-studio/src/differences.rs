@@ -10,7 +10,7 @@ use opruga::io::Files;
 use std::collections::{BTreeMap, BTreeSet};
 use toml_edit::Value as Toml;
 
-/// A difference of the right scene from the left one, which applies from the start.
+/// A difference of the right scene from the left one. It applies from the start of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Difference {
     /// A parameter by its path.
@@ -24,7 +24,7 @@ pub enum Difference {
 }
 
 impl Difference {
-    /// Its subject: a later difference with the same subject replaces an earlier one.
+    /// The subject of the difference. A later difference replaces an earlier one with the same subject.
     pub fn about(&self) -> String {
         match self {
             Difference::Set(path, _) => path.clone(),
@@ -36,7 +36,7 @@ impl Difference {
     }
 }
 
-/// Adds a difference to a list. Another kind of model or integrator removes the values of the former one.
+/// Adds a difference to a list. A difference of the models, or of the integrator, removes the earlier differences of their parameters.
 pub fn add_difference(differences: &mut Vec<Difference>, new: Difference) {
     let about = new.about();
     let below = format!("{about}.");
@@ -45,8 +45,8 @@ pub fn add_difference(differences: &mut Vec<Difference>, new: Difference) {
     differences.push(new);
 }
 
-/// The correspondence of nodes of a body on the two sides: each corresponds to the nearest one at rest. Bodies with the same nodes on both sides are
-/// not included.
+/// The correspondence between the nodes of the left and of the right body: each node corresponds to the node on the other side that is nearest to it
+/// at rest. Bodies with the same nodes on both sides are not included.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Twins(BTreeMap<usize, [Vec<u32>; 2]>);
 
@@ -62,8 +62,8 @@ impl Twins {
     }
 }
 
-/// Makes the right scene, which is the left one with the differences written into it. If a body has other nodes in it, references to nodes are
-/// changed to the nearest nodes at rest.
+/// Makes the right scene, which is the left one with the differences written into it. If a body has different nodes on the right, references to its
+/// nodes are changed to the nearest nodes at rest.
 ///
 /// # Errors
 /// [`Report`] if a difference cannot be written into the scene, or all errors of a shape.
@@ -138,7 +138,7 @@ fn rest_positions(blueprint: &AnyBlueprint) -> Vec<(String, Vec<[f64; 3]>)> {
     blueprint.scene().bodies().map(|body| (body.name().into(), body.rest_positions())).collect()
 }
 
-/// For every point, the index of the nearest of others; if several are equally near, the first.
+/// Returns, for every point of `of`, the index of the nearest point of `among`; if several are equally near, that of the first.
 fn nearest(of: &[[f64; 3]], among: &[[f64; 3]]) -> Vec<u32> {
     // Points are sorted by x, so the search ends when the difference in x alone exceeds the best distance.
     let mut order: Vec<u32> = (0..among.len() as u32).collect();

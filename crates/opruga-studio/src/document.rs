@@ -1,5 +1,5 @@
-//! The scene as its text. The actions of the user are written into this text, so saving only writes it to a file, and the command line can repeat
-//! what was done.
+//! The text of the scene. The actions of the user are written into this text, so saving only writes the text to a file, and the command line can
+//! repeat what was done.
 
 mod overrides;
 mod taken_over;
@@ -12,7 +12,7 @@ use opruga::io::{Files, Notice, SceneError, scene};
 use opruga::{Registries, Warning, catalogue_of};
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value as Toml};
 
-/// A scene's text with its comments, and where it came from.
+/// The text of a scene with its comments, and the name of the scene.
 #[derive(Clone, Debug)]
 pub struct Document {
     /// The name of the scene: that of its file, without the ending.
@@ -20,8 +20,8 @@ pub struct Document {
     text: DocumentMut,
 }
 
-/// Reads the text of a document, which names models and integrators of these registries. Notices about it and its files are counted, except those
-/// about what the scene itself asks for.
+/// Reads the text of a document, which may name the models and integrators of these registries. Also returns the notices about the text and its files
+/// as warnings, except those about what the scene itself requests.
 ///
 /// # Errors
 /// All errors in the text.
@@ -33,9 +33,9 @@ pub fn read(
     let reading = scene::Options { files: files.clone(), ..scene::Options::default() };
     let file = format!("{}.toml", document.name);
     let read = scene::read(document.text().as_bytes(), &file, &catalogue_of(registries), &reading);
-    // The text has changed since the user has last seen it.
+    // The user's actions have changed the text, so its lines would mean nothing to the user.
     let (blueprint, notices) = read.map_err(|errors| without_lines(errors, &document.name, ""))?;
-    // Time continues after the end that the scene gives for a run, so every command is executed here.
+    // In the studio, time continues after the end that the scene gives for a run. Commands that begin later are therefore executed.
     let is_reported = |code: &str| !Notice::is_asked_for(code) && code != "command.never";
     let warnings = notices.into_iter().filter(|notice| is_reported(notice.about.code));
     Ok((blueprint, warnings.map(Warning::from).collect()))
@@ -58,8 +58,8 @@ impl Document {
         Ok(Document { name, text })
     }
 
-    /// Makes a document from a text that has not been read yet. It is either the text of a file, whose lines are reported, or a text made around the
-    /// file of this name, whose lines the user does not know.
+    /// Makes a document from a text that has not been read yet. The text is either that of a file, so that errors name its lines, or a text that the
+    /// program made around the file of this name. In the second case errors name no lines, because the user does not know them.
     ///
     /// # Errors
     /// All errors in the text.
@@ -80,7 +80,7 @@ impl Document {
         Document::new(name, text)
     }
 
-    /// The text, fit for `opruga run`.
+    /// The text as a scene file for `opruga run`.
     pub fn text(&self) -> String {
         self.text.to_string()
     }
@@ -91,7 +91,7 @@ impl Document {
         item.as_array_of_tables().map(ArrayOfTables::len).or(item.as_array().map(Array::len)).unwrap_or(0)
     }
 
-    /// Adds a command at the end; returns its number, for [`Document::end_command`].
+    /// Adds a command at the end. Returns its number, which [`Document::end_command`] needs.
     pub fn push_command(&mut self, table: Table) -> usize {
         let item = self.text.entry("command").or_insert_with(|| Item::ArrayOfTables(ArrayOfTables::new()));
         match tables(item) {
@@ -112,7 +112,8 @@ impl Document {
         }
     }
 
-    /// The last command, if it sets this parameter at this time: a slider writes one value and not every intermediate one.
+    /// Returns the last command if it sets this parameter at this time. A slider changes this command, so that only its final value is written and no
+    /// intermediate one.
     pub fn last_set(&mut self, at: f64, path: &str) -> Option<&mut Table> {
         let tables = self.text.get_mut("command")?.as_array_of_tables_mut()?;
         let last = tables.len().checked_sub(1)?;
@@ -143,7 +144,7 @@ impl Document {
     }
 
     /// Removes what was recorded from a time on [s]. Of the commands after the first `kept`, those that begin at that time or later are removed, and
-    /// those that are active at that time end; points that are pinned at that time stay pinned.
+    /// those that are active at that time end then. Points that are pinned at that time stay pinned.
     pub fn cut(&mut self, kept: usize, time: f64) {
         let Some(tables) = self.text.get_mut("command").and_then(Item::as_array_of_tables_mut) else { return };
         for number in (kept..tables.len()).rev() {
@@ -185,7 +186,7 @@ impl Document {
         present.chain(added).collect()
     }
 
-    /// A name similar to `like` that no body has: `ball`, `ball-2`, `ball-3` …
+    /// Returns `like` or a similar name that no body has: `ball`, `ball-2`, `ball-3` …
     pub fn free_name(&self, like: &str) -> String {
         let taken = self.body_names();
         let stem = like.split('[').next().unwrap_or(like);
@@ -199,7 +200,7 @@ impl Document {
         (2..).map(|n| format!("{stem}-{n}")).find(|name| !taken.contains(name)).unwrap_or_default()
     }
 
-    /// The table of a body of the scene or of a command that adds it; none for one of several copies.
+    /// Returns the table of a body, which is in the scene or in a command that adds the body; none for one of several copies.
     pub fn body(&self, name: &str) -> Option<InlineTable> {
         let tables = |key: &str| self.text.get(key).and_then(Item::as_array_of_tables).into_iter().flatten();
         let named = |table: &dyn toml_edit::TableLike| table.get("name").and_then(Item::as_str) == Some(name);
@@ -212,7 +213,7 @@ impl Document {
         })
     }
 
-    /// The shape of a body, as far as its fields are plain values.
+    /// Returns the shape of a body, without fields that are not plain values.
     pub fn shape(&self, name: &str, dimension: usize) -> Option<Values> {
         let body = self.body(name)?;
         let shape = body.get("shape")?.as_inline_table()?;
@@ -228,7 +229,7 @@ impl Document {
         Some(values)
     }
 
-    /// Replaces the table of a body of the scene; `false` if the body does not have its own table.
+    /// Replaces the table of a body of the scene. Returns `false` if the body does not have its own table.
     pub fn replace_body(&mut self, name: &str, body: &InlineTable) -> bool {
         let Some(table) = self.own_body(name) else { return false };
         let decor = table.decor().clone();
@@ -247,7 +248,7 @@ impl Document {
         }
     }
 
-    /// Removes a body from the scene with everything that names it; `false` if it does not have its own table.
+    /// Removes a body from the scene, with everything that names it. Returns `false` if the body does not have its own table.
     pub fn remove_body(&mut self, name: &str) -> bool {
         if self.own_body(name).is_none() {
             return false;
@@ -261,7 +262,7 @@ impl Document {
         true
     }
 
-    /// The scene with only the initial bodies, without anything that names one of their nodes.
+    /// Returns the scene with only the initial bodies, and without anything that names one of their nodes.
     pub fn without_nodes(&self) -> Document {
         let mut bare = self.clone();
         for key in ["command", "load", "probe"] {
@@ -275,14 +276,14 @@ impl Document {
         bare
     }
 
-    /// The scene with only this body, and without anything that names a body.
+    /// Returns the scene with only this body, and without anything that names a body.
     pub fn alone(&self, body: &InlineTable) -> Document {
         let mut alone = self.clone();
         for key in ["body", "command", "load", "probe"] {
             alone.text.remove(key);
         }
         let mut body = body.clone();
-        // Its pinned nodes do not matter.
+        // The pinned nodes of the body do not matter here.
         body.remove("pin");
         alone.push_body(&body);
         alone
@@ -318,7 +319,7 @@ impl Document {
         tables.iter_mut().find(found).filter(|table| !table.contains_key("copies"))
     }
 
-    /// Writes a parameter into the scene itself; `false` if the path names nothing that is written there.
+    /// Writes a parameter into the scene itself. Returns `false` if the path names nothing that is written there.
     pub fn set(&mut self, path: &str, value: &Value) -> bool {
         let parts: Vec<&str> = path.split('.').collect();
         let put = |table: &mut dyn toml_edit::TableLike, field: &str| {
@@ -375,7 +376,7 @@ impl Document {
         }
     }
 
-    /// Enables contact between bodies with its defaults, or removes the section.
+    /// Enables contact between bodies with default parameters, or disables it by removing its section.
     pub fn set_contact(&mut self, touch: bool) {
         if touch {
             self.text.entry("contact").or_insert_with(|| {
@@ -388,7 +389,7 @@ impl Document {
         }
     }
 
-    /// Removes a field of an obstacle or of contact from the scene itself; `false` if it is not written there.
+    /// Removes a field of an obstacle or of contact from the scene itself. Returns `false` if the field is not written there.
     pub fn unset(&mut self, path: &str) -> bool {
         if let Some(field) = path.strip_prefix("contact.") {
             let table = self.text.get_mut("contact").and_then(Item::as_table_like_mut);
@@ -418,8 +419,8 @@ impl Document {
     }
 }
 
-/// Removes the lines from errors in the text of a scene that the user does not see, because lines would mean nothing to the user. These errors name
-/// `file` instead, or nothing if it is empty; lines of other files are kept.
+/// Removes the lines from errors in the text of a scene, because the user does not see this text. These errors name `file` instead, or no file if
+/// `file` is empty. Errors in other files keep their lines.
 pub(crate) fn without_lines(errors: Vec<SceneError>, scene: &str, file: &str) -> Vec<SceneError> {
     let own = format!("{scene}.toml");
     let without_own_lines = |error: SceneError| match error.file == own {
@@ -429,7 +430,7 @@ pub(crate) fn without_lines(errors: Vec<SceneError>, scene: &str, file: &str) ->
     errors.into_iter().map(without_own_lines).collect()
 }
 
-/// The tables of a list; `command = [{ … }]` becomes `[[command]]`, which can be extended.
+/// Returns the tables of a list. The form `command = [{ … }]` is first changed to `[[command]]`, which can be extended.
 fn tables(item: &mut Item) -> Option<&mut ArrayOfTables> {
     if let Some(inline) = item.as_array().cloned() {
         let tables = inline.iter().filter_map(Toml::as_inline_table).map(|t| t.clone().into_table());
@@ -438,7 +439,7 @@ fn tables(item: &mut Item) -> Option<&mut ArrayOfTables> {
     item.as_array_of_tables_mut()
 }
 
-/// Replaces the indices of the nodes of a selection; if several become the same, it occurs once.
+/// Replaces the indices of the nodes of a selection. If several of them become equal, only one remains.
 fn rename_selected(select: &mut dyn toml_edit::TableLike, renamed: &dyn Fn(i64) -> i64) {
     if let Some(node) = select.get("node").and_then(Item::as_integer) {
         select.insert("node", toml_edit::value(renamed(node)));

@@ -6,7 +6,7 @@ use crate::shape_file::Shape;
 use opruga::io::{Files, SceneError, scene, shapes};
 use std::path::Path;
 
-/// Endings of files that become bodies, with the fields of their shapes.
+/// The endings of files that become bodies, with the fields of their shapes.
 const SHAPES: [(&str, &str, bool); 6] = [
     ("svg", "spacing = 0.05, size = 1.0, filling = \"triangles\"", false),
     ("obj", "size = 1.0", true),
@@ -28,7 +28,7 @@ pub fn take(path: &Path) -> Result<Request, Report> {
     request(&file, bytes, || Files::beside(path))
 }
 
-/// Does the same for a file with this name from any source; its bytes are read if it is a scene.
+/// Returns the request for a file with this name from any source. The bytes of the file are read only if it is a scene.
 pub(crate) fn request(
     file: &str,
     bytes: impl FnOnce() -> Result<Vec<u8>, Report>,
@@ -52,7 +52,7 @@ pub(crate) fn request(
     Ok(Request::Take(Shape { name, file: file.into(), text, space, files: files() }, [0.0; 3], 1.0))
 }
 
-/// A scene with one shape over a floor.
+/// The text of a scene with one shape over a floor.
 fn around(file: &str, fields: &str, space: bool) -> String {
     let (dimension, gravity, up, normal) = if space {
         (3, "[0.0, -9.81, 0.0]", "[0.0, 1.2, 0.0]", "[0.0, 1.0, 0.0]")

@@ -1,4 +1,4 @@
-//! A world of either dimension behind a common interface: actions of the user become commands of the scene file.
+//! A world of either dimension behind a common interface, through which actions of the user become commands of the scene file.
 
 mod arrows;
 mod exploded;
@@ -27,7 +27,7 @@ pub struct Given {
 /// Quantities that can be compared between scenes with different nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Common {
-    /// The centre of mass of all bodies \[m\].
+    /// The common centre of mass of all bodies \[m\].
     pub center: [f64; 3],
     /// The volume within closed surfaces \[m³\] or the area within closed outlines \[m²\]; none if there are none.
     pub volume: Option<f64>,
@@ -77,11 +77,11 @@ pub trait Engine: Send {
     fn rewind(&mut self, state: &State) -> Result<(), WorldError>;
     /// The warnings so far.
     fn warnings(&self) -> Vec<Warning>;
-    /// The number of frames up to the end of the scene on the command line.
+    /// The number of frames after which a run on the command line ends.
     fn end(&self) -> u64;
-    /// The warnings about the present state, including those about shapes, which are checked again at every call.
+    /// Returns the warnings about the present state, including those about shapes. The shapes are checked again at every call.
     fn warnings_at_the_end(&mut self) -> Vec<Warning>;
-    /// The first body that has grown beyond all proportions.
+    /// Returns the first body that has grown to many times its size, if there is one.
     fn exploded(&mut self) -> Option<Exploded>;
     /// The hash of the state.
     fn hash(&self) -> u64;
@@ -89,7 +89,7 @@ pub trait Engine: Send {
     fn pull(&mut self, body: usize, node: u32, pointer: [f64; 3]) -> Result<Given, WorldError>;
     /// The stiffness [N/m] and the largest force [N] of such a pull.
     fn usual_pull(&self, body: usize) -> Option<[f64; 2]>;
-    /// Moves the pointer of a pull two frames ahead; returns the row of its path.
+    /// Adds a position of the pointer to the path of a pull, for a time two frames ahead. Returns the new row of the path.
     fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError>;
     /// Ends a command now; returns the time of its end [s].
     fn finish(&mut self, number: usize) -> Result<f64, WorldError>;
@@ -97,7 +97,7 @@ pub trait Engine: Send {
     fn push(&mut self, body: usize, node: u32, force: [f64; 3]) -> Result<Given, WorldError>;
     /// Pins a node.
     fn pin(&mut self, body: usize, node: u32) -> Result<Given, WorldError>;
-    /// Releases a pinned node.
+    /// Unpins a node.
     fn free(&mut self, body: usize, node: u32) -> Result<Given, WorldError>;
     /// Sets a parameter.
     fn set(&mut self, path: &str, value: Value) -> Result<Given, WorldError>;
@@ -110,16 +110,16 @@ pub trait Engine: Send {
         models: Option<Vec<Values>>,
         integrator: Option<Values>,
     ) -> Result<Given, WorldError>;
-    /// Executes the last command of a scene, which begins now and adds a body, and adds the warnings about that scene.
+    /// Executes the last command of a scene, which adds a body now, and takes over the warnings about that scene.
     fn add_from(&mut self, scene: AnyBlueprint, scene_warnings: Vec<Warning>) -> Result<(), WorldError>;
     /// The node of a body nearest to a point.
     fn nearest(&self, body: usize, point: [f64; 3]) -> Option<u32>;
-    /// The node that corresponds to the node of the scene beside it that is nearest to a point; none if there is only one
+    /// Finds the node nearest to a point in the scene beside this one, and returns the corresponding node of this scene; none if there is only one
     /// scene.
     fn nearest_beside(&self, _body: usize, _point: [f64; 3]) -> Option<u32> {
         None
     }
-    /// The position of the corresponding point in the scene beside it [m].
+    /// The position of the corresponding node in the scene beside this one [m].
     fn position_beside(&self, _body: usize, _node: u32) -> Option<[f64; 3]> {
         None
     }
@@ -133,7 +133,7 @@ pub trait Engine: Send {
     fn names(&self) -> Vec<String>;
     /// The name of a body.
     fn name(&self, body: usize) -> Option<String>;
-    /// The centre of a body's mesh after its shape is rotated and scaled, and the position to which it is then moved [m].
+    /// The centre of a body's mesh after rotation and scaling, and the displacement that the body then gets [m].
     fn rest_center(&self, body: usize) -> Option<([f64; 3], [f64; 3])>;
     /// Everything that can be displayed.
     fn shown(&mut self, show: &Show) -> Shown;
@@ -149,7 +149,7 @@ pub trait Engine: Send {
 struct Living {
     world: Box<dyn AnyWorld>,
     scenery: Scenery,
-    /// The number of bodies that the scenery knows.
+    /// The number of bodies of the world when the scenery was made.
     known: usize,
     /// The warnings about the scene and its files.
     scene_warnings: Vec<Warning>,
@@ -274,7 +274,7 @@ impl Engine for Living {
     }
 
     fn lead(&mut self, number: usize, pointer: [f64; 3]) -> Result<Vec<f64>, WorldError> {
-        // Stages at the end of the next frame are evaluated beyond it, so the path extends one frame farther.
+        // At the end of the next frame, an integrator may evaluate forces at a time beyond this frame, so the path extends one frame farther.
         let row = self.row_of(self.world.frames() + 2, pointer);
         self.world.lead(number, row.clone())?;
         Ok(row)
@@ -388,7 +388,7 @@ impl Engine for Living {
         let numbers = self.world.bodies();
         let mut bodies = Vec::with_capacity(numbers.len());
         for &number in &numbers {
-            // In a crowd, the values of single bodies are not of interest.
+            // With many bodies, the values of single ones are not of interest.
             let readings = if numbers.len() <= 64 { self.world.readings(number) } else { Vec::new() };
             let Some(body) = self.world.scene().body(number) else { continue };
             bodies.push(BodyShown {

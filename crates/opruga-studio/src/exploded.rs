@@ -1,4 +1,4 @@
-//! The report of a body that has exploded.
+//! The report about a body that has exploded.
 
 /// A body that has exploded.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Ways into and out of the studio other than saving: files that were dropped or chosen and, on a web page, the address that contains the scene.
+//! Exchanges scenes with the outside other than by saving: files that were dropped or chosen and, on a web page, the address that contains the scene.
 
 use crate::report::Report;
 use crate::runner::Link;
@@ -6,7 +6,7 @@ use crate::session::Request;
 use crate::shown::Severity;
 use egui::Ui;
 
-/// What has arrived.
+/// The result of reading a file or an address.
 pub(crate) enum Arrived {
     /// A request for the session.
     Request(Request),
@@ -56,7 +56,7 @@ mod page {
     use std::sync::Arc;
     use std::sync::mpsc::{Receiver, TryRecvError};
 
-    /// The request for a file of the browser: see [`crate::dropping`].
+    /// The request for a file that the browser provides: see [`crate::dropping`].
     fn request_of(file: &str, bytes: Vec<u8>) -> Result<Request, Report> {
         let content: Arc<[u8]> = bytes.as_slice().into();
         let files = || opruga::scenes::files().with([(file.to_string(), content)]);

@@ -1,5 +1,5 @@
-//! The destination of files: a desktop window writes them to the folder `out/studio`, a web page gives them as downloads. A scene is written together
-//! with the files that it names, so that it can be run from that folder.
+//! The destination of files: a desktop window writes them to the folder `out/studio`, and a web page offers them as downloads. A scene is written
+//! together with the files that it names, so that it can be run from that folder.
 
 use crate::report::Report;
 use opruga::io::{Files, scene};
@@ -24,7 +24,7 @@ mod window {
     use opruga::io::safe_write::safe_write;
     use std::path::{Path, PathBuf};
 
-    /// Names that are tried: `ball`, `ball-2` and so on.
+    /// The largest number of names that are tried: `ball`, `ball-2` and so on.
     const MOST_NAMES: u32 = 10_000;
 
     /// A folder in which no file replaces another.
@@ -95,7 +95,7 @@ mod window {
             let mut written = vec![self.0.join(format!("{name}.toml"))];
             for (name, bytes) in named {
                 let path = self.0.join(name);
-                // A scene cannot name files outside its folder.
+                // The folder of a file is inside the folder of the scene, because a scene cannot name files outside its folder.
                 Folder(path.parent().unwrap_or(&self.0).to_path_buf()).made()?;
                 write(&path, bytes)?;
                 written.push(path);
@@ -143,7 +143,7 @@ mod page {
         crate::browser::download(&name, bytes).map(|()| name)
     }
 
-    /// Downloads a scene and the files that it names, each separately. A browser puts all of them into one folder, so the scene finds its files.
+    /// Downloads a scene and the files that it names as separate files. A browser puts all of them into one folder, so the scene finds its files.
     pub(crate) fn scene_with_files(
         name: &str,
         text: &str,

@@ -1,5 +1,4 @@
-//! Earlier states to which a session can return, within a memory budget. If they exceed the budget, every second state is
-//! dropped.
+//! Earlier states to which a session can return. If they exceed their memory budget, every second state is dropped.
 
 use crate::engine::State;
 
@@ -22,7 +21,7 @@ impl Keyframes {
         Keyframes { kept: Vec::new(), every: FIRST_INTERVAL, bytes: 0, budget }
     }
 
-    /// Whether the state of a frame should be kept.
+    /// Whether the state of a frame with this number should be kept.
     pub fn wants(&self, frame: u64) -> bool {
         frame.is_multiple_of(self.every) && self.kept.last().is_none_or(|(last, _)| *last < frame)
     }
@@ -40,7 +39,7 @@ impl Keyframes {
         }
     }
 
-    /// The last state at or before a frame.
+    /// The latest kept state at or before a frame.
     pub fn before(&self, frame: u64) -> Option<(u64, &State)> {
         let index = self.kept.partition_point(|(kept, _)| *kept <= frame);
         index.checked_sub(1).map(|index| (self.kept[index].0, &self.kept[index].1))

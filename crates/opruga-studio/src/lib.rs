@@ -1,7 +1,7 @@
 //! Opruga Studio: a window on a running scene, in which the user pulls bodies, draws new ones and changes their physics.
 //!
-//! [`session`] is the complete studio without a window; the rest displays it and sends requests to it.
-// This crate contains no physics, so pictures and clocks may differ in the last bit.
+//! [`session`] is the complete studio without a window. The other modules display the session and send requests to it.
+// This crate computes no physics but only pictures and times, which may differ in the last bit between machines.
 #![allow(clippy::disallowed_methods)]
 
 pub mod differences;

@@ -22,7 +22,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 const USAGE: &str = "opruga-studio [SCENE]\n\nSCENE is a scene file, the name of a scene that comes with the program, a recorded run, \
                      or the file of a shape (.svg, .obj, .stl, .ply, .gltf, .glb).";
 
-/// Reports an error in the call, and the usage.
+/// Reports an error in the call, and prints the usage.
 fn refuse_call(error: StartError) {
     watch::print(error);
     eprintln!("\n{USAGE}");
@@ -108,7 +108,7 @@ fn main() -> ExitCode {
                 return Ok(Box::new(Measured::new(studio, &creation.egui_ctx, count, &report)) as Box<dyn eframe::App>);
             }
             match lost {
-                // Time is stopped at the moment at which the previous window was lost.
+                // The new window shows the moment at which the previous window was lost, with time stopped.
                 Some(saved) => studio.report(Severity::Refused, Report::WindowLost(saved)),
                 None => studio.ask(Request::Play(true)),
             }

@@ -1,9 +1,9 @@
-//! Measures how long frames of the window take. `opruga-studio SCENE --measure-frames N` shows N frames, prints the result and ends; on a web page,
-//! use `opruga.measure(N)`, or open it with `?measure=N`.
+//! Measures how long frames of the window take. `opruga-studio SCENE --measure-frames N` shows N frames, prints the result and ends. On a web page,
+//! call `opruga.measure(N)`, or open the page with `?measure=N`.
 
 use crate::shown::Shown;
 
-/// The number of frames that are not measured, because fonts, textures and other things are prepared in them.
+/// The number of frames at the start that are not measured, because they also prepare fonts and textures.
 const WARM_UP: usize = 60;
 
 /// The measurements of one frame [ms].
@@ -11,13 +11,13 @@ const WARM_UP: usize = 60;
 struct Frame {
     /// From the beginning of the previous frame to the beginning of this one.
     whole: f64,
-    /// Panels and scene, up to the shapes to be drawn.
+    /// The computation of the panels and the scene, up to the shapes to be drawn.
     interface: f64,
     /// The triangulation of these shapes, if it was measured separately.
     triangles: f64,
     /// The simulation, if it does not have its own thread.
     simulation: f64,
-    /// The whole thread: the above, and the work of the driver in this thread.
+    /// All work of the thread: the above, and the work of the driver in this thread.
     thread: f64,
 }
 
@@ -35,8 +35,8 @@ impl Watch {
         Watch { frames: Vec::new(), wanted: wanted.max(1), last: None }
     }
 
-    /// Adds a frame that began at this time, with the times of its interface and its simulation and, for the previous frame, of the triangles and the
-    /// thread [ms].
+    /// Adds a frame that began at the time `begin`, with the times of its interface and its simulation. `triangles` and `thread` are the times of the
+    /// previous frame [ms].
     pub fn add(&mut self, begin: f64, interface: f64, triangles: f64, simulation: f64, thread: f64) {
         if let Some(last) = self.last.replace(begin) {
             self.frames.push(Frame { whole: begin - last, interface, triangles, simulation, thread });
@@ -118,7 +118,7 @@ mod native {
 
     /// The processor time of this thread [ms]; if the system does not provide it, the elapsed time.
     fn processor_time(begin: Instant) -> f64 {
-        // The system updates the count when a thread yields.
+        // The thread yields because the system then updates the processor time of the thread.
         std::thread::yield_now();
         let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
         let nanoseconds = statistics.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());

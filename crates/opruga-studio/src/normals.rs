@@ -1,4 +1,4 @@
-//! The orientation of surfaces.
+//! The unit normals of surfaces.
 
 use opruga::draw::Facets;
 

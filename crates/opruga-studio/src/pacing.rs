@@ -1,10 +1,10 @@
-//! Simulated time follows the clock. If it cannot, it slows down, and the ratio is reported.
+//! Makes simulated time follow the clock. If the simulation is too slow, simulated time slows down, and the ratio is reported.
 
 use std::time::Duration;
 
 /// The longest delay that the simulation makes up for [s], so that it does not jump after a pause of ten minutes.
 const LONGEST: f64 = 0.1;
-/// The weight of the last frame in the mean time of a frame.
+/// The weight of the latest frame in the mean computing time of a frame.
 const FRESH: f64 = 0.1;
 /// The time constant of the displayed ratio [s]; older values hardly count.
 const MEMORY: f64 = 0.3;
@@ -15,7 +15,7 @@ pub struct Pacing {
     owed: f64,
     /// The ratio of recent simulated time to the requested one.
     ratio: f64,
-    /// The recent mean time of a frame [s].
+    /// The recent mean computing time of a frame [s].
     cost: f64,
 }
 
@@ -31,8 +31,8 @@ impl Pacing {
         self.owed = 0.0;
     }
 
-    /// Computes the frames that are due after some real time, given the length of a frame [s] and the number of simulated seconds per second; `frame`
-    /// computes one and returns how long it took, or an error. Spends at most `budget`.
+    /// Computes the frames that are due after some real time. `speed` is the number of simulated seconds per second, and `length` is the length of a
+    /// frame [s]. `frame` computes one frame and returns how long this took, or an error. No further frame begins after `budget` is spent.
     ///
     /// # Errors
     /// The errors of `frame`; in this case no time remains due.
@@ -61,10 +61,10 @@ impl Pacing {
             self.owed -= length;
             done += 1;
         }
-        // Delay that cannot be made up for is dropped, so simulated time slows down.
+        // A delay of more than one frame is dropped, so simulated time slows down.
         let lost = (self.owed - length).max(0.0);
         self.owed -= lost;
-        // If the last picture was long ago, the time beyond the longest delay did not become due. It is lost, too.
+        // If the previous picture was long ago, the time beyond the longest delay did not become due. This time is lost, too.
         let passed = elapsed.as_secs_f64();
         let asked = passed * speed;
         if asked > 0.0 {
@@ -79,7 +79,7 @@ impl Pacing {
         self.ratio
     }
 
-    /// The recent mean time of a frame [s].
+    /// The recent mean computing time of a frame [s].
     pub fn cost(&self) -> f64 {
         self.cost
     }
@@ -95,7 +95,7 @@ mod tests {
 
     const FRAME: f64 = 1.0 / 60.0;
 
-    /// The number of frames in ten seconds, for a rate of calls and a time per frame.
+    /// Returns the number of frames in ten seconds, for a rate of calls and a computing time per frame.
     fn ten_seconds(calls_per_second: u32, milliseconds: u64) -> (u32, Pacing) {
         let (mut pacing, mut frames) = (Pacing::default(), 0);
         let mut real = Duration::ZERO;
@@ -129,7 +129,7 @@ mod tests {
     fn a_simulation_that_cannot_keep_up_slows_down_and_says_by_how_much() {
         let mut pacing = Pacing::default();
         for _ in 0..200 {
-            // A call comes every 50 ms and has time for one frame of 60 ms: a third of real time.
+            // There is a call every 50 ms. Each call computes one frame, which takes 60 ms, so simulated time passes at about a third of real time.
             let budget = Duration::from_millis(12);
             let done = pacing.run(Duration::from_millis(50), 1.0, FRAME, budget, took(60)).expect("frames");
             assert_eq!(done, 1, "no spiral");
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn what_is_told_of_a_slow_window_and_of_another_speed_is_what_has_passed() {
-        // A picture every 350 ms, with one frame each.
+        // There is a picture every 350 ms, with one frame each.
         let mut pacing = Pacing::default();
         let mut simulated = 0.0;
         for _ in 0..40 {

@@ -1,4 +1,4 @@
-//! The studio on a web page: how it starts, and what the page around it can request.
+//! The studio on a web page: its start, and the functions that the page around it can call.
 
 use crate::app::{FIRST_SCENE, Studio};
 use crate::document::Document;
@@ -22,8 +22,8 @@ use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 use wasm_bindgen::prelude::*;
 
-/// How long a frame may take before the user is asked whether to wait for it [s]. Browsers offer to close pages that do not respond for about five
-/// seconds.
+/// How long a frame may take before the user is asked whether to wait for it [s]. The limit is below five seconds, after which browsers offer to
+/// close a page that does not respond.
 const PATIENCE: f64 = 2.0;
 
 /// The studio on a canvas of a page. It outlives its graphics device, which may be lost.
@@ -66,7 +66,7 @@ impl eframe::App for Shared {
     }
 }
 
-/// The bounds of all controls with names, as reported to screen readers.
+/// The bounds of all controls that have a name, as reported to screen readers.
 #[derive(Clone, Default)]
 struct NamedNodes(Arc<Mutex<HashMap<egui::accesskit::NodeId, Node>>>);
 
@@ -82,8 +82,8 @@ impl egui::Plugin for NamedNodes {
     }
 }
 
-/// Opens the studio on a canvas, with the scene of the address, or with the first scene if there is none or it is refused. The renderer is `webgpu`
-/// or `webgl`, on a device of this name.
+/// Opens the studio on a canvas, with the scene of the address, or with the first scene if there is none or it is refused. `drawn_by` is the
+/// renderer, `webgpu` or `webgl`, and `device` is the name of its device.
 ///
 /// # Errors
 /// The browser provides no such device.
@@ -103,7 +103,7 @@ pub async fn open(canvas: web_sys::HtmlCanvasElement, drawn_by: String, device: 
 }
 
 impl Screen {
-    /// Begins to draw a studio on a canvas, with this renderer and device.
+    /// Begins to draw a studio on a canvas with this renderer and this device.
     async fn begin(
         canvas: web_sys::HtmlCanvasElement,
         [drawn_by, device]: [&str; 2],
@@ -134,7 +134,7 @@ impl Screen {
     }
 }
 
-/// The scene of the address; if it is refused, the first scene and the reason.
+/// Opens the scene of the address or, if it is refused, the first scene, and then also returns the reason.
 fn first_session() -> Result<(Session, Option<Report>), Report> {
     let open = |name: &str, text: &str, files| {
         let most_bytes = Some(scene::Limits::default().memory_bytes);
@@ -185,7 +185,7 @@ impl Page {
         Ok(())
     }
 
-    /// Writes the whole scene to the address, so that reloading the page opens it; false if it is too large.
+    /// Writes the whole scene to the address, so that reloading the page opens it. Returns false if the scene is too large.
     pub fn keep(&self) -> bool {
         let Ok(studio) = self.studio.0.try_borrow() else { return false };
         let copied = studio.0.link().with_session(Copied::of);
@@ -220,7 +220,7 @@ impl Page {
         self.repaint();
     }
 
-    /// The measurements once they are complete: median and 99th percentile in milliseconds.
+    /// Returns the measurements once they are complete: median and 99th percentile in milliseconds.
     pub fn measured(&self) -> Option<String> {
         let studio = self.studio()?;
         let watch = studio.1.as_ref().filter(|watch| watch.is_done())?;
@@ -249,7 +249,7 @@ impl Page {
         .to_string()
     }
 
-    /// The scene with everything that was done, as `Save` writes it.
+    /// Returns the scene with everything that was done, as `Save` writes it.
     pub fn scene(&self) -> Option<String> {
         Some(self.studio()?.0.link().with_session(|session| Copied::of(session).text))
     }
@@ -273,8 +273,8 @@ impl Page {
         spot.map_or_else(Vec::new, |spot| vec![spot.x, spot.y])
     }
 
-    /// The bounds of a button, a slider or a text of this name: left, top, width and height \[CSS pixels\]; empty if it does not exist. Names are
-    /// known from the next picture after the first call.
+    /// The bounds of a button, a slider or a text with this name: left, top, width and height \[CSS pixels\]; empty if there is none. The first call
+    /// finds nothing, because names are collected only from the next picture on.
     pub fn find(&self, name: &str) -> Vec<f32> {
         let context = self.screen.borrow().context.clone();
         context.enable_accesskit();
@@ -287,7 +287,8 @@ impl Page {
     }
 }
 
-/// The hash of the state of a scene after a number of frames, computed without a window. The scene is one that comes with the program, or a text.
+/// Computes the hash of the state of a scene after a number of frames, without a window. The scene is given by the name of one that comes with the
+/// program, or by its text.
 ///
 /// # Errors
 /// The errors of the scene, or the reason why it does not run.

@@ -1,4 +1,4 @@
-//! A scene in two configurations in lockstep: everything that is done to the left one is also done to the right one.
+//! A scene in two configurations that run in step: everything that is done to the left one is also done to the right one.
 
 use crate::differences::{Difference, Twins, right_of};
 use crate::document::{Document, read};
@@ -45,9 +45,9 @@ struct Pair {
     differences: Vec<Difference>,
     /// The correspondence of nodes, for bodies with different nodes.
     twins: Twins,
-    /// Why the right one has stopped.
+    /// The reason why the right one has stopped, if it has.
     stopped: Option<Report>,
-    /// Whether the right side has missed a command, after which it can only be rebuilt.
+    /// Whether the right side has missed a command. It must then be rebuilt.
     behind: bool,
 }
 
@@ -88,7 +88,7 @@ impl Pair {
 
 impl Engine for Pair {
     fn frame(&mut self) -> Result<(), WorldError> {
-        // If the right side is interrupted, both sides return to the previous state.
+        // If the frame of the right side is interrupted, both sides return to the state before the frame.
         let before = self.left.snapshot();
         self.left.frame()?;
         if self.stopped.is_some() {

@@ -34,7 +34,7 @@ pub enum Store {
 }
 
 impl Preferences {
-    /// The preferences in a text. Missing or unknown ones have their defaults.
+    /// Reads the preferences in a text. Missing or unknown preferences get their defaults.
     pub fn of(text: &str) -> Preferences {
         let mut preferences = Preferences::default();
         let Ok(document) = text.parse::<DocumentMut>() else { return preferences };
@@ -49,7 +49,7 @@ impl Preferences {
         preferences
     }
 
-    /// The text with these preferences; the rest of it does not change.
+    /// Writes these preferences into a text, whose other parts do not change.
     fn written_into(self, text: &str) -> String {
         let mut document = text.parse::<DocumentMut>().unwrap_or_default();
         document["language"] = value(self.language.code());
@@ -97,7 +97,7 @@ impl Store {
     }
 }
 
-/// The key under which a browser stores them.
+/// The key under which a browser stores the preferences.
 #[cfg(target_arch = "wasm32")]
 const KEY: &str = "opruga-studio";
 
@@ -124,7 +124,7 @@ pub mod folders {
         on_windows: &str,
         on_macos: &[&str],
     ) -> Option<PathBuf> {
-        // According to the specification of these variables, relative paths are to be ignored.
+        // The specification of these environment variables requires that relative paths are ignored.
         let absolute = |name: &str| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
         let below_home = |parts: &[&str]| absolute("HOME").map(|home| home.join(parts.iter().collect::<PathBuf>()));
         let folder = if cfg!(windows) {
@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(store.read(), chosen);
         store.write(Preferences::default());
         assert_eq!(store.read(), Preferences::default());
-        // There is a file in place of the folder.
+        // There is a file where the folder should be.
         std::fs::remove_dir_all(&folder).expect("it goes");
         std::fs::write(&folder, b"").expect("a file");
         store.write(chosen);

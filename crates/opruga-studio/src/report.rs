@@ -64,11 +64,11 @@ pub enum Report {
     NotWritten(WriteError),
     /// A picture or a film cannot be made.
     NotDrawn(DrawError),
-    /// An error in the contents of a file of this name.
+    /// An error in the contents of the file with this name.
     Inside(String, Box<Report>),
     /// A scene cannot be compressed.
     NotCompressed,
-    /// A body has grown beyond all proportions, and time has stopped.
+    /// A body has grown to many times its size, and time was stopped.
     Exploded(Exploded),
     /// This was undone; the scene is at this time \[s\].
     Undone(Step, f64),
@@ -82,15 +82,15 @@ pub enum Report {
     AllGoOn(String),
     /// A body was replaced.
     SetDown,
-    /// A field, by its path, can only be added or removed at the start.
+    /// The field with this path can be added or removed only at the start.
     AtTheStartAlone(String),
-    /// Contact between bodies can only be switched on and off at the start.
+    /// Contact between bodies can be switched on and off only at the start.
     ContactAtTheStartAlone,
     /// The scene has reached its end, at this time \[s\], with these warnings.
     AtTheEnd(f64, Vec<Warning>),
     /// The recording that is viewed ends at this time \[s\].
     RecordingEnds(f64),
-    /// The action starts a different run at this time of the recording \[s\].
+    /// The user's action starts a run that differs from the recording from this time on \[s\].
     OwnCourse(f64),
     /// A frame takes longer than this many seconds, and the page cannot respond in the meantime.
     TakesLong(f64),
@@ -102,15 +102,15 @@ pub enum Report {
     Copy(String),
     /// A body cannot be scaled by this factor.
     Scaled(f64),
-    /// The intended difference of the two sides is not written in the scene itself.
+    /// The requested difference of the two sides concerns a value that is not written in the scene itself.
     NoDifference(String),
-    /// A file is no text.
+    /// The file with this name does not contain text.
     NoText(String),
-    /// A file is neither a scene nor a shape; contains the endings of these.
+    /// A file is neither a scene nor a shape. Contains the name of the file and the endings of scenes and shapes.
     NoShapeFile(String, String),
     /// The name of a file cannot be used in a scene.
     NameOfFile(String),
-    /// A file is too large, with its size and the limit [bytes].
+    /// A file is too large. Contains its size and the limit [bytes].
     TooLarge(String, u64, u64),
     /// A file cannot be read.
     Unreadable(String),
@@ -126,9 +126,9 @@ pub enum Report {
     NothingToDraw,
     /// The link was copied.
     LinkCopied,
-    /// A scene has too many characters for an address, with the limit.
+    /// A scene has too many characters for an address. Contains their number and the limit.
     AddressTooLong(usize, usize),
-    /// The address names no known scene, with those that it could name.
+    /// The address names no known scene. Contains the names that it could contain.
     AddressUnknown(String),
     /// The scene in the address is truncated.
     AddressCut,

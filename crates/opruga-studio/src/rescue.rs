@@ -1,4 +1,4 @@
-//! The work of the user is saved while the user works. If the window is lost, together with the graphics device, the driver or the whole screen, the
+//! Saves the work of the user while the user works. If the window is lost, because the graphics device, the driver or the whole screen is lost, the
 //! supervising program finds the saved work ([`crate::watch`]).
 
 use crate::handing::named_files;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
-/// The longest time for which new work is not saved.
+/// The interval at which new work is saved.
 const EVERY: Duration = Duration::from_secs(2);
 
 /// The saving of work to a file.
@@ -27,7 +27,7 @@ pub struct Rescue {
     last: Option<Instant>,
     /// The text that was last saved, and whether it contains anything that the user has not saved.
     kept: (Arc<str>, bool),
-    /// The files of a scene, which are read only once: the scene, the location of the files, and their contents.
+    /// The files of a scene: the scene, the location of the files, and their contents, which are read only once.
     files: Option<(String, Files, Files)>,
 }
 
@@ -37,7 +37,7 @@ impl Rescue {
         Rescue { path: path.into(), asked: None, writing: None, last: None, kept: ("".into(), false), files: None }
     }
 
-    /// Checks whether something must be saved; to be called with every picture.
+    /// Saves new work if it is due. Must be called with every picture.
     pub fn poll(&mut self, link: &Link) {
         if self.writing.as_ref().is_some_and(|writing| writing.try_recv() == Err(std::sync::mpsc::TryRecvError::Empty))
         {
@@ -68,14 +68,14 @@ impl Rescue {
         self.files = Some(files);
         let path = self.path.clone();
         self.writing = Some(work::spawn(async move {
-            // If it cannot be saved, the window continues anyway: saving matters only if the window is lost.
+            // If the work cannot be saved, the window continues anyway, because the saved work matters only if the window is lost.
             let _ = write(&path, &shared);
             let _ = if edited { std::fs::write(mark_of(&path), []) } else { std::fs::remove_file(mark_of(&path)) };
         }));
     }
 }
 
-/// The path of a second file, which exists if the saved work was edited or recorded after it was opened or saved.
+/// The path of a second file, which exists if the saved work contains anything that the user has not saved.
 pub fn mark_of(path: &Path) -> PathBuf {
     path.with_extension("edited")
 }
@@ -93,16 +93,16 @@ pub fn write(path: &Path, shared: &Shared) -> Result<(), Report> {
 /// Reads the saved scene.
 ///
 /// # Errors
-/// Why it cannot be read.
+/// [`Report`] with the reason why it cannot be read.
 pub fn read(path: &Path) -> Result<Shared, Report> {
     let refused = |error| Report::Scene(vec![SceneError { file: path.display().to_string(), ..error }]);
     share::unpack(&scene::bytes_of(path, &scene::Limits::default()).map_err(refused)?)
 }
 
-/// Reopens the session that was lost; it goes to the moment at which it was lost, and stops.
+/// Reopens the session that was lost. The session goes to the moment at which it was lost, and stops there.
 ///
 /// # Errors
-/// Why it cannot be opened.
+/// [`Report`] with the reason why it cannot be opened.
 pub fn resume(shared: &Shared, setting: impl Into<Setting>) -> Result<Session, Report> {
     let mut session = Session::open(&shared.name, &shared.text, shared.files.clone(), setting)?;
     session.go_to_the_end();

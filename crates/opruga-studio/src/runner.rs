@@ -1,5 +1,5 @@
-//! The simulation behind the interface, which sends requests and receives the last picture. The simulation runs on its own thread or, in a browser,
-//! in the time that remains between pictures of the window.
+//! The simulation behind the interface. The interface sends requests to it and receives its latest picture. The simulation runs on its own thread or,
+//! in a browser, in the time that remains between pictures of the window.
 
 pub mod sliced;
 #[cfg(not(target_arch = "wasm32"))]
@@ -19,7 +19,7 @@ use std::sync::mpsc::Sender;
 use std::time::Duration;
 use web_time::Instant;
 
-/// The data to run the scene again from its start: its text, the files that it names, and the number of frames.
+/// The data that are needed to run the scene again from its start: its text, the files that it names, and the number of frames.
 #[derive(Clone, Debug)]
 pub struct Copied {
     /// Its name.
@@ -36,7 +36,7 @@ pub struct Copied {
     pub frames: u64,
     /// A fingerprint of the present text.
     pub mark: u64,
-    /// Whether anything was edited or recorded after it was opened or saved.
+    /// Whether anything was edited or recorded after the scene was opened or saved.
     pub edited: bool,
 }
 
@@ -66,7 +66,7 @@ enum Ask {
 struct Course {
     session: Session,
     begin: Instant,
-    /// The clock at the last turn.
+    /// The time on the clock at the previous turn.
     last: Duration,
 }
 
@@ -75,13 +75,13 @@ impl Course {
         Course { session, begin: Instant::now(), last: Duration::ZERO }
     }
 
-    /// Forgets the time that has passed, because nothing moved.
+    /// Forgets the time that has passed since the previous turn, because nothing moved.
     fn rest(&mut self) {
         self.last = self.begin.elapsed();
     }
 
-    /// Handles the requests, and lets the simulation advance by the time on the clock since the last turn; returns the picture, if there is a new
-    /// one.
+    /// Handles the requests, and lets the simulation advance by the time that has passed since the previous turn. Returns the picture, if there is a
+    /// new one.
     fn turn(&mut self, asks: impl IntoIterator<Item = Ask>, budget: Duration) -> Option<Shown> {
         let mut news = false;
         for ask in asks {

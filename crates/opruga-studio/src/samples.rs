@@ -15,16 +15,17 @@ pub struct Sample {
     pub frame: u64,
     /// The time [s].
     pub time: f64,
-    /// Kinetic energy, elastic energy, energy of the gas, potential energy of gravity; work, losses, numerical damping, error of the integrator [J].
+    /// Kinetic energy, elastic energy, energy of the gas, potential energy of gravity, work, losses, numerical damping, and error of the integrator
+    /// [J].
     pub energy: [f64; 8],
     /// The momentum [kg m/s].
     pub momentum: [f64; 3],
     /// The recent computing time of a frame [ms].
     pub cost: f64,
-    /// The mean and the largest distance between the sides, the distance between their centres of mass, and the differences in volume and in energy,
-    /// right minus left; NaN if the sides cannot be compared.
+    /// The mean and the largest distance between corresponding nodes of the two sides, the distance between their centres of mass, and the
+    /// differences in volume and in energy, right minus left; NaN if the sides cannot be compared.
     pub beside: Option<[f64; 5]>,
-    /// The readings of the models of bodies, by the index of the body; empty in a crowd.
+    /// The readings of the models of bodies, by the index of the body; empty if there are many bodies.
     pub readings: Vec<(usize, Arc<[Reading]>)>,
 }
 
@@ -79,7 +80,7 @@ impl Samples {
         self.bytes = self.kept.iter().map(Sample::bytes).sum();
     }
 
-    /// The samples in runs of consecutive frames; between two runs the values are unknown.
+    /// The samples, divided into runs without gaps. Between two runs the values are unknown.
     pub fn runs(&self) -> impl Iterator<Item = &[Sample]> {
         self.kept.chunk_by(|a, b| b.frame - a.frame <= self.every)
     }

@@ -1,4 +1,4 @@
-//! The setting in which a session runs its scenes.
+//! The options with which a session runs its scenes, and the models that it offers.
 
 use opruga::{Options, Registries};
 

@@ -14,17 +14,17 @@ pub struct Shape {
     pub text: String,
     /// Whether the scene is in space.
     pub space: bool,
-    /// Where its file is.
+    /// The location of its file.
     pub files: Files,
 }
 
 impl Shape {
-    /// The body, with this size [m], for a scene with other bodies in which the file has this name.
+    /// Makes the table of the body, with this size [m], for a scene with other bodies. In that scene, the file has the name `file`.
     pub fn body(&self, file: &str, size: f64) -> Option<InlineTable> {
         let document: DocumentMut = self.text.parse().ok()?;
         let mut body = document.get("body")?.as_array_of_tables()?.get(0)?.clone().into_inline_table();
         body.insert("name", self.name.as_str().into());
-        // It is placed where there is space.
+        // The session later places the body where there is space.
         body.remove("position");
         let shape = body.get_mut("shape")?.as_inline_table_mut()?;
         shape.insert("file", file.into());

@@ -1,5 +1,5 @@
-//! A whole scene in one piece: its text and the files that it names, compressed. In an address, they are letters after the `#`, which browsers do not
-//! send.
+//! A whole scene in one piece: its text and the files that it names, compressed. An address contains them as letters after its `#`. Browsers do not
+//! send this part of the address to the server.
 
 use crate::report::Report;
 use flate2::read::DeflateDecoder;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 const HEAD: &str = "scene=";
 /// The largest number of letters in an address that common browsers accept.
 pub const MOST_LETTERS: usize = 1 << 20;
-/// The largest number of bytes to which letters are unpacked.
+/// The largest number of bytes that a scene may have when it is unpacked.
 const MOST_BYTES: u64 = 64 << 20;
 
 /// A scene that an address names.
@@ -73,7 +73,8 @@ pub fn to_fragment(scene: &Shared) -> Result<String, Report> {
     Ok(format!("{HEAD}{letters}"))
 }
 
-/// The scene in the part of an address after its `#`: one that comes with the program, or a complete one; none if the part is empty.
+/// Returns the scene in the part of an address after its `#`. This part contains the name of a scene that comes with the program, or a complete
+/// scene. None if the part is empty.
 ///
 /// # Errors
 /// The scene does not exist, or the address was truncated.

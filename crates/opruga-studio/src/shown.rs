@@ -1,4 +1,4 @@
-//! The interface's view of a session: one picture and the numbers beside it, made by the thread of the simulation.
+//! The data of a session that the interface shows: one picture and the numbers beside it. The thread of the simulation makes them.
 
 use crate::differences::Difference;
 use crate::report::{Report, Step};
@@ -10,7 +10,7 @@ use opruga::draw::{BodyPicture, ColourMap, Picture};
 use opruga::pictures::Quantity;
 use std::sync::{Arc, RwLock};
 
-/// What the user wants to see.
+/// The quantities and marks that the user wants to see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Show {
     /// The quantity that the colours show.
@@ -23,9 +23,9 @@ pub struct Show {
     pub vertices: bool,
     /// Arrows of velocity.
     pub velocities: bool,
-    /// Unit normals of the surface.
+    /// Arrows of the unit normals of the surface.
     pub normals: bool,
-    /// Forces of obstacles.
+    /// Arrows of the forces of obstacles.
     pub contacts: bool,
     /// The hash of the state.
     pub hash: bool,
@@ -55,7 +55,7 @@ impl Default for Show {
 /// The energy ledger [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyShown {
-    /// ½ Σ m v².
+    /// Kinetic energy, ½ Σ m v².
     pub kinetic: f64,
     /// Elastic energy of the models.
     pub elastic: f64,
@@ -65,7 +65,7 @@ pub struct EnergyShown {
     pub gravity: f64,
     /// Work of pulls, pushes and loads.
     pub work: f64,
-    /// Damping, friction and impacts together.
+    /// The sum of the losses by damping, friction and impacts.
     pub losses: f64,
     /// The numerical dissipation of implicit integrators.
     pub numerical: f64,
@@ -80,11 +80,11 @@ pub struct BodyShown {
     pub number: usize,
     /// Its name.
     pub name: String,
-    /// The name under which the user knows it: a replaced body keeps the name of the original one.
+    /// The name under which the user knows the body. A body that replaces another one is shown under the name of the original.
     pub title: String,
     /// The number of nodes.
     pub nodes: usize,
-    /// Its models; empty in a crowd.
+    /// Its models; empty if there are many bodies.
     pub models: Vec<Values>,
     /// Its own integrator.
     pub integrator: Option<Values>,
@@ -101,23 +101,24 @@ impl EnergyShown {
     }
 }
 
-/// The same scene in another configuration, in lockstep.
+/// The right side: the same scene in another configuration, at the same frame.
 #[derive(Clone, Debug)]
 pub struct Beside {
-    /// The view of it.
+    /// The data that the interface shows of the right side.
     pub right: Arc<Shown>,
-    /// The root mean square and the largest distance between the nodes of both [m]; none if the bodies differ or the right side has stopped.
+    /// The root mean square and the largest distance between corresponding nodes of the two sides [m]; none if the bodies have different nodes or the
+    /// right side has stopped.
     pub distances: Option<[f64; 2]>,
     /// The distance between the centres of mass of both \[m\].
     pub center: Option<f64>,
-    /// The volume within its surfaces minus that of the left side \[m³\]; in the plane, the area within its outlines minus that of the left side
-    /// \[m²\].
+    /// The volume within the surfaces of the right side minus that of the left side \[m³\]; in the plane, the difference of the areas within the
+    /// outlines \[m²\].
     pub volume: Option<f64>,
-    /// Its energy minus that of the left side [J].
+    /// The energy of the right side minus that of the left side [J].
     pub energy: Option<f64>,
-    /// Its differences.
+    /// The differences of the right side.
     pub differences: Vec<Difference>,
-    /// Why it has stopped.
+    /// The reason why the right side has stopped, if it has.
     pub stopped: Option<Report>,
 }
 
@@ -155,7 +156,7 @@ pub enum Offer {
     Steady(Option<usize>, &'static str),
     /// Use this number of substeps and repeat the refused request.
     Substeps(u32),
-    /// Give a field of a body's shape this value instead of the refused one, with as many substeps as needed.
+    /// Give a field of the body's shape this value instead of the refused one, and use as many substeps as needed.
     Coarser(String, &'static str, i64),
     /// Continue after the end of a recording.
     GoOn,
@@ -176,16 +177,17 @@ pub struct Message {
     pub text: String,
     /// The offered remedy.
     pub offer: Option<Offer>,
-    /// The time of a frame with the substeps that the refused request needs [s], if it is long.
+    /// The computing time of a frame with the number of substeps that the refused request needs [s]; none if it is short.
     pub frame_seconds: Option<f64>,
 }
 
-/// The extent of a body, computed once per picture: the window needs it several times for each picture, and a crowd has tens of thousands of nodes.
+/// The extent of a body. It is computed once per picture, because the window needs it several times, and the bodies may have tens of thousands of
+/// nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
-    /// The lowest and the highest corner of the box around its nodes [m]; reversed if it has none.
+    /// The lowest and the highest corner of the box around the nodes [m]; interchanged if the body has no nodes.
     pub corners: [[f64; 3]; 2],
-    /// The least and the largest value that its colours show; reversed if no value is finite.
+    /// The smallest and the largest value that the colours show; interchanged if no value is finite.
     pub colours: [f64; 2],
 }
 
@@ -219,9 +221,9 @@ pub struct Shown {
     pub time: f64,
     /// The number of frames since the start.
     pub frames: u64,
-    /// The last frame that was computed in this run.
+    /// The number of the last frame of this run that was computed.
     pub latest: u64,
-    /// The moment up to which everything is being computed again \[s\].
+    /// The time up to which the run is being computed again \[s\]; none if it is not.
     pub goal: Option<f64>,
     /// The length of a frame [s].
     pub frame: f64,
@@ -245,11 +247,11 @@ pub struct Shown {
     pub obstacles: Vec<ObstacleShown>,
     /// The parameters of contact between bodies; none if they pass through one another.
     pub contact: Option<Values>,
-    /// Pulls: node, pointer, force [m, m, N].
+    /// The pulls: for each the position of the node, that of the pointer, and the force [m, m, N].
     pub pulls: Vec<[[f64; 3]; 3]>,
-    /// Pushes of the pointer: node, end of the arrow, force [m, m, N].
+    /// The pushes of the pointer: for each the position of the node, the end of the arrow, and the force [m, m, N].
     pub pushes: Vec<[[f64; 3]; 3]>,
-    /// Points that the user has pinned: body, node, position [m].
+    /// The points that the user has pinned: for each the body, the node and the position [m].
     pub pins: Vec<(usize, u32, [f64; 3])>,
     /// The energy ledger.
     pub energy: EnergyShown,
@@ -275,12 +277,12 @@ pub struct Shown {
     pub redo: Option<Step>,
     /// The last message.
     pub message: Option<Message>,
-    /// The number of scenes that were opened or rebuilt so far: the view is fitted once for each.
+    /// The number of scenes that were opened or rebuilt so far. The view is fitted once for each of them.
     pub opened: u64,
-    /// How often the state was replaced by a different one at once, for example by undo, a reset or the time slider: whatever was fitted to the
-    /// earlier states is then fitted again.
+    /// How often the state was suddenly replaced by a different one, for example by undo, a reset or the time slider. Everything that was fitted to
+    /// the earlier states is then fitted again.
     pub replaced: u64,
-    /// How often the user has reset the scene to its start: the view is then reset, too.
+    /// How often the user has reset the scene to its start. Each time, the view is reset, too.
     pub resets: u64,
     /// The same scene in another configuration.
     pub beside: Option<Beside>,
@@ -290,11 +292,11 @@ pub struct Shown {
     pub newest: Option<(u64, String)>,
     /// Whether bodies carry drawings with colours.
     pub has_drawings: bool,
-    /// The last frame that is as it was recorded, if a recording is viewed.
+    /// The last frame that is as it was recorded; none if no recording is viewed.
     pub recorded_until: Option<u64>,
     /// The number of commands of the user in the scene.
     pub recorded: usize,
-    /// The memory of the states to which the session can return without computing from the start [bytes].
+    /// The memory that the kept states occupy [bytes]. The session can return to these states without computing from the start.
     pub kept_bytes: usize,
 }
 

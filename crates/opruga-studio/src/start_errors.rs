@@ -13,7 +13,7 @@ opruga::math::messages! {
         /// Several scenes.
         "studio.call" #[error("{count} scenes are named")] #[allowed("at most one")]
         SeveralScenes { count: usize },
-        /// There is no screen, or no way to draw on it.
+        /// There is no screen, or the program cannot draw on it.
         "studio.no_window" #[error("no window can be opened: {reason}")]
         #[hint("`opruga run {scene}` runs without a window and writes pictures")]
         NoWindow { reason: String, scene: String },

@@ -1,20 +1,21 @@
-//! A press that ends before the next picture. If a screen draws rarely, both the press and the release arrive with the same picture, and sliders do
-//! not notice them. The release of such a press is therefore delayed until the next picture.
+//! Handles presses that end before the next picture. If a screen draws rarely, both the press and the release arrive with the same picture, and
+//! sliders do not notice them. The release of such a press is therefore delayed until the next picture.
 
 use egui::{Context, Event, Plugin, PointerButton, RawInput};
 
-/// The longest duration of a press that began and ended within one picture \[s\]: however long the picture took, the press counts as a click.
+/// The longest duration that is assumed for a press that began and ended within one picture \[s\]. The press therefore counts as a click, however
+/// long the picture took.
 const TAP: f64 = 0.125;
 
 /// The events that wait for the next picture.
 #[derive(Debug, Default)]
 pub(crate) struct Taps {
     later: Vec<Event>,
-    /// The time at which a press began if its release waits for the next picture [s].
+    /// The time at which a press began whose release waits for the next picture [s]; none if no release waits.
     pressed: Option<f64>,
 }
 
-/// The index of the first release among events whose press is among them, too.
+/// The index of the first release among the events whose press is also among them.
 fn end_of_tap(events: &[Event]) -> Option<usize> {
     let mut down: Vec<PointerButton> = Vec::new();
     events.iter().position(|event| {

@@ -8,10 +8,10 @@ use std::sync::Arc;
 /// A monospaced font for excerpts of files and for time: the characters of English and Croatian from Hack.
 const MONOSPACE: &[u8] = include_bytes!("../font/hack-subset.ttf");
 
-/// Adds the fonts of the interface to others. In a desktop window, missing characters come from the fonts of the toolkit; a browser draws them with
-/// its own, so a web page need not contain those.
+/// Adds the fonts of the interface to others. In a desktop window, missing characters come from the fonts of the toolkit. A web page need not contain
+/// these, because a browser draws missing characters with its own fonts.
 fn with_own(mut fonts: FontDefinitions) -> FontDefinitions {
-    // The font of the pictures, which has the characters of formulas and of Croatian.
+    // This font of the pictures contains the characters of formulas and of Croatian.
     fonts.font_data.insert("inter".into(), Arc::new(FontData::from_static(opruga::draw::FONT)));
     fonts.font_data.insert("hack".into(), Arc::new(FontData::from_static(MONOSPACE)));
     for (family, [first, last]) in
@@ -47,7 +47,7 @@ pub fn apply(context: &Context) {
             widget.corner_radius = CornerRadius::same(5);
         }
     });
-    // The toolkit's faint text is too faint to be read. With stronger faint text, plain text must stand out more.
+    // The toolkit draws faint text with too little contrast. If faint text gets more contrast, plain text needs more, too.
     for (theme, plain, faint) in [(Theme::Dark, 190, 154), (Theme::Light, 60, 100)] {
         context.style_mut_of(theme, |style| {
             style.visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(plain);

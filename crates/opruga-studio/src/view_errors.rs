@@ -9,7 +9,7 @@ opruga::math::messages! {
         /// A program controlled the run, and its actions are not part of the scene.
         "recording.led" #[error("a program controlled this run, and a scene file cannot express that")] #[hint("`opruga replay` shows the run")]
         Led {},
-        /// The scene is not text.
+        /// The scene in the recording is not text.
         "recording.scene" #[error("the scene inside is not UTF-8 text")]
         SceneNotUtf8 {},
         /// An override of the run has an invalid value.
@@ -18,13 +18,13 @@ opruga::math::messages! {
         /// An override of the run names nothing in the scene.
         "recording.override" #[error("`{path}` names nothing in the scene")]
         NoPath { path: String },
-        /// It contains no state.
+        /// The recording contains no state.
         "recording.no_frame" #[error("the recording contains no frame")]
         Empty {},
-        /// The scene inside and the states are inconsistent.
+        /// The scene in the recording does not lead to the recorded states.
         "recording.other_program" #[error("the scene of the recording does not produce its first state: another program recorded it")]
         OtherProgram {},
-        /// Its end is damaged.
+        /// The end of the recording is damaged.
         "recording.damaged" #[error("after frame {frame}: {cause}")]
         DamagedBehind { frame: u64, cause: RecordingError },
         /// A state cannot be read.

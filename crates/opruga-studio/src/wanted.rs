@@ -11,7 +11,7 @@ use std::path::Path;
 /// Opens what the argument names.
 ///
 /// # Errors
-/// All errors in it; if there is nothing with this name, the names that may have been meant.
+/// All errors in the file; if there is nothing with this name, an error with the names that may have been meant.
 pub fn open(wanted: &str, setting: impl Into<Setting>) -> Result<Session, Report> {
     let (path, setting) = (Path::new(wanted), setting.into());
     if let Some(text) = opruga::scenes::find(wanted).filter(|_| !path.is_file()) {

@@ -1,6 +1,6 @@
-//! A program that supervises the window. OpenGL cannot provide another device for the same window, and a driver that fails ends the program. The
-//! window is therefore a separate process, which this program starts. If the window is lost, its work is saved, the path is reported, and another
-//! window continues from there. If the program is asked to end, the work is saved and the path is reported, too.
+//! Supervises the window. OpenGL cannot provide another device for the same window, and a driver that fails ends the process. The window is therefore
+//! a separate process, which this program starts. If the window is lost, this program saves its work, reports the path, and opens another window,
+//! which continues from there. If this program is asked to end, it also saves the work and reports the path.
 
 use crate::handing::Folder;
 use crate::preferences::Store;
@@ -26,7 +26,7 @@ pub const LOST: u8 = 70;
 const MOST_LOST: usize = 3;
 const WITHIN: Duration = Duration::from_secs(60);
 
-/// The exit code of a program that was asked to end.
+/// The exit code of this program if it was asked to end.
 const ENDED: u8 = 130;
 /// The interval at which the window is checked.
 const EVERY: Duration = Duration::from_millis(30);
@@ -35,10 +35,10 @@ const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Whether Ctrl-C or a signal has asked the program to end.
 static END: AtomicBool = AtomicBool::new(false);
-/// Whether it was asked more than once. In this case the window gets no time to end by itself, but its work is saved anyway.
+/// Whether the program was asked to end more than once. The window then gets no time to end by itself, but its work is saved anyway.
 static AT_ONCE: AtomicBool = AtomicBool::new(false);
 
-/// The action after the end of a window.
+/// How a window has ended, which determines the next action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     /// It was closed, or has reported an error.
@@ -58,7 +58,7 @@ pub fn print(error: StartError) {
 /// Supervises windows that open what the arguments name.
 pub fn run(arguments: &[OsString], registries: &Registries) -> ExitCode {
     let Ok(kept) = Kept::new() else {
-        // A window without supervision is better than none.
+        // If the work cannot be saved anywhere, a window without supervision is better than none.
         return window(arguments, None, None).map_or(ExitCode::from(NO_WINDOW), |status| code(status.code()));
     };
     // If the system provides no handler, a signal ends the program as usual.
@@ -129,7 +129,7 @@ fn next(code: Option<i32>, signal: Option<i32>) -> Next {
     match (code, signal) {
         (Some(code @ (0 | 2)), _) => Next::End(code as u8),
         (Some(code), _) if code == i32::from(NO_WINDOW) => Next::End(NO_WINDOW),
-        // Hangup, interrupt, terminate: the end was requested.
+        // These signals are hangup, interrupt and terminate, which request the end.
         (None, Some(1 | 2 | 15)) => Next::Ended,
         _ => Next::Lost,
     }
@@ -149,7 +149,7 @@ fn code(code: Option<i32>) -> ExitCode {
     code.and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::from(LOST), ExitCode::from)
 }
 
-/// Runs a window until its end. The window ends with this program, because the end of this program closes the input of the window.
+/// Runs a window until its end. When this program ends, the input of the window is closed, and the window ends, too.
 fn window(arguments: &[OsString], kept: Option<&Path>, saved: Option<&str>) -> std::io::Result<ExitStatus> {
     let mut command = Command::new(std::env::current_exe()?);
     command.args(arguments).stdin(Stdio::piped()).env(KEPT, kept.map_or(OsString::new(), |path| path.into()));
@@ -162,7 +162,7 @@ fn window(arguments: &[OsString], kept: Option<&Path>, saved: Option<&str>) -> s
 
 /// Waits for the end of a window. A window that does not end when it is asked to is killed.
 fn wait(mut child: Child, end: &AtomicBool) -> std::io::Result<ExitStatus> {
-    // Waiting for the child would close its input, and thus end it.
+    // The input is taken out first, because waiting for the child would close its input and thus end it.
     let mut input = child.stdin.take();
     let mut asked: Option<Instant> = None;
     loop {
@@ -191,7 +191,7 @@ fn save(kept: &Path, registries: &Registries) -> Option<String> {
     written.ok()?.first().map(|path| path.display().to_string())
 }
 
-/// A folder that no one else can have made, with the file in it. It is removed with this value if it contains nothing else.
+/// A new folder that this process has made, for the saved work. When this value is dropped, the folder is removed if it contains nothing else.
 struct Kept(PathBuf);
 
 impl Kept {
@@ -211,7 +211,7 @@ impl Drop for Kept {
     fn drop(&mut self) {
         let _ = std::fs::remove_file(self.file());
         let _ = std::fs::remove_file(rescue::mark_of(&self.file()));
-        // Files that were being written when the window ended.
+        // Files whose writing the end of the window interrupted are removed.
         for left in std::fs::read_dir(&self.0).into_iter().flatten().flatten() {
             if left.file_name().to_string_lossy().starts_with(".kept.") {
                 let _ = std::fs::remove_file(left.path());
@@ -226,7 +226,7 @@ pub fn end_with_the_watch() {
     std::thread::spawn(|| {
         use std::io::Read as _;
         let mut rest = Vec::new();
-        // Nothing is ever sent: the input ends when the sender no longer exists.
+        // Nothing is ever sent through this input. It ends when the supervising process no longer exists.
         let _ = std::io::stdin().lock().read_to_end(&mut rest);
         std::process::exit(0);
     });
@@ -243,7 +243,7 @@ mod tests {
             (Some(0), None, Next::End(0)),
             (Some(2), None, Next::End(2)),
             (Some(5), None, Next::End(5)),
-            // The screen is gone, the program panics, a driver aborts, or a driver reads an invalid address.
+            // In these cases the screen is gone, the program panics, a driver aborts, or a driver reads an invalid address.
             (Some(1), None, Next::Lost),
             (Some(101), None, Next::Lost),
             (Some(i32::from(LOST)), None, Next::Lost),
@@ -264,7 +264,7 @@ mod tests {
         let status = wait(begun(&["true"]), &end).expect("its end");
         assert_eq!((status.code(), signal(&status)), (Some(0), None));
         end.store(true, Ordering::SeqCst);
-        // This process ends with its input, as windows do; the other one ignores its input.
+        // The first process ends with its input, as windows do. The second one ignores its input.
         let status = wait(begun(&["cat"]), &end).expect("its end");
         assert_eq!((status.code(), signal(&status)), (Some(0), None));
         let status = wait(begun(&["sleep", "600"]), &end).expect("its end");

@@ -42,7 +42,7 @@ mod threaded {
         }
     }
 
-    /// A point in long work at which the interface has its turn. It does nothing, because the work has its own thread.
+    /// A point in long work at which the interface may run. This version does nothing, because the work has its own thread.
     pub async fn breathe() {}
 }
 
@@ -53,11 +53,11 @@ mod sliced {
     use std::future::Future;
     use std::sync::mpsc::{Receiver, channel};
 
-    /// How long work continues before the interface has its turn [ms].
+    /// How long work continues before the interface may run [ms].
     const SLICE: f64 = 6.0;
 
     thread_local! {
-        /// When the present slice began [ms].
+        /// The time at which the present slice of work began [ms].
         static BEGAN: Cell<f64> = const { Cell::new(0.0) };
     }
 
@@ -70,7 +70,7 @@ mod sliced {
         receiver
     }
 
-    /// A point in long work at which the interface has its turn, if the slice is used up.
+    /// A point in long work at which the interface may run, if the present slice of time is used up.
     pub async fn breathe() {
         if browser::milliseconds() - BEGAN.get() > SLICE {
             browser::next_turn().await;

@@ -1,4 +1,4 @@
-//! Overrides of a call (`--set PATH=VALUE`) written into the text, so that the visible scene is the one that was run.
+//! Writes the overrides of a call (`--set PATH=VALUE`) into the text, so that the visible scene is the one that was run.
 
 use super::Document;
 use crate::view_errors::ViewError;
@@ -30,7 +30,7 @@ fn put(table: &mut dyn TableLike, parts: &[&str], value: Toml) -> Option<()> {
         return Some(());
     }
     let item = table.entry(head).or_insert_with(|| Item::Table(Table::new()));
-    // A single word stands for a table of its kind.
+    // A single word is short for a table with this kind.
     if let Some(kind) = item.as_str().map(String::from) {
         let mut long = toml_edit::InlineTable::new();
         long.insert("kind", kind.into());
@@ -61,7 +61,7 @@ fn put_in(array: &mut toml_edit::Array, parts: &[&str], value: Toml) -> Option<(
     put_in(array.get_mut(head.parse().ok()?)?.as_array_mut()?, rest, value)
 }
 
-/// The index of the list entry with this number, `name`, `kind` or `do`.
+/// The index of the list entry with this number, or whose field `name`, `kind` or `do` has this value.
 fn index_of<'t>(name: &str, tables: impl Iterator<Item = &'t dyn TableLike>) -> Option<usize> {
     let label = |table: &dyn TableLike| {
         ["name", "kind", "do"].into_iter().find_map(|key| table.get(key)?.as_str().map(String::from))
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
     use opruga::io::scene;
 
-    /// For every path, the text that contains the value is read in the same way as the original text with the override.
+    /// For every path, reading the text that contains the value gives the same scene as reading the original text with the override.
     #[test]
     fn a_text_with_its_overrides_is_the_scene_that_was_run() {
         let ball = opruga::scenes::find("ball").expect("it comes with the program");

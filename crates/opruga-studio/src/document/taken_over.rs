@@ -1,11 +1,12 @@
-//! Drags in a scene end when the user grabs the same body.
+//! Ends the drags that a scene contains when the user grabs the same body.
 
 use super::{Document, tables};
 use toml_edit::{Item, Table};
 
 impl Document {
-    /// Ends the drags of a body among the first `kept` commands \[s\]: active ones end now, or with the next frame if they have just begun; later
-    /// ones are removed. Returns the number of removed commands; none if there was nothing to end.
+    /// Ends the drags of a body among the first `kept` commands. Active drags end now, or with the next frame if they have just begun; later drags
+    /// are removed. `now` and `next` are the times of the present and of the next frame \[s\]. Returns the number of removed commands; none if there
+    /// was nothing to end.
     pub fn take_over(&mut self, kept: usize, body: &str, [now, next]: [f64; 2]) -> Option<usize> {
         let commands = tables(self.text.get_mut("command")?)?;
         let seconds = |table: &Table, key: &str| {
@@ -35,8 +36,8 @@ impl Document {
         (gone + ended > 0).then_some(gone)
     }
 
-    /// Removes those of the first `kept` commands that begin after a time \[s\] and act on a body that no longer exists at that time. Returns their
-    /// number.
+    /// Of the first `kept` commands, removes those that begin after a time \[s\] and act on a body that no longer exists at that time. Returns the
+    /// number of removed commands.
     pub fn forget_later(&mut self, kept: usize, body: &str, time: f64) -> usize {
         let Some(commands) = self.text.get_mut("command").and_then(tables) else { return 0 };
         let before = commands.len();

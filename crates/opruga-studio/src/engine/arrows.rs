@@ -41,7 +41,7 @@ impl Living {
         picture
     }
 
-    /// Adds the arrows that the user wants to see, and the nodes that are pinned now: pins of the scene may have been released.
+    /// Adds the arrows that the user wants to see, and marks the nodes that are pinned now, because some pins of the scene may have been released.
     pub(super) fn add_arrows(&mut self, picture: &mut opruga::draw::Picture, show: &Show) {
         let living = self.world.bodies();
         if living.len() > MOST_WITH_ARROWS {

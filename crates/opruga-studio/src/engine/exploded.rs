@@ -1,14 +1,14 @@
-//! Bodies that have grown beyond all proportions. They can no longer be seen long before their positions lose digits.
+//! Detects bodies that have grown to many times their size. Such a body can no longer be seen long before its positions lose digits.
 
 use super::Living;
 use crate::exploded::Exploded;
 use opruga::{AnyBody, AnyWorld};
 
-/// A body has exploded if it is larger than this multiple of the scene [1]. A body that the user pulls, or that gas inflates, reaches a few times its
-/// size. A body that is torn apart by too long a step grows by a factor in every substep, so the limit determines when this is detected, not whether.
+/// A body has exploded if it is larger than the scene by more than this factor [1]. A body that the user pulls, or that gas inflates, reaches a few
+/// times its size. A body whose step is too long grows by a factor in every substep, so the limit affects only how soon this is detected.
 const LARGEST: f64 = 100.0;
 
-/// The world's codes for too long a step, or for an integrator without a stable one.
+/// The codes of the world's warnings about a step that is too long, or about an integrator without a stable step.
 const STEPS: [&str; 3] = ["step.unstable", "step.no_stable_step", "step.outgrown"];
 
 /// The longest side of the box around points [m]; 0 where there are none.
@@ -35,7 +35,8 @@ impl Living {
             if size <= LARGEST * self.size {
                 return false;
             }
-            // A body that is added later may be larger than everything at the start; a body of zero size cannot be measured.
+            // A body that is added later may be larger than everything at the start, so its own size counts as well. A body of zero size cannot be
+            // measured.
             let at_rest = self.world.scene().body(*body).map_or_else(Vec::new, AnyBody::rest_positions);
             let at_rest = longest_side(at_rest.into_iter());
             let scene = self.size.max(at_rest);

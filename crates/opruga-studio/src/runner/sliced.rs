@@ -1,5 +1,5 @@
-//! The simulation without threads, in the time that remains between pictures of the window. It has a turn before every picture. Longer frames slow
-//! simulated time down; the status line shows by how much.
+//! The simulation without threads. It runs before every picture of the window, for a limited time. If its frames take longer, simulated time slows
+//! down, and the status line shows by how much.
 
 use super::{Ask, Copied, Course};
 use crate::session::{Request, Session};
@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// How long frames are computed in a turn. At sixty pictures per second, this leaves the same time for the interface.
+/// How long frames are computed before a picture. At sixty pictures per second, this leaves the same time for the interface.
 const BUDGET: Duration = Duration::from_millis(8);
 
 /// The simulation and its last picture.
@@ -34,7 +34,7 @@ impl Link {
     /// Takes over a session; `wake` is called whenever a new picture of the window is needed.
     ///
     /// # Errors
-    /// There are none. On systems with threads, the system may refuse to start a thread.
+    /// There are none. (With threads, this function returns an error if the system refuses to start one.)
     pub fn start(mut session: Session, wake: impl Fn() + 'static) -> std::io::Result<Link> {
         let last = Arc::new(session.shown());
         let inner = Inner { course: Course::new(session), asks: Vec::new(), last };
@@ -46,7 +46,7 @@ impl Link {
         self.wake = Box::new(wake);
     }
 
-    /// How long the simulation has been busy. Without threads this is always none, because the window waits for it.
+    /// How long the simulation has been busy. Without threads this is always none, because the window waits while the simulation runs.
     pub fn busy(&self) -> Option<Duration> {
         None
     }

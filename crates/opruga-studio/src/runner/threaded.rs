@@ -15,7 +15,7 @@ const PATIENCE: Duration = Duration::from_millis(250);
 /// How long the thread sleeps while the simulation plays and no frame is due.
 const NAP: Duration = Duration::from_millis(3);
 
-/// The interface's end of the connection to the thread. When it is dropped, the thread ends.
+/// The connection of the interface to the thread. The thread ends when this value is dropped.
 pub struct Link {
     asks: Sender<Ask>,
     last: Arc<Mutex<Arc<Shown>>>,
@@ -25,8 +25,8 @@ pub struct Link {
     break_off: Arc<BreakOff>,
 }
 
-/// Pictures that the thread has made and that may still be in use. The thread frees them after their last use, because freeing the data of a thousand
-/// bodies would take the interface a millisecond.
+/// Pictures that the thread has made and that may still be in use. The thread frees them after their last use. The interface would need a millisecond
+/// to free the data of a thousand bodies.
 #[derive(Default)]
 struct Old(Vec<Arc<Shown>>);
 
@@ -82,7 +82,7 @@ impl Link {
     }
 
     fn break_a_long_frame_off(&self) {
-        // The thread resets this when it receives the next request.
+        // The thread resets this flag when it receives the next request.
         if self.busy().is_some_and(|busy| busy > PATIENCE) {
             self.break_off.ask(true);
         }
