@@ -8,11 +8,11 @@ use crate::shown::Shown;
 use egui::Ui;
 use std::time::Duration;
 
-/// How long a shape waits for the position of the pointer \[s\]. When a file is dragged over a window, systems report the position of the pointer
-/// only after the file has been dropped.
+/// How long a shape waits for the position of the pointer \[s\]. While a file is dragged over a window, systems do not report the position of the
+/// pointer; they report it only after the file was dropped.
 const PATIENCE: f64 = 0.3;
 
-/// Shapes that wait for the position of the pointer, and since when \[s\].
+/// Shapes that wait for the position of the pointer, each with the time since which it waits \[s\].
 pub(super) type Waiting = Vec<(Shape, f64)>;
 
 impl Studio {
@@ -26,7 +26,7 @@ impl Studio {
                 Arrived::Message(severity, report) => self.keeping.report(severity, report),
             }
         }
-        // The body is small enough that other things remain visible.
+        // The body is made small enough that the rest of the scene remains visible.
         let size = opruga::draw::nice_length(0.3 * self.canvas.shorter_side(shown));
         let at = self.canvas.landing(shown, pointer);
         for (shape, since) in std::mem::take(&mut self.landing) {

@@ -1,4 +1,4 @@
-//! Closing the window by its button or by Alt-F4: if there is unsaved work, the user is asked first.
+//! Closes the window when the user presses its button or Alt-F4. If there is unsaved work, the user is asked first.
 
 use super::Studio;
 use crate::panels::keeping::What;
@@ -6,8 +6,8 @@ use crate::shown::Shown;
 use egui::{Id, Modal, Ui, ViewportCommand};
 use std::time::Duration;
 
-/// How long the window waits for the simulation to report whether there is unsaved work. If it does not answer, the window assumes that there is,
-/// because a frame that takes longer belongs to a large scene.
+/// How long the window waits for the simulation to report whether there is unsaved work. If the simulation does not answer in time, it is computing a
+/// long frame of a large scene, and the window assumes that there is unsaved work.
 const PATIENCE: Duration = Duration::from_millis(300);
 
 /// The state of closing the window.
@@ -16,7 +16,7 @@ pub(super) enum Closing {
     /// It has not been requested.
     #[default]
     No,
-    /// The user is being asked; `fresh` is set for the first picture of the question.
+    /// The user is being asked. `fresh` is set for the first picture that shows the question.
     Asking { fresh: bool },
     /// The scene is being saved; after that the window closes.
     Saving,
@@ -64,11 +64,11 @@ impl Studio {
             },
             Closing::Saving if !self.keeping.is_saving() => match self.keeping.saved() {
                 Some(files) => {
-                    // The window closes before anyone could read this report in it.
+                    // The report is also printed, because the window closes before anyone can read the report in it.
                     eprintln!("saved: {}", files.join(", "));
                     self.close_now(ui);
                 }
-                // The reason is shown over the scene.
+                // The scene was not saved; the reason is shown over the scene.
                 None => self.closing = Closing::No,
             },
             Closing::Saving => ui.ctx().request_repaint_after(Duration::from_millis(50)),

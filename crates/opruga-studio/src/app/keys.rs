@@ -12,7 +12,7 @@ impl Studio {
         if ui.ctx().text_edit_focused() {
             return;
         }
-        // A slider or a button that has the focus uses keys itself, but no keys with Ctrl.
+        // A slider or a button that has the focus uses some keys itself, but none together with Ctrl.
         let focused = ui.ctx().memory(|m| m.focused().is_some());
         let pressed = |modifiers: Modifiers, key: Key| {
             (modifiers.command || !focused) && ui.input_mut(|i| i.consume_key(modifiers, key))
@@ -54,7 +54,7 @@ impl Studio {
             }
         }
         // The space bar starts and stops time when it is released, unless the pointer has moved the view in the meantime. If the space bar is
-        // released before the pointer, this is remembered until it is pressed again.
+        // released before the pointer, the canvas remembers the movement until the space bar is pressed again.
         let anew = |event: &egui::Event| {
             matches!(event, egui::Event::Key { key: Key::Space, pressed: true, repeat: false, .. })
         };

@@ -1,4 +1,4 @@
-//! The last message, over the scene.
+//! Shows the latest message over the scene.
 
 use super::Studio;
 use crate::report::Step;
@@ -10,7 +10,7 @@ use egui::{
 };
 use opruga::draw::format_value;
 
-/// How long a notice stays on the screen, and the additional time `TO_READ` for every letter after the first sixty [s].
+/// How long a notice stays on the screen [s]. `TO_READ` is the additional time for every letter after the first sixty [s].
 const SHOWN_FOR: f64 = 6.0;
 const TO_READ: f64 = 0.05;
 
@@ -24,13 +24,13 @@ const PIVOTS: [Align2; 6] = [
     Align2::RIGHT_TOP,
 ];
 
-/// The number of heights that are tried if each of these positions hides something.
+/// The number of heights that are tried if each position in `PIVOTS` hides something.
 const HEIGHTS: u8 = 32;
 
 /// The widths of a message that are tried, as fractions of the largest.
 const WIDTHS: [f32; 3] = [1.0, 0.6, 0.4];
 
-/// The position of a message in the free area: the side at which it is anchored, how far down it is [0 … 1], and its largest width.
+/// The position of a message in the free area: the side at which it is anchored, its height from 0 (top) to 1 (bottom), and its largest width.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Placement {
     pivot: Align2,
@@ -56,7 +56,7 @@ impl Placement {
     }
 }
 
-/// The source of a message, in the order of priority if several occur at once.
+/// The source of a message. If several sources have a new message at once, the message of the last of them is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Speaker {
     /// The session, about the scene.
@@ -81,12 +81,12 @@ impl Default for Heard {
 }
 
 impl Heard {
-    /// Returns the last source among those that have a message now.
+    /// Of the sources that have a message now, returns the one whose message came last.
     fn last(&mut self, now: [Option<u64>; 3]) -> Option<Speaker> {
         for speaker in [Speaker::Session, Speaker::Window, Speaker::Pen] {
             let index = speaker as usize;
             if now[index].is_some() && now[index] != self.numbers[index] {
-                // This source moves to the end; the others keep their order.
+                // This source moves to the end of the order, and the others keep their order.
                 self.order.sort_by_key(|other| *other == speaker);
             }
         }
@@ -135,7 +135,7 @@ impl Studio {
         let of_window = self.keeping.message().map(|_| self.keeping.message_count());
         let now = [message.map(|message| message.number), of_window, pen.map(|_| 0)];
         let Some(speaker) = self.heard.last(now) else { return };
-        // A notice that is still shown when another message appears is dropped.
+        // When another message appears, a notice that is still shown is dropped.
         let is_notice = |severity: Severity, offer: bool| severity == Severity::Done && !offer;
         if speaker != Speaker::Session
             && let Some(message) = message.filter(|message| is_notice(message.severity, message.offer.is_some()))
@@ -166,7 +166,7 @@ impl Studio {
         let heard = format!("{speaker:?} {:?}: {}", now[speaker as usize], spoken.text);
         let time = ui.input(|i| i.time);
         if self.last_message.0 != heard {
-            // Although bodies move, the message stays at its first position.
+            // The placement is computed only once, so the message stays at its position although bodies move.
             let placement = self.least_hiding(&spoken.text, ui, free, rect.width(), shown);
             self.last_message = (heard, time, placement);
         }
@@ -188,13 +188,13 @@ impl Studio {
             - match &shown.beside {
                 None => 40.0,
                 Some(_) if rect.width() >= rect.height() => 66.0,
-                // If the scenes are one above the other, the lower one has nothing at its lower border.
+                // If the scenes are one above the other, there is nothing at the lower border of the lower one.
                 Some(_) => 8.0,
             };
         Rect::from_min_max(Pos2::new(rect.left() + 8.0, high), Pos2::new(rect.right() - 8.0, low.max(high)))
     }
 
-    /// The placement of a text that hides as little of the bodies as possible. The text may be broken into more lines for this.
+    /// Returns the placement at which a text hides as little of the bodies as possible. To achieve this, the text may be broken into more lines.
     fn least_hiding(&self, text: &str, ui: &Ui, free: Rect, width: f32, shown: &Shown) -> Placement {
         let covered = self.canvas.covered(shown);
         let widest = (width - 120.0).clamp(120.0, 620.0);
@@ -254,7 +254,7 @@ impl Studio {
         }
     }
 
-    /// Forgets the message of a source, which has been read or was shown for long enough.
+    /// Forgets the message of a source, because it was read or was shown for long enough.
     fn forget(&mut self, speaker: Speaker, number: Option<u64>) {
         match speaker {
             Speaker::Session => self.closed = number.unwrap_or(self.closed),
@@ -269,14 +269,14 @@ fn edge(refused: bool) -> Color32 {
     if refused { Color32::from_rgb(214, 80, 60) } else { Color32::from_rgb(60, 140, 110) }
 }
 
-/// The placement of a message of this size that hides as little as possible, and the hidden area [square points].
+/// Returns the placement at which a message of this size hides as little as possible, and the hidden area [square points].
 fn placement(free: Rect, size: Vec2, covered: &[Rect]) -> (f32, Placement) {
     let hidden = |placement: &Placement| {
         let rect = placement.pivot.anchor_size(placement.point(free), size).intersect(free);
         let over = |other: &Rect| Some(other.intersect(rect)).filter(Rect::is_positive).map_or(0.0, |both| both.area());
         covered.iter().map(over).sum::<f32>()
     };
-    // Separate bodies leave free strips between them.
+    // Positions between the borders are tried, too, because there may be free strips between bodies.
     let most = (1.0 - size.y / free.height().max(1.0)).max(0.0);
     let heights = (1..HEIGHTS).map(|k| f32::from(k) / f32::from(HEIGHTS) * most);
     let between = heights.flat_map(|down| {
@@ -290,7 +290,7 @@ fn placement(free: Rect, size: Vec2, covered: &[Rect]) -> (f32, Placement) {
 /// Units that follow numbers in messages.
 const UNITS: [&str; 12] = ["s", "ms", "m", "kg", "N", "J", "Pa", "Hz", "%", "rad/s", "m/s", "N/m"];
 
-/// Keeps parts that belong together on one line: a symbol, its equals sign and its number; a number and its unit.
+/// Makes parts of a text stay on one line if they belong together: a symbol, its equals sign and its number, and a number and its unit.
 fn unbroken(text: &str) -> String {
     let mut whole = String::with_capacity(text.len() + 8);
     let mut last = "";

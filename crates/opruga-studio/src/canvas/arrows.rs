@@ -1,4 +1,5 @@
-//! Arrows over a scene in the plane, and the legend of the arrows in both dimensions, which shows an arrow for a round value.
+//! Draws the arrows over a scene in the plane, and the legend of the arrows in both dimensions. The legend shows an arrow with a round value for each
+//! kind.
 
 use super::camera::Flat;
 use super::look::{Look, Paper, colour, on_paper};
@@ -8,11 +9,11 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2};
 use opruga::draw::{ArrowKind, arrow_colour, arrow_unit, format_value, nice_length};
 use std::collections::BTreeMap;
 
-/// The length of the longest arrow of each kind, and of unit normals, in the plane [points].
+/// The length of the longest arrow of each kind in the plane [points]. `LONG_NORMAL` is the length of unit normals [points].
 const LONG: f64 = 60.0;
 const LONG_NORMAL: f64 = 18.0;
 
-/// The longest arrow of every kind that is drawn. It grows at once and shrinks slowly, so that the scale can be read.
+/// The largest magnitude among the arrows of every visible kind. It grows at once and shrinks slowly, so that the scale can be read.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Longest(pub(crate) BTreeMap<ArrowKind, f64>);
 
@@ -32,13 +33,13 @@ impl Longest {
         self.0 = now;
     }
 
-    /// The longest arrow of a kind; none if it is zero.
+    /// The largest magnitude of a kind; none if it is zero.
     fn of(&self, kind: ArrowKind) -> Option<f64> {
         self.0.get(&kind).copied().filter(|longest| *longest > 0.0)
     }
 }
 
-/// The colour of a kind of arrow: that of the pictures of the command line, adjusted to be visible on the paper.
+/// The colour of a kind of arrow: the same as in pictures of the command line, but adjusted to be visible on the background.
 fn ink(kind: ArrowKind, paper: &Paper) -> Color32 {
     match kind {
         ArrowKind::Force => paper.ink,
@@ -46,7 +47,7 @@ fn ink(kind: ArrowKind, paper: &Paper) -> Color32 {
     }
 }
 
-/// The longest arrow of a kind in the plane [points].
+/// The length of the longest arrow of a kind in the plane [points].
 fn long(kind: ArrowKind) -> f64 {
     if kind == ArrowKind::Normal { LONG_NORMAL } else { LONG }
 }
@@ -82,15 +83,15 @@ fn entry(look: &Look<'_>, kind: ArrowKind, most: f64, points: f64, words: Langua
     if kind == ArrowKind::Normal {
         return Some((points as f32, name.into()));
     }
-    // If the view is zoomed in, arrows could fill the whole window.
+    // The value is limited, because an arrow could fill the whole window when the view is zoomed in.
     let value = nice_length(most * (0.3 * f64::from(look.rect.width()) / points).min(1.0));
     let unit = arrow_unit(kind, &look.shown.picture.length_unit);
     Some(((points * value / most) as f32, format!("{name} {} {unit}", format_value(value))))
 }
 
-/// Draws the legend of the arrows above the scale bar: for every visible kind, an arrow with a round value. In space, arrows have the length that
-/// they would have at the point in the centre of the view; `points_of` is the length of the longest arrow at that point, in points of the screen.
-/// Returns the rectangles of the rows.
+/// Draws the legend of the arrows above the scale bar: for every visible kind, an arrow with a round value. In space, the arrows of the legend have
+/// the length that they would have at the centre of the view; `points_of` is the length of the longest arrow there, in points of the screen. Returns
+/// the rectangles of the rows.
 pub(super) fn key(look: &Look<'_>, longest: &Longest, points_of: Option<f64>, words: Language) -> Vec<Rect> {
     let Look { painter, rect, paper, shown, .. } = *look;
     let base = rect.bottom()
@@ -139,7 +140,7 @@ mod tests {
         assert_eq!(longest.of(ArrowKind::Velocity), Some(5.0));
         longest.follow(&seen(1.0));
         assert!(longest.of(ArrowKind::Velocity).is_some_and(|long| (4.0..5.0).contains(&long)));
-        // A scene at rest has no scale, and a kind that is no longer visible loses its scale.
+        // A scene at rest has no scale for its arrows, and a kind that is no longer visible loses its scale.
         longest.follow(&seen(0.0));
         assert_eq!(longest.of(ArrowKind::Velocity), None);
         longest.follow(&seen(5.0));

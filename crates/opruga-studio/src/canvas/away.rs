@@ -6,7 +6,7 @@ use crate::shown::Shown;
 use crate::words::Language;
 use egui::{Align2, Button, Color32, Id, Order, Pos2, Rect, RichText, Stroke, Ui, Vec2};
 
-/// The distance from the border of the free area to the tip of the arrow, and the length of the arrow [points].
+/// The distance from the border of the free area to the tip of the arrow [points]. `ARROW` is the length of the arrow [points].
 const BORDER: f32 = 8.0;
 const ARROW: f32 = 26.0;
 
@@ -26,8 +26,8 @@ impl Canvas {
         offsets.min_by(|a, b| a.length_sq().total_cmp(&b.length_sq()))
     }
 
-    /// The offset on the screen from its centre to a point. In space it is measured perpendicular to the line of sight, because a point may be behind
-    /// the camera.
+    /// The offset on the screen from the centre of the view to a point. In space it is measured perpendicular to the line of sight, because a point
+    /// may be behind the camera.
     fn offset_to(&self, shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Vec2> {
         if shown.dimension != 3 {
             return Some(self.flat.to_screen(rect, point, shown.picture.y_down) - rect.center());
@@ -41,7 +41,7 @@ impl Canvas {
     /// Shows an arrow at the border if no body is in sight, and a button that shows all bodies again.
     pub(super) fn point_to_bodies(&mut self, ui: &Ui, shown: &Shown, legend: Option<Rect>, language: Language) {
         let (Some(offset), Some(rect)) = (self.away(shown), self.rect) else { return };
-        // A file that is being dragged over the window has a hint of its own.
+        // While a file is dragged over the window, another hint is shown.
         if !ui.input(|i| i.raw.hovered_files.is_empty()) {
             return;
         }
@@ -51,7 +51,7 @@ impl Canvas {
             ui.painter().layout_no_wrap(language.away().into(), egui::FontId::proportional(15.0), Color32::WHITE);
         let size = galley.size() + Vec2::new(22.0, 12.0);
         let mut free = Rect::from_min_max(Pos2::new(rect.left(), high), rect.max - Vec2::new(0.0, 32.0)).shrink(BORDER);
-        // Next to the legend, if there is space.
+        // The hint is next to the legend, if there is space.
         if let Some(legend) = legend.filter(|legend| legend.left() - free.left() > size.x + 2.0 * ARROW + 8.0) {
             free.max.x = legend.left() - 4.0;
         }
@@ -71,7 +71,7 @@ impl Canvas {
     }
 }
 
-/// The tip of the arrow at the border of the free area, and the centre of a bubble of this size behind it.
+/// Returns the tip of the arrow, which is at the border of the free area, and the centre of a bubble of this size behind the arrow.
 fn tip_and_middle(free: Rect, offset: Vec2, size: Vec2) -> (Pos2, Pos2) {
     let ahead = if offset.length_sq() > 0.0 { offset.normalized() } else { Vec2::DOWN };
     let far = |half: Vec2| {
@@ -80,7 +80,7 @@ fn tip_and_middle(free: Rect, offset: Vec2, size: Vec2) -> (Pos2, Pos2) {
     };
     let half_free = 0.5 * free.size().max(Vec2::ZERO);
     let tip = free.center() + far(half_free) * ahead;
-    // The arrow is between the bubble and the border, beside the bubble or above or below it.
+    // The arrow is between the bubble and the border of the area.
     let back = 0.5 * size + Vec2::splat(ARROW + 2.0);
     let sideways = (ahead.x / half_free.x.max(1.0)).abs() > (ahead.y / half_free.y.max(1.0)).abs();
     let back =
@@ -130,7 +130,7 @@ mod tests {
         assert_eq!(canvas.away(&shown(&[])), None, "there is none");
         let offset = canvas.away(&shown(&[90.0, -40.0])).expect("they are out of sight");
         assert!(offset.x < 0.0 && offset.y.abs() < 0.1 * offset.x.abs(), "the nearest one: {offset:?}");
-        // If the camera is closer to the body than the size of the body, the body contains the whole screen.
+        // If the camera is very close to the body, the body covers the whole screen.
         let mut near = Canvas { rect: Some(rect), ..Default::default() };
         near.flat.zoom(1e4, rect, rect.center() + Vec2::new(50.0, -50.0), false);
         assert_eq!(near.away(&shown(&[0.0])), None);

@@ -1,29 +1,29 @@
-//! Bodies as triangles, written directly to one mesh. The interface only has to copy them, and the arrays are reused from picture to picture.
+//! Writes bodies as triangles directly into one mesh. The interface only has to copy this mesh, and its arrays are reused from picture to picture.
 
 use super::detail::Detail;
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Painter, Pos2, Rect, Shape, Vec2};
 use std::sync::Arc;
 
-/// Points of a line that are closer together than this are merged [points of the screen]. If borders are hard, as in a crowd, `JOINED_HARD` applies.
+/// Points of a line that are closer together than this are merged [points of the screen]. `JOINED_HARD` applies if borders are hard, as they are with
+/// many bodies.
 const JOINED: f32 = 0.4;
 const JOINED_HARD: f32 = 1.5;
-/// A line with more points than this is searched for straight pieces; `BESIDE`, or `BESIDE_HARD` with hard borders, is the largest deviation of its
-/// points from them [points of the screen].
+/// A line with more points than this is searched for straight pieces. `BESIDE` is the largest deviation of points from a straight piece, and
+/// `BESIDE_HARD` is this deviation for hard borders [points of the screen].
 const LONG: usize = 256;
 const BESIDE: f32 = 0.1;
 const BESIDE_HARD: f32 = 0.4;
-/// The largest difference of colours within such a piece, of 255.
+/// The largest difference of colours within a straight piece, on a scale of 255.
 const ALIKE: u8 = 6;
-/// The largest extent of a corner, as a multiple of half the width.
+/// The largest distance to which a corner of a line protrudes, as a multiple of half the width of the line.
 const MOST_MITRE: f32 = 2.0;
 
 fn vertex(pos: Pos2, color: Color32) -> Vertex {
     Vertex { pos, uv: WHITE_UV, color }
 }
 
-/// The direction of a vector on the screen. Coordinates are at most some thousands, so differences are neither so large nor so small that a square
-/// would overflow or underflow.
+/// The direction of a vector on the screen. Coordinates are limited, so the square of a length neither overflows nor underflows.
 fn unit(vector: Vec2) -> Vec2 {
     let long = vector.length_sq().sqrt();
     if long > 0.0 { vector / long } else { Vec2::ZERO }
@@ -38,14 +38,14 @@ pub(crate) struct Brush {
     soft: f32,
     /// The visible area.
     screen: Option<Rect>,
-    /// The points of a line that are distinct on the screen.
+    /// Workspace: the points of a line that are distinct on the screen.
     line: Vec<(Pos2, Color32)>,
-    /// The points among them that are needed.
+    /// Workspace: the indices of those points that are needed.
     kept: Vec<u32>,
 }
 
 impl Brush {
-    /// Begins a picture with borders of this softness, of which `screen` is visible.
+    /// Begins a picture whose borders are `soft` points wide. Only the area `screen` is visible.
     pub(crate) fn begin(&mut self, soft: f32, screen: Rect) {
         self.screen = Some(screen);
         // The last mesh is no longer needed, so its arrays are reused.
@@ -77,7 +77,7 @@ impl Brush {
         triangles.iter().for_each(|[a, b, c]| self.mesh.indices.extend([first + a, first + b, first + c]));
     }
 
-    /// Adds a band of triangles with four corners (with hard borders two) at every point of a line: from the point with the index `from` to `to`.
+    /// Adds the triangles between the points of a line with the indices `from` and `to`. Every point has four corners, or two if borders are hard.
     fn band(&mut self, first: u32, from: u32, to: u32) {
         let rows = if self.soft > 0.0 { 4 } else { 2 };
         for row in 0..rows - 1 {
@@ -86,7 +86,7 @@ impl Brush {
         }
     }
 
-    /// Adds the corners at a point of a line, on both sides of it. The length of `side` is the factor by which the width is stretched at this point.
+    /// Adds the corners on both sides of a point of a line. The length of `side` is the factor by which the width is stretched at this point.
     fn across(&mut self, at: Pos2, side: Vec2, width: f32, color: Color32) {
         let half = 0.5 * width;
         if self.soft > 0.0 {
@@ -104,7 +104,7 @@ impl Brush {
         }
     }
 
-    /// Adds a straight line whose colour changes from one to the other.
+    /// Adds a straight line whose colour changes from `a` to `b`.
     pub(crate) fn line(&mut self, [from, to]: [Pos2; 2], width: f32, [a, b]: [Color32; 2]) {
         let vector = to - from;
         let long = vector.length();
@@ -144,7 +144,7 @@ impl Brush {
         }
         match line[..] {
             [] => {}
-            // The line is so far away that it is only a point.
+            // The line is so small on the screen that it is only a point.
             [(at, color)] => self.disc(at, 0.5 * width, color),
             _ => self.around(&line, width),
         }
@@ -162,7 +162,7 @@ impl Brush {
         let next = line[1..].iter().chain([&line[0]]);
         for ((at, color), (next, _)) in line.iter().zip(next) {
             let after = direction(*at, *next);
-            // The side is perpendicular to the bisector of both directions, with a length that keeps the width of the band.
+            // The corners are along the bisector of the angle between both edges. Their distance keeps the width of the band.
             let sum = Vec2::new(-before.y - after.y, before.x + after.x);
             let square = sum.length_sq();
             let side = if square > 4.0 / (MOST_MITRE * MOST_MITRE) {
@@ -206,7 +206,7 @@ impl Brush {
 mod tests {
     use super::*;
 
-    /// The area of the triangles of a mesh, except those that are completely transparent, and the box around them.
+    /// The total area of the triangles of a mesh, without those that are completely transparent.
     fn covered(mesh: &Mesh) -> f32 {
         let corner = |k: &u32| mesh.vertices[*k as usize].pos;
         let triangles = mesh.indices.chunks_exact(3).map(|t| [corner(&t[0]), corner(&t[1]), corner(&t[2])]);

@@ -1,4 +1,4 @@
-//! The view of a scene in the plane in the window.
+//! The view of a scene in the plane.
 
 use crate::shown::Shown;
 use egui::{Pos2, Rect, Vec2};
@@ -6,7 +6,7 @@ use opruga::draw::View;
 
 /// The margin around a scene [points].
 const BORDER: f32 = 36.0;
-/// The height of the tools above it, assumed before they have been drawn [points].
+/// The height of the tools above a scene that is assumed before they were drawn [points].
 const TOOLS: f32 = 50.0;
 
 /// The point at the centre and the scale.
@@ -40,8 +40,8 @@ impl Flat {
         self.center = [view.center()[0], view.center()[1] + up * f64::from(tools - self.foot) / self.scale];
     }
 
-    /// Widens a view that the user has not moved if a body in the plane leaves it, on each side by at most twice the size of the first view. Beyond
-    /// that, the view follows the bodies if they fit into it. Returns whether the view changed.
+    /// Widens a view in the plane if a body leaves it and the user has not moved the view. Each side moves by at most twice the size of the first
+    /// view. If bodies go farther, the view keeps its size and follows them if they fit into it. Returns whether the view changed.
     pub(crate) fn widen(&self, view: &mut View, first: &[[f64; 3]; 2], shown: &Shown, rect: Rect) -> bool {
         if shown.dimension != 2 {
             return false;
@@ -53,7 +53,7 @@ impl Flat {
                 (*low, *high) = (low.min(lowest[d]), high.max(highest[d]));
             }
         }
-        // The scene beside it is shown, too, as far as the view may widen and unless the view follows bodies.
+        // The view also includes the scene beside this one, as far as it may widen, unless it follows bodies.
         let limits = [0, 1].map(|d| {
             let most = 2.0 * (first[1][d] - first[0][d]);
             [first[0][d] - most, first[1][d] + most]
@@ -74,7 +74,7 @@ impl Flat {
             let seen = [corners[0][d].min(corners[1][d]), corners[0][d].max(corners[1][d])];
             let edge = 0.02 * (seen[1] - seen[0]);
             if low < first[0][d] - most || high > first[1][d] + most {
-                // If bodies are far away from everything, the view keeps its size and follows them.
+                // If bodies are farther away than the view may widen, the view keeps its size and follows them.
                 let over = [seen[0] + edge - low, high - seen[1] + edge];
                 if high - low + 2.0 * edge < seen[1] - seen[0] && over.iter().any(|over| *over > 0.0) {
                     let shift = if over[1] > 0.0 { over[1] } else { -over[0] };
@@ -94,7 +94,7 @@ impl Flat {
                 view.high[d] += above;
                 wider = true;
             }
-            // If the view has followed bodies that are now back, the part without them is dropped.
+            // If the view has followed bodies that have now returned, the part of the view that they have left is dropped.
             let widest = first[1][d] - first[0][d] + 2.0 * most;
             if wider && view.high[d] - view.low[d] > widest {
                 if above > 0.0 {
@@ -111,7 +111,7 @@ impl Flat {
         let sign = if y_down { 1.0 } else { -1.0 };
         let x = self.scale * (point[0] - self.center[0]);
         let y = sign * self.scale * (point[1] - self.center[1]);
-        // Nothing far outside is visible, and the painter cannot handle larger numbers or NaN.
+        // Points far outside are not visible, and the painter cannot handle very large numbers or NaN.
         let sane = |x: f64| if x.is_nan() { 1e5 } else { x.clamp(-1e5, 1e5) } as f32;
         rect.center() + Vec2::new(sane(x), sane(y))
     }
@@ -148,7 +148,7 @@ impl Flat {
     }
 }
 
-/// A view that includes the floors and walls that bodies may reach, because bodies are often far above them at the start.
+/// Extends a view to the floors and walls that bodies may reach, because bodies are often far above them at the start.
 pub(super) fn with_floors(mut view: View, shown: &Shown) -> View {
     let center = view.center();
     let size = view.extent();
@@ -157,7 +157,7 @@ pub(super) fn with_floors(mut view: View, shown: &Shown) -> View {
         let long = normal.iter().map(|n| n * n).sum::<f64>();
         let height = (0..3).map(|d| normal[d] * (center[d] - point[d])).sum::<f64>() / long.max(1e-300);
         let foot = [0, 1, 2].map(|d| center[d] - height * normal[d]);
-        // With a distant floor, everything would look small.
+        // A distant floor is not included, because everything would then look small.
         if foot.iter().zip(&center).all(|(a, b)| (a - b).abs() < 8.0 * size) {
             for d in 0..3 {
                 view.low[d] = view.low[d].min(foot[d] - 0.05 * size);
@@ -171,7 +171,7 @@ pub(super) fn with_floors(mut view: View, shown: &Shown) -> View {
     view
 }
 
-/// The areas of the scene and of the one beside it: next to each other, or one above the other in a tall window.
+/// The areas of the scene and of the one beside it. They are next to each other or, in a tall window, one above the other.
 pub(super) fn halves(whole: Rect, two: bool) -> (Rect, Option<Rect>) {
     if !two {
         return (whole, None);
@@ -215,7 +215,7 @@ mod tests {
             assert!(rect.contains(right), "{x} {right:?}");
         }
         assert!(view.high[0] - view.low[0] < 4.0, "it grows for ever: {:?}", view.high);
-        // Back at the start, the view is as wide as before.
+        // When the bodies are back at the start, the view is as wide as before.
         for _ in 0..3 {
             if flat.widen(&mut view, &first, &shown(0.0), rect) {
                 flat.fit(&view, rect, None);
@@ -228,7 +228,7 @@ mod tests {
         apart.picture.bodies = vec![ball(-40.0), ball(40.0)];
         apart.extents = apart.picture.bodies.iter().map(Extent::of).collect();
         assert!(!flat.widen(&mut view, &first, &apart, rect));
-        // The scene beside it is shown, too, as far as there is space for both.
+        // The view also includes the scene beside this one, as far as both fit into it.
         let mut both = shown(0.0);
         for (x, there) in [(1.5, true), (40.0, false)] {
             let right = std::sync::Arc::new(shown(x));

@@ -11,12 +11,12 @@ use std::sync::Arc;
 pub(super) struct Captions(Vec<(Rect, Arc<Galley>, Color32)>);
 
 impl Captions {
-    /// The height below a scene for captions and, above them, for the names of the lowest bodies [points]: if the scenes are next to each other, and
-    /// if one is above the other.
+    /// The height that is left free below a scene for captions and, above the captions, for the names of the lowest bodies [points]. The first number
+    /// is for scenes next to each other, the second for scenes one above the other.
     pub(super) const FOOT: [f32; 2] = [46.0, 32.0];
 
-    /// The names of the two scenes, the distance between them, and why the second one has stopped. If the scenes are one above the other, the
-    /// captions of the lower one are at its top, next to its legend, because it has no tools there.
+    /// Makes the captions: the differences of the second scene, the distance between the two, and why the second one has stopped. If the scenes are
+    /// one above the other, the captions of the lower one are at its top, next to its legend, because it has no tools there.
     pub(super) fn of(
         painter: &Painter,
         paper: &Paper,
@@ -27,7 +27,7 @@ impl Captions {
     ) -> Captions {
         let mut all = Vec::new();
         let below = second.top() > first.top();
-        // Next to the legend; the captions of scenes next to each other do not reach it.
+        // Texts at the top leave space for the legend. Captions at the bottom do not reach it.
         let free = legend.map_or(second.right(), |legend| legend.left());
         let beside_legend = (free - second.left() - 30.0).max(40.0);
         let wrap_width = if below { beside_legend } else { (second.width() - 40.0).max(40.0) };
@@ -46,7 +46,7 @@ impl Captions {
                 let [mean, largest] = [mean, largest].map(format_value);
                 format!("\n{} {mean} m, {} {largest} m", language.mean_distance(), language.largest_distance())
             }
-            // If the bodies have different nodes, there are no distances between nodes.
+            // If the bodies have different nodes, the distance between the centres of mass replaces the distances between nodes.
             (None, Some(far)) => format!("\n{} {} m", language.center_distance(), format_value(far)),
             (None, None) => String::new(),
         };
@@ -63,12 +63,12 @@ impl Captions {
         Captions(all)
     }
 
-    /// The rectangles that they take.
+    /// The rectangles that the captions occupy.
     pub(super) fn rects(&self) -> Vec<Rect> {
         self.0.iter().map(|(text_rect, ..)| ground(*text_rect)).collect()
     }
 
-    /// Writes them, and draws the line between the two scenes.
+    /// Writes the captions, and draws the line between the two scenes.
     pub(super) fn paint(self, painter: &Painter, paper: &Paper, [first, second]: [Rect; 2]) {
         let border = Stroke::new(1.5, paper.solid_edge);
         if second.left() > first.left() {

@@ -1,4 +1,4 @@
-//! The visible detail of a closed line. A point is omitted if the line looks the same on the screen without it.
+//! Reduces a closed line to its visible detail. A point is omitted if the line looks the same on the screen without it.
 
 use egui::{Color32, Pos2, Rect, Vec2};
 
@@ -9,7 +9,7 @@ pub(crate) struct Detail {
     pub(crate) merge_distance: f32,
     /// The largest distance of the line from a point that is left out [points of the screen].
     pub(crate) beside: f32,
-    /// The largest difference of a colour from the colour at the beginning of the piece, of 255.
+    /// The largest difference of a colour from the colour at the beginning of a straight piece, on a scale of 255.
     pub(crate) colour: u8,
     /// The visible area.
     pub(crate) screen: Rect,
@@ -18,16 +18,16 @@ pub(crate) struct Detail {
 /// A straight piece of a line that is extended point by point.
 struct Piece {
     from: (Pos2, Color32),
-    /// The range of directions for which all of its points are close enough to the line, given by the two outermost directions; none before the first
-    /// point that is far enough away.
+    /// The range of directions in which a straight line from the beginning of the piece passes close enough to all of its points, given by the two
+    /// outermost directions. None until a point is far enough from the beginning.
     cone: Option<[Vec2; 2]>,
     /// The largest distance of its points from its beginning.
     far: f32,
-    /// Whether it has a second point. The colour between two neighbouring points is interpolated.
+    /// Whether the piece has a second point. Between two neighbouring points the colour is interpolated, so the second point may have any colour.
     begun: bool,
     /// Whether its points are still close enough to a straight line.
     straight: bool,
-    /// The sides of the screen beyond which all of its points are.
+    /// The sides of the screen beyond which all of its points are, as bits.
     outside: u8,
 }
 
@@ -44,7 +44,7 @@ impl Piece {
         let [a, b] = [self.from.1, point.1].map(|colour| colour.to_array());
         let free = !std::mem::replace(&mut self.begun, true) || long <= detail.merge_distance;
         let alike = free || a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= detail.colour);
-        // A line that turns back has a tip, which would be lost.
+        // A piece ends where the line turns back, because the tip would otherwise be lost.
         self.straight &= alike && long.is_finite() && long >= self.far - detail.beside;
         self.far = self.far.max(long);
         if self.straight && long > detail.merge_distance {
@@ -112,10 +112,10 @@ impl Detail {
     }
 }
 
-/// The largest number of corners for which a surface is triangulated in every picture.
+/// The largest number of corners of a large outline that is triangulated in every picture.
 const MOST_CORNERS: usize = 5_000;
 
-/// Nodes closer to one another on the screen than this are merged in a large outline [points].
+/// In a large outline, nodes that are closer to one another on the screen than this are merged [points].
 const JOINED: f32 = 0.3;
 
 /// The nodes of a closed line that are separate on the screen: the first and cheapest reduction of a large outline.
@@ -132,7 +132,7 @@ pub(crate) fn apart(line: &[u32], at: &[Pos2]) -> Vec<u32> {
     kept
 }
 
-/// Collects the visible corners of the closed lines of a large outline, at most as many as can be filled in every picture; `of` returns the position
+/// Returns the visible corners of the closed lines of a large outline, at most as many as can be filled in every picture. `of` returns the position
 /// of a node on the screen, and its colour.
 pub(crate) fn corners(
     closed: &[Vec<u32>],
@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn tips_corners_and_colours_are_kept_and_points_on_one_another_and_numbers_that_are_none_do_no_harm() {
         let at = |x: f32, y: f32| (Pos2::new(x, y), RED);
-        // A line that goes there and back: its tip must be kept.
+        // A line that goes in one direction and returns: its tip must be kept.
         let spike: Vec<_> = (0..=100).chain((0..100).rev()).map(|k| at(k as f32, 100.0)).collect();
         let tip = kept(&detail(), &spike);
         assert!(tip.iter().any(|index| (*index as i32 - 100).abs() <= 1), "{tip:?}");
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn what_lies_beside_the_screen_costs_nothing_and_what_enters_it_is_seen() {
-        // A large circle of which the screen shows a piece.
+        // A large circle, of which only a piece is on the screen.
         let line = circle(100_000, 40_000.0);
         let moved: Vec<_> = line.iter().map(|(p, c)| (*p + Vec2::new(39_600.0, 0.0), *c)).collect();
         let kept = kept(&detail(), &moved);

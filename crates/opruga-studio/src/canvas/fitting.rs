@@ -1,5 +1,5 @@
-//! The visible part of a scene. It contains everything at the start, and is widened to include what moves, until the user moves
-//! the view.
+//! Chooses the visible part of a scene. At the start, it contains everything. It is then widened to include what moves, until the user moves the
+//! view.
 
 use super::camera::with_floors;
 use super::{Canvas, Doing};
@@ -10,14 +10,15 @@ use opruga::WorldError;
 use opruga::draw::View;
 
 impl Canvas {
-    /// Forgets what was fitted to states that no longer exist: the range of the colours, and the widening of the view if the user has not moved it.
+    /// Forgets what was fitted to states that no longer exist: the range of the colours and, if the user has not moved the view, the widening of the
+    /// view.
     fn fit_if_replaced(&mut self, shown: &Shown, rect: Rect) {
         if std::mem::replace(&mut self.replaced, shown.replaced) == shown.replaced {
             return;
         }
         self.range = None;
         if std::mem::replace(&mut self.resets, shown.resets) != shown.resets {
-            // The start is shown as at first, even if the user has moved the view since then.
+            // After a reset, the start is shown as at first, even if the user has moved the view.
             self.far = false;
             self.fit();
         } else if std::mem::take(&mut self.far) {
@@ -28,7 +29,8 @@ impl Canvas {
         }
     }
 
-    /// Restores the first view if a body has just exploded and the user has not moved the view, because the rest of the scene has not moved.
+    /// Restores the first view if a body has just exploded, because this view shows the rest of the scene. A view that the user has moved does not
+    /// change.
     fn stay_if_exploded(&mut self, shown: &Shown, rect: Rect) {
         let exploded = shown.message.as_ref().filter(|message| matches!(message.report, Report::Exploded(_)));
         let number = exploded.map(|message| message.number);
@@ -105,9 +107,9 @@ impl Canvas {
         self.doing = Doing::Nothing;
     }
 
-    /// The range of the colours follows the values: it grows at once and shrinks slowly.
+    /// Makes the range of the colours follow the values. The range grows at once and shrinks slowly.
     pub(super) fn fit_colours(&mut self, shown: &Shown) {
-        // The values of a side that has stopped may be anything, so they do not count.
+        // The values of a side that has stopped are ignored, because they may be meaningless.
         let beside = shown.beside.iter().filter(|beside| beside.stopped.is_none());
         let beside = beside.flat_map(|beside| &beside.right.extents);
         let colours = shown.extents.iter().chain(beside).map(|extent| extent.colours);
@@ -171,7 +173,7 @@ mod tests {
         assert!(canvas.range > first.1, "slowly, while nothing is replaced");
         seen(&mut canvas, &Shown { replaced: 1, ..ball(0.0, 20.0) });
         assert_eq!((canvas.flat.scale, canvas.range), first);
-        // A view that the user has moved stays, unless the scene is restarted.
+        // A view that the user has moved does not change, unless the scene is restarted.
         (canvas.fitted_size, canvas.flat.scale) = (None, 7.0);
         seen(&mut canvas, &Shown { replaced: 2, ..ball(0.0, 20.0) });
         assert_eq!(canvas.flat.scale, 7.0);

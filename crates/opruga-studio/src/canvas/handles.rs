@@ -10,7 +10,7 @@ use opruga::draw::{BodyPicture, Facets};
 
 /// The largest distance of a press from a handle [points].
 const REACH: f32 = 12.0;
-/// The distance of the box from the body, and of the rotation handle from the box [points].
+/// The distance of the box from the body [points]. `STALK` is the distance of the rotation handle from the box [points].
 const MARGIN: f32 = 8.0;
 const STALK: f32 = 24.0;
 /// The rotation in space for each point of displacement of the pointer [rad].
@@ -41,7 +41,7 @@ impl GrabbedHandle {
         self.now = at;
     }
 
-    /// The clockwise rotation on the screen [rad], and the factor.
+    /// The clockwise rotation on the screen [rad], and the factor by which the body is scaled.
     fn change(&self) -> (f32, f32) {
         let (a, b) = (self.from - self.middle, self.now - self.middle);
         match self.kind {
@@ -54,7 +54,7 @@ impl GrabbedHandle {
     /// The request when the handle is released.
     pub(super) fn edit(self, dimension: u8, y_down: bool) -> Option<Request> {
         let (turned, scaled) = self.change();
-        // The screen counts downwards, the world upwards.
+        // On the screen y points downwards, and in most worlds upwards, so the sign of the rotation changes.
         let turned = f64::from(turned) * if dimension == 2 && !y_down { -1.0 } else { 1.0 };
         let still = turned.abs() < 1e-3 && (scaled - 1.0).abs() < 1e-3;
         let placed = Placed { moved: [0.0; 3], turned, scaled: f64::from(scaled) };
@@ -106,7 +106,7 @@ impl Canvas {
                 around.extend_with(at);
             }
         }
-        // The box remains visible even if the body is not.
+        // The box is moved into the visible area even if the body is not there.
         let around = around.expand(MARGIN).intersect(rect.shrink(16.0));
         (around.width() > 4.0 && around.height() > 4.0).then_some(Handles { name, around, space: shown.dimension == 3 })
     }

@@ -1,4 +1,4 @@
-//! Labels next to bodies: their names, and the hint for the first pull. They cover no other text.
+//! Writes labels next to bodies: their names, and the hint for the first pull. Labels cover no other text.
 
 use super::look::{Paper, RUBBER};
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2};
@@ -14,7 +14,7 @@ pub(super) struct Named<'a> {
 }
 
 impl<'a> Named<'a> {
-    /// A body with this name and the nodes at these positions; none if there is nothing to write, or if no node is visible.
+    /// Makes a body with this name and with its nodes at these positions; none if the name is empty, or if no node is visible.
     pub(super) fn of(text: &'a str, spots: impl Iterator<Item = Pos2>) -> Option<Named<'a>> {
         let (mut rect, mut sum, mut count) = (Rect::NOTHING, 0.0, 0_u32);
         for spot in spots {
@@ -25,7 +25,7 @@ impl<'a> Named<'a> {
     }
 }
 
-/// Writes the names of bodies below them, or next to them if there is space, but not over `taken` rectangles. Names without space are omitted.
+/// Writes the names of bodies below or next to them, but not over `taken` rectangles. Names for which there is no space are omitted.
 pub(super) fn names(painter: &Painter, named: &[Named<'_>], paper: &Paper, taken: &[Rect]) {
     let mut taken = taken.to_vec();
     let compared = if named.len() <= FEW { named } else { &[] };
@@ -41,8 +41,8 @@ pub(super) fn names(painter: &Painter, named: &[Named<'_>], paper: &Paper, taken
     }
 }
 
-/// The free position for a name of this size: below a body, also a little to the side, above it, beside it, or a little farther away; away from the
-/// other bodies if possible.
+/// Finds a free position for a name of this size. It tries the positions below the body, also a little to the side, above it, beside it, and a little
+/// farther away. It prefers a position that covers no other body.
 fn free(body: Rect, middle: f32, size: Vec2, taken: &[Rect], others: &[Rect]) -> Option<Rect> {
     let below = Align2::CENTER_TOP.anchor_size(Pos2::new(middle, body.bottom() + 6.0), size);
     let above = Align2::CENTER_BOTTOM.anchor_size(Pos2::new(middle, body.top() - 6.0), size);
@@ -60,7 +60,7 @@ fn free(body: Rect, middle: f32, size: Vec2, taken: &[Rect], others: &[Rect]) ->
 
 /// Draws the hint for the first pull, above a body.
 pub(super) fn hint(painter: &Painter, top: Pos2, rect: Rect, tools: Option<Rect>, legend: Option<Rect>, text: &str) {
-    // Below the toolbar; if the body is out of sight, at the nearest border.
+    // The hint is below the toolbar. If the body is out of sight, it is at the nearest border.
     let across = top.x.clamp(rect.left() + 50.0, (rect.right() - 50.0).max(rect.left() + 50.0));
     let highest = tools.map_or(rect.top(), |tools| tools.bottom()) + 54.0;
     let tip = Pos2::new(across, top.y.clamp(highest, rect.bottom().max(highest)) - 8.0);
@@ -76,9 +76,9 @@ pub(super) fn hint(painter: &Painter, top: Pos2, rect: Rect, tools: Option<Rect>
     painter.galley(bubble.center() - 0.5 * galley.size(), galley, Color32::WHITE);
 }
 
-/// The bubble, moved to the left of the legend if it would overlap it.
+/// Moves the bubble to the left of the legend if it would overlap the legend.
 fn beside_legend(bubble: Rect, legend: Option<Rect>) -> Rect {
-    // It moves up and down, and has an arrow below.
+    // The tested rectangle is larger than the bubble, because the bubble moves up and down, and has an arrow below it.
     let over = |legend: &Rect| legend.intersects(bubble.expand2(Vec2::new(4.0, 12.0)));
     let by = legend.filter(over).map_or(0.0, |legend| legend.left() - 6.0 - bubble.right());
     bubble.translate(Vec2::new(by, 0.0))
@@ -113,11 +113,11 @@ mod tests {
         let size = Vec2::new(80.0, 14.0);
         let at = |x: f32, y: f32| Rect::from_center_size(Pos2::new(x, y), Vec2::splat(22.0));
         let (body, above) = (at(220.0, 330.0), at(220.0, 288.0));
-        // There is no space below, because something else is there, and another body is above.
+        // Something else is below the body, and another body is above it.
         let taken = [Rect::from_min_max(Pos2::new(130.0, 342.0), Pos2::new(320.0, 400.0))];
         let place = free(body, 220.0, size, &taken, &[above]).expect("room");
         assert!(!place.intersects(above) && !place.intersects(taken[0]), "{place:?}");
-        // Within a large body there is no other position, so it is written there.
+        // All positions are within a large body, so the name is written over this body.
         let around = at(220.0, 330.0).expand(300.0);
         let within = free(body, 220.0, size, &[], &[around]).expect("room");
         assert!(within.top() > body.bottom());

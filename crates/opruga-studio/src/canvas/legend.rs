@@ -8,7 +8,7 @@ use egui::{Align, Align2, CornerRadius, FontId, Galley, Mesh, Pos2, Rect, Shape,
 use opruga::draw::{BodyPicture, format_value, nice_ticks, scientific};
 use std::sync::Arc;
 
-/// The smallest height above the bar, and the largest width of its name on one line [points].
+/// The smallest and the largest width of a line of the name [points].
 const NAME: [f32; 2] = [84.0, 240.0];
 
 /// Whether a body is drawn in its own colours.
@@ -31,7 +31,7 @@ fn legend_layout(look: &Look<'_>, tools: Option<Rect>, language: Language) -> Op
         return None;
     }
     let tall = (0.4 * rect.height()).clamp(60.0, 180.0);
-    // Next to the tools or, if there is no space, below them; the lower one of two scenes has no tools.
+    // The legend is next to the tools or, if there is no space, below them. The lower one of two scenes has no tools.
     let tools = tools.filter(|tools| tools.intersects(rect));
     let over = tools.filter(|tools| tools.right() > rect.right() - 110.0);
     let below = over.map_or(rect.top(), |tools| tools.bottom());
@@ -58,7 +58,7 @@ pub(super) fn bounds(look: &Look<'_>, tools: Option<Rect>, language: Language) -
     legend_layout(look, tools, language).map(|layout| layout.whole)
 }
 
-/// Writes that nothing visible has the quantity that the colours show, if everything is grey for that reason.
+/// If everything is grey because no visible body has the quantity that the colours show, writes a text that explains this.
 pub(super) fn explain_absence(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     let Look { painter, shown, rect, paper, .. } = *look;
     let Some(legend) = &shown.picture.legend else { return };
@@ -78,7 +78,8 @@ pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
     let Look { painter, shown, rect, paper, range, .. } = *look;
     let Some(legend) = &shown.picture.legend else { return };
     let Some(LegendLayout { bar, name, whole: behind }) = legend_layout(look, tools, language) else { return };
-    // A long name is wider than the bar with its numbers. The area below the name and next to the bar remains visible.
+    // A long name is wider than the bar with its numbers. The background is not drawn in the corner below the name and next to the bar, so that the
+    // scene remains visible there.
     let side = behind.with_min_x(bar.left() - 24.0);
     let above = behind.with_max_y(bar.top() - 4.0);
     let ground = paper.background.gamma_multiply(0.7);
@@ -127,7 +128,7 @@ pub(super) fn paint(look: &Look<'_>, tools: Option<Rect>, language: Language) {
 /// The font size of the numbers, if they fit [points].
 const SIZE: f32 = 11.5;
 
-/// A number next to the bar, where there is little space for digits.
+/// The text of a number next to the bar, where there is space for only a few digits.
 fn figure(value: f64) -> String {
     if value.is_finite() && value.abs() >= 1e5 { scientific(value) } else { format_value(value) }
 }
@@ -149,7 +150,7 @@ mod tests {
             Shown { dimension: 2, picture, ..Default::default() }
         };
         let tools = Rect::from_min_max(Pos2::new(10.0, 160.0), Pos2::new(314.0, 248.0));
-        // A phone, the lower of two scenes on a phone, and a small laptop with space next to the tools.
+        // The cases are a phone, the lower of two scenes on a phone, and a small laptop with space next to the tools.
         let parts = [
             (Rect::from_min_max(Pos2::new(0.0, 150.0), Pos2::new(360.0, 555.0)), tools),
             (Rect::from_min_max(Pos2::new(0.0, 352.0), Pos2::new(360.0, 555.0)), tools),

@@ -14,7 +14,7 @@ pub(crate) struct Look<'a> {
     /// The rectangle of the scene.
     pub(crate) rect: Rect,
     pub(crate) paper: &'a Paper,
-    /// What the user wants to see.
+    /// The quantities and marks that the user wants to see.
     pub(crate) show: Show,
     /// The range of the colours.
     pub(crate) range: [f64; 2],
@@ -62,7 +62,7 @@ pub(super) fn colour([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// A colour that is visible on the paper: on dark paper, dark colours are made lighter, in the same order.
+/// Changes a colour so that it is visible on the background. On a dark background, dark colours are made lighter, but keep their order of lightness.
 pub(super) fn on_paper(c: Color32, paper: &Paper) -> Color32 {
     let lift = |x: u8| if paper.dark { (70.0 + f32::from(x) * (185.0 / 255.0)) as u8 } else { x };
     Color32::from_rgb(lift(c.r()), lift(c.g()), lift(c.b()))

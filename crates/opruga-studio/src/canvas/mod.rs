@@ -32,19 +32,20 @@ use pick::Under;
 use std::sync::Arc;
 pub use tool::Tool;
 
-/// What the pointer is doing.
+/// The present action of the pointer.
 #[derive(Clone, Debug, Default, PartialEq)]
 enum Doing {
     #[default]
     Nothing,
-    /// A body is held; in space, at this distance behind the point in the centre of the view. For a push, also the point where the pointer was
-    /// pressed and the grabbed point, which moves along with the pointer [m].
+    /// The pointer holds a body. In space, the held point is at this distance behind the point in the centre of the view [m]. For a push, there are
+    /// also the point at which the pointer was pressed and the grabbed point of the body [m].
     Holding(f64, Option<[[f64; 3]; 2]>),
     /// The view is moved.
     Panning,
     /// The view is rotated.
     Turning,
-    /// A body is moved from this point of the world; in space, at this distance behind the point in the centre of the view.
+    /// The body with this name is moved, beginning at this point of the world. In space, the point is at this distance behind the point in the centre
+    /// of the view [m].
     Shifting(String, [f64; 3], f64),
     /// A body is rotated or scaled by one of its handles.
     Handling(handles::GrabbedHandle),
@@ -55,7 +56,7 @@ enum Doing {
 /// The part of the window that shows the scene.
 #[derive(Debug, Default)]
 pub struct Canvas {
-    /// The action of a press.
+    /// The action of a press of the pointer.
     pub tool: Tool,
     /// The body that was pressed last.
     pub selected: Option<String>,
@@ -65,13 +66,13 @@ pub struct Canvas {
     rect: Option<Rect>,
     /// The rectangle of the tools over it.
     pub tools: Option<Rect>,
-    /// What the user wants to see.
+    /// The quantities and marks that the user wants to see.
     pub wanted: Show,
     /// The rectangles of legends and captions.
     written: Vec<Rect>,
     /// The rectangle of the scene beside it.
     other: Option<Rect>,
-    /// The longest arrow of every kind.
+    /// The largest magnitude among the arrows of every kind.
     arrows: arrows::Longest,
     flat: Flat,
     space: space::Space,
@@ -82,9 +83,9 @@ pub struct Canvas {
     /// The lowest and the highest corner of the scene when the view was fitted [m].
     first: [[f64; 3]; 2],
     fitted: u64,
-    /// The number of replacements of the state when it was last seen.
+    /// The number of replacements of the state up to the previous picture ([`Shown::replaced`]).
     replaced: u64,
-    /// The number of resets to the start at that time.
+    /// The number of resets to the start up to the previous picture.
     resets: u64,
     /// The number of the message of a body that has exploded, while there is one.
     exploded: Option<u64>,
@@ -106,7 +107,7 @@ pub struct Canvas {
     pub pulled: bool,
     /// The reason why the last outline was refused.
     pub refused: Option<&'static str>,
-    /// Whether the space bar has moved the view since it was pressed; it then does not start or stop time.
+    /// Whether the view was moved while the space bar was held. The space bar then does not start or stop time when it is released.
     pub panned: bool,
 }
 
@@ -116,7 +117,7 @@ impl Canvas {
         self.space.is_drawing() || self.beside.is_drawing()
     }
 
-    /// Uploads all pictures again after their device was lost.
+    /// Makes all pictures be uploaded again after their device was lost.
     #[cfg(target_arch = "wasm32")]
     pub fn forget_textures(&mut self) {
         self.space.forget_texture();
@@ -180,7 +181,7 @@ impl Canvas {
         left.chain(right).chain(self.written.iter().copied()).collect()
     }
 
-    /// The rectangles of the bodies within a part of the window; bodies out of sight have none.
+    /// The rectangles of the bodies within a part of the window. Bodies out of sight have none.
     fn seen_in(&self, part: Rect, shown: &Shown) -> Vec<Rect> {
         let by = self.rect.map_or(Vec2::ZERO, |rect| part.min - rect.min);
         let of = |extent: &crate::shown::Extent| {
@@ -188,7 +189,7 @@ impl Canvas {
             let corners: Vec<Pos2> = (0..8).filter_map(|k| self.on_screen(shown, corner(k))).collect();
             Rect::from_points(&corners).translate(by).intersect(part)
         };
-        // A chain that hangs straight down has no width.
+        // A rectangle may have no width, like that of a chain that hangs straight down.
         let there = |seen: &Rect| seen.width() >= 0.0 && seen.height() >= 0.0;
         shown.extents.iter().map(of).filter(there).collect()
     }
@@ -203,8 +204,7 @@ impl Canvas {
         }
         let (rect, other) = halves(whole, shown.beside.is_some());
         if self.other.is_some() != other.is_some() {
-            // The area has been halved or doubled, so the view shows everything as it is now, or as it was before a body
-            // exploded.
+            // The area was halved or doubled, so the view is fitted again: to everything as it is now or, if a body has exploded, to the first view.
             match (self.exploded, &mut self.scales) {
                 (Some(_), Some(view)) => {
                     [view.low, view.high] = self.first;
@@ -222,7 +222,7 @@ impl Canvas {
         self.fit_if_new(shown, rect);
         self.fit_colours(shown);
         let mut asks = Vec::new();
-        // The scene beside it is for viewing; its view moves with that of the main scene.
+        // The scene beside this one has no view of its own. Its view moves with that of the main scene.
         let within = |at: Pos2| match other {
             Some(other) if other.contains(at) => (at - other.min.to_vec2() + rect.min.to_vec2(), true),
             _ => (at, false),
@@ -231,9 +231,9 @@ impl Canvas {
         self.navigate(ui, hover.map(|(at, _)| at), shown, rect);
         self.space.receive(ui);
         self.beside.receive(ui);
-        // Pictures in space are slightly delayed: a press acts on the picture that is seen.
+        // Pictures in space are slightly delayed, so a press acts on the picture that the user sees.
         let seen = self.space.seen().filter(|seen| shown.dimension == 3 && seen.opened == shown.opened).cloned();
-        // Before the first picture, nothing is drawn over it.
+        // Before the first picture is finished, no marks are drawn.
         let is_seen = shown.dimension != 3 || seen.is_some();
         let seen = seen.unwrap_or_else(|| Arc::clone(shown));
         let beside = hover.is_some_and(|(_, beside)| beside);
@@ -247,7 +247,7 @@ impl Canvas {
         self.press(ui, &response, shown, hovered.as_deref(), rect, under.as_ref(), offset, &mut asks);
         let range = self.range.unwrap_or([0.0, 1.0]);
         let look = Look { painter: &painter, shown, rect, paper: &paper, show: self.wanted, range };
-        // Two scenes side by side have the same colours, and the legend is in the second one.
+        // Two scenes side by side have the same range of colours, and the legend is in the second scene.
         let taken = if other.is_none() { legend::bounds(&look, self.tools, language) } else { None };
         self.written = taken.into_iter().collect();
         let pair = other.zip(shown.beside.as_ref());
@@ -295,7 +295,7 @@ impl Canvas {
         asks
     }
 
-    /// Draws a scene; the second one has its own renderer, with the camera of the first. Names do not cover anything that is already `written`.
+    /// Draws a scene. The second scene has its own renderer, with the camera of the first. Names do not cover the rectangles `written`.
     fn paint(&mut self, ui: &Ui, look: &Look<'_>, shown: &Arc<Shown>, beside: bool, written: &[Rect]) {
         let selected = self.selected.as_deref();
         if shown.dimension == 3 {
@@ -316,7 +316,8 @@ impl Canvas {
         }
     }
 
-    /// Keeps a body selected if it was replaced under another name, also if that was undone. A body that is added or copied becomes selected.
+    /// Keeps a body selected if it was replaced under another name, or if this replacement was undone. A body that is added or copied becomes
+    /// selected.
     pub(crate) fn follow_names(&mut self, shown: &Shown) {
         if self.newest != shown.newest {
             self.newest.clone_from(&shown.newest);
@@ -327,7 +328,7 @@ impl Canvas {
         }
         let there = |name: &String| shown.bodies.iter().any(|body| body.name == *name);
         let Some(selected) = self.selected.as_ref().filter(|selected| !there(selected)) else { return };
-        // Names are followed one by one, the latest first.
+        // The names that replaced a name, or were replaced by it, are followed one by one, the latest first.
         let mut names = vec![selected.clone()];
         let mut index = 0;
         while let Some(name) = names.get(index).cloned() {
@@ -351,7 +352,7 @@ impl Canvas {
         self.range = None;
     }
 
-    /// The length of the longest arrow of each kind in space at the point in the centre of the view [points]; none in the plane.
+    /// The length on the screen of the longest arrow of each kind at the point in the centre of the view, in space [points]; none in the plane.
     fn points_of_arrows(&self, shown: &Shown, rect: Rect) -> Option<f64> {
         let (eye, scales) = (self.space.eye()?, self.scales.as_ref()?);
         let side = f64::from(rect.width().min(rect.height()));
@@ -367,7 +368,7 @@ impl Canvas {
         }
     }
 
-    /// Converts a distance from the camera to a distance behind the point in the centre of the view; in the plane, it does not change.
+    /// Converts a distance from the camera to a distance behind the point in the centre of the view. In the plane, the distance does not change.
     fn behind(&self, rect: Rect, distance: f64) -> f64 {
         let looked_at = self.scales.as_ref().and_then(|scales| self.space.distance(scales, rect));
         distance - looked_at.unwrap_or(0.0)

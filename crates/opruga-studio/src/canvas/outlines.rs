@@ -1,13 +1,13 @@
-//! The outlines that the edges of a body in the plane form, computed once and reused as long as they fit: closed lines, the edges outside them, and
-//! the triangles that fill them.
+//! The outlines that the edges of a body in the plane form: closed lines, the edges that belong to none of them, and the triangles that fill the
+//! lines. Outlines are computed once and reused as long as they fit the body.
 
 use opruga::draw::{BodyPicture, Facets};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Outlines with at most this many edges keep their triangles, which are computed again if a body has folded. For larger outlines, visible triangles
-/// are computed for every picture.
+/// Outlines with at most this many edges keep their triangles, which are computed again only if the body has folded. For larger outlines, the visible
+/// triangles are computed for every picture.
 const MOST_ANEW: usize = 4_000;
-/// The number of bodies that are checked for folds in every picture; if there are no more than this, all are checked.
+/// The largest number of bodies that are checked for folds in one picture. If there are more bodies, they are checked in turn.
 const LOOKED_AT: usize = 64;
 
 /// The outlines of every body seen so far.
@@ -33,11 +33,11 @@ pub(crate) struct Outline {
     pub(crate) closed: Vec<Vec<u32>>,
     /// Edges that belong to no closed line.
     pub(crate) open: Vec<[u32; 2]>,
-    /// Whether there are springs that are not also edges, which would be painted over.
+    /// Whether there are springs that are not also edges. Springs that are edges are not drawn, because the outline would cover them.
     pub(crate) springs: bool,
-    /// The areas within the closed lines; empty if the body has cells, or more edges than are filled completely.
+    /// The areas within the closed lines; empty if the body has cells or the outline is large.
     pub(crate) parts: Vec<Part>,
-    /// Whether it has more edges than are filled completely.
+    /// Whether the outline has so many edges that only its visible corners are filled.
     pub(crate) large: bool,
 }
 
@@ -58,7 +58,7 @@ impl Part {
 }
 
 impl Outlines {
-    /// Forgets all of them.
+    /// Forgets all outlines.
     pub(crate) fn forget(&mut self) {
         self.known.clear();
     }
@@ -105,8 +105,8 @@ impl Outline {
     }
 }
 
-/// Whether no triangle is inverted and the triangles cover the area within the lines. They may not cover it if the lines crossed when the triangles
-/// were made.
+/// Whether the triangles fit the body: no triangle is inverted, and they cover the area within the lines. Triangles that were made while the lines
+/// crossed may not cover this area.
 fn fits(body: &BodyPicture, outline: &Outline) -> bool {
     let mut covered = 0.0;
     for triangle in outline.parts.iter().flat_map(Part::of_body) {
@@ -129,8 +129,8 @@ fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// The closed lines of a body's edges, each in its own direction and without repeated nodes, and the edges that do not belong to a closed line. Lines
-/// that touch in a node are separated when the walk returns to it.
+/// Divides the edges of a body into closed lines, each with the direction of its edges and without repeated nodes, and edges that belong to no closed
+/// line. Lines that touch at a node are separated when the walk along the edges returns to this node.
 fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
     let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     edges.iter().rev().for_each(|[a, b]| next.entry(*a).or_default().push(*b));
@@ -140,7 +140,7 @@ fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
         let mut indices: HashMap<u32, usize> = HashMap::from([(first, 0)]);
         while let Some(&last) = path.last() {
             let Some(ends) = next.get_mut(&last) else {
-                // A dead end: the edges to it close nothing.
+                // At a dead end, the edges that lead to it belong to no closed line.
                 indices.remove(&last);
                 path.pop();
                 open.extend(path.last().map(|before| [*before, last]));
@@ -170,7 +170,7 @@ fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
     (closed, open)
 }
 
-/// The triangles within closed lines; a clockwise line is a hole in the one around it.
+/// Returns the triangles within closed lines. A clockwise line bounds a hole in the line around it.
 pub(crate) fn fill(body: &BodyPicture, lines: &[Vec<u32>]) -> Vec<Part> {
     let point = |node: u32| [body.positions[node as usize][0], body.positions[node as usize][1]];
     let (outer, holes): (Vec<&Vec<u32>>, Vec<&Vec<u32>>) = lines.iter().partition(|line| enclosed(body, line) > 0.0);
@@ -238,7 +238,7 @@ mod tests {
         let mut fills = Outlines::default();
         let parts = fills.of(0, &body).parts.clone();
         assert!((covered(&body, &parts) - 3.0).abs() < 1e-12);
-        // A corner is pushed in, so the old triangles would overlap.
+        // A corner is pushed inwards, so the old triangles would overlap.
         body.positions[2] = [0.2, 0.2, 0.0];
         body.positions.truncate(4);
         body.facets = Facets::Edges((0..4).map(|k| [k, (k + 1) % 4]).collect());
@@ -254,7 +254,7 @@ mod tests {
             facets: Facets::Edges(right.1.clone()),
             ..Default::default()
         };
-        // The corners are reversed, or all at one point, or crossed so that the signed areas cancel.
+        // The corners are in reverse order, or all at one point, or crossed so that the signed areas cancel.
         for wrong in [
             [[0.0, 0.0], [0.0, 2.0], [2.0, 2.0], [2.0, 0.0]],
             [[1.0, 1.0]; 4],

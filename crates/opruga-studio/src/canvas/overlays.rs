@@ -1,4 +1,4 @@
-//! Overlays of the scene: pins, pulls with their forces, the action of the pointer, and the hint for the first pull.
+//! Draws over the scene: pins, pulls with their forces, the action of the pointer, and the hint for the first pull.
 
 use super::labels::{self, Named};
 use super::look::{Look, RUBBER};
@@ -21,7 +21,7 @@ impl Canvas {
         }
     }
 
-    /// Draws pins, pulls with their forces, the outline being drawn, and the hint for the first pull; no text covers the legend.
+    /// Draws pins, pulls with their forces, the outline that the user is drawing, and the hint for the first pull. No text covers the legend.
     pub(super) fn overlays(
         &self,
         look: &Look<'_>,
@@ -98,9 +98,9 @@ impl Canvas {
             && self.rect == Some(rect)
             && self.tool == Tool::Pull
             && self.doing == Doing::Nothing
-            // A file that is being dragged over the window has a hint of its own.
+            // While a file is dragged over the window, another hint is shown.
             && painter.ctx().input(|i| i.raw.hovered_files.is_empty())
-            // If the scene itself pulls, the force of that pull is displayed.
+            // If the scene itself contains a pull, its force is shown instead of the hint.
             && shown.pulls.is_empty()
             && let Some(body) = shown.picture.bodies.first()
             && let Some(top) = body.positions.iter().filter_map(|p| project(*p)).min_by(|a, b| a.y.total_cmp(&b.y))

@@ -5,10 +5,10 @@ use toml_edit::InlineTable;
 /// The smallest and the largest number of vertices of a drawn body.
 const VERTICES: [usize; 2] = [24, 160];
 
-/// The table of the body that a line encloses; `finest` is the shortest length that a hand can draw [m].
+/// Makes the table of the body that a line encloses. `finest` is the shortest length that a hand can draw [m].
 ///
 /// # Errors
-/// The word for the reason.
+/// The keyword of the reason why the line is refused.
 pub(crate) fn body(line: &[[f64; 2]], finest: f64) -> Result<InlineTable, &'static str> {
     let length: f64 = sides(line).map(|(a, b)| far(a, b)).sum();
     if line.len() < 3 || length < 16.0 * finest {
@@ -28,8 +28,8 @@ pub(crate) fn body(line: &[[f64; 2]], finest: f64) -> Result<InlineTable, &'stat
     if area < 30.0 * finest * finest {
         return Err("too_small");
     }
-    // Relative to its number of vertices, the skin is as stiff as that of the ball in the thesis. The gas preserves the area against the ambient
-    // pressure at any scale.
+    // The stiffness of the springs times the number of vertices is the same as for the ball in the thesis. The gas preserves the area against the
+    // ambient pressure, whatever the size of the body.
     let stiffness = 57_600.0 / count as f64;
     let pressure = 120.0;
     let rows: Vec<String> = points.iter().map(|p| format!("[{:.5}, {:.5}]", p[0], p[1])).collect();

@@ -19,11 +19,11 @@ pub(crate) struct Under {
     pub(crate) point: [f64; 3],
     /// Its distance along the axis of the camera; 0 in the plane [m].
     pub(crate) distance: f64,
-    /// The size of a point of the screen at this distance [m].
+    /// The size in the scene of a point of the screen at this distance [m].
     pub(crate) pixel: f64,
 }
 
-/// The body in the plane under the pointer: that of the nearest node within reach, or the one whose outline contains the
+/// Finds the body in the plane under the pointer: the body of the nearest node within reach or, if there is none, a body whose outline contains the
 /// pointer.
 pub(crate) fn in_plane(shown: &Shown, flat: &Flat, rect: Rect, at: Pos2) -> Option<Under> {
     let [x, y] = flat.to_world(rect, at, shown.picture.y_down);
@@ -65,7 +65,7 @@ fn around(body: &opruga::draw::BodyPicture, x: f64, y: f64) -> bool {
     edges.iter().filter(crosses).count() % 2 == 1
 }
 
-/// The body in space under the pointer: that of the frontmost node within reach, or of a triangle under the pointer.
+/// Finds the body in space under the pointer: the body of the frontmost node within reach, or of a triangle under the pointer.
 pub(crate) fn in_space(shown: &Shown, lens: &Lens, rect: Rect, at: Pos2) -> Option<Under> {
     let at = at - rect.min;
     let mut best: Option<(f64, usize, [f64; 3])> = None;

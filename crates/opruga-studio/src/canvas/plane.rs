@@ -1,4 +1,4 @@
-//! A scene in the plane, which is drawn by the painter of the interface and therefore sharp at every zoom.
+//! Draws a scene in the plane with the painter of the interface, so that it is sharp at every zoom.
 
 use super::arrows::{self, Longest};
 use super::brush::Brush;
@@ -12,9 +12,9 @@ use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, Ve
 use opruga::core::spec::Role;
 use opruga::draw::{BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, format_value, nice_length};
 
-/// The largest number of lines in a crowd that are drawn with soft borders.
+/// If there are more lines than this, they are drawn with hard borders.
 const SOFT_EDGES: usize = 6_000;
-/// The opacity of filled outlines, and of cells.
+/// The opacity of filled outlines. `FILLED_CELLS` is that of cells.
 const FILLED: f32 = 0.34;
 const FILLED_CELLS: f32 = 0.62;
 
@@ -36,7 +36,8 @@ impl Ink {
     }
 }
 
-/// The colours of a colour map, computed once per picture, because a crowd has a hundred times as many nodes. The last one is that of NaN.
+/// The colours of a colour map. They are computed once per picture, because there may be a hundred times as many nodes. The last colour is that of
+/// NaN.
 struct Colours {
     inks: [Ink; 257],
     low: f64,
@@ -55,7 +56,7 @@ impl Colours {
     }
     fn at(&self, scalar: f64) -> Ink {
         let index = (scalar - self.low) * self.factor;
-        // Conversion to a byte clamps the index to the range of the colours.
+        // The conversion to a byte limits the index to the range of the colours.
         self.inks[if index.is_nan() { 256 } else { usize::from(index as u8) }]
     }
 }
@@ -93,7 +94,7 @@ pub(crate) fn paint(
     let project = |p: [f64; 3]| flat.to_screen(rect, p, picture.y_down);
     grid(painter, flat, rect, paper, picture.y_down);
     picture.colliders.iter().for_each(|c| obstacle(painter, c, flat, rect, paper, &project));
-    // A single outline has no more visible points than the screen; a crowd or a lattice may have more.
+    // A single outline has no more visible points than the screen. Many bodies or a lattice may have more.
     let alone = matches!(&picture.bodies[..], [body] if body.segments.len() <= body.positions.len());
     let edges = |body: &BodyPicture| match &body.facets {
         Facets::Edges(edges) => edges.len(),
@@ -127,19 +128,19 @@ pub(crate) fn paint(
     arrows::paint(look, flat, longest, &project);
 }
 
-/// Draws a body whose nodes are in `kept`: its filling, its springs, its outline, its vertices.
+/// Draws the filling, the springs, the outline and the vertices of a body. The positions of its nodes on the screen are in `kept`.
 fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPicture), wide: bool, flat: &Flat) {
     let Look { rect, paper, shown, show, .. } = *look;
     let (index, body) = number;
     let Kept { outlines, brush, at, inks, seen } = kept;
     if body.areas.iter().any(|area| area.colour.is_some()) {
-        // The areas that it carries, in their own colours, one above the other.
+        // The areas that the body carries are drawn in their own colours, one over another.
         for area in &body.areas {
             let Some([r, g, b, opacity]) = area.colour else { continue };
             let colour = Color32::from_rgba_unmultiplied(r, g, b, opacity);
             let corners = area.positions.iter().map(|p| (flat.to_screen(rect, *p, shown.picture.y_down), colour));
             brush.fill(corners, &area.triangles);
-            // A thin line of the same colour smooths its border.
+            // A thin line of the same colour smooths the border of the area.
             let starts = std::iter::once(0).chain(area.ends.iter().copied());
             for (start, end) in starts.zip(area.ends.iter().copied()) {
                 let Some(line) = area.positions.get(start..end) else { continue };
@@ -165,7 +166,7 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
         let detail = Detail { merge_distance: 1.0, beside: 0.35, colour: 24, screen: rect };
         let lines = corners(closed, detail, |node| (at[*node as usize], inks[*node as usize].line), seen);
         let parts = fill(body, &lines);
-        // The zoom does not change the colour of its interior.
+        // The mean over all nodes is used, so that the zoom does not change the colour of the interior.
         let all: Vec<u32> = outline.closed.iter().flatten().copied().collect();
         for part in &parts {
             let ink = inside(body, if parts.len() == 1 { &all } else { &part.nodes }, map, inks);
@@ -203,7 +204,7 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     if body.nodes_drawn && at.len() <= 20_000 {
         let radius = if at.len() > 400 { 1.6 } else { 2.6 };
         for (pos, ink) in at.iter().zip(inks.iter()) {
-            // If the user wants to see the vertices, they stand out from their line.
+            // If the user wants to see the vertices, they are drawn wider than the line.
             if show.vertices {
                 brush.disc(*pos, radius + 1.8, paper.background);
                 brush.disc(*pos, radius + 0.6, ink.line.lerp_to_gamma(paper.ink, 0.6));
@@ -214,8 +215,8 @@ fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPi
     }
 }
 
-/// The colour of the area within lines: that of the mean over their nodes, as in the pictures of the command line. The values between the nodes are
-/// unknown, and the triangles have no physical meaning.
+/// Returns the colour of the area within lines: that of the mean value of the nodes of the lines, as in pictures of the command line. The values
+/// between the nodes are unknown, and the triangles have no physical meaning.
 fn inside(body: &BodyPicture, nodes: &[u32], map: &Colours, inks: &[Ink]) -> Color32 {
     match (body.scalar.is_empty(), nodes.first()) {
         (false, Some(_)) => {
@@ -252,7 +253,7 @@ fn grid(painter: &Painter, flat: &Flat, rect: Rect, paper: &Paper, y_down: bool)
     }
 }
 
-/// Draws the length of a side of these squares, over everything else, because floors often reach into that corner.
+/// Writes the length of a side of the grid squares. It is written over everything else, because floors often reach into its corner.
 pub(crate) fn scale_bar(look: &Look<'_>, flat: &Flat) {
     let Look { painter, rect, paper, .. } = *look;
     let unit = &look.shown.picture.length_unit;
@@ -285,7 +286,7 @@ fn obstacle(
             if size == 0.0 {
                 return;
             }
-            // The line crosses the whole window, wherever the given point of the plane is.
+            // The line is drawn across the whole window, wherever the given point of the plane is.
             let n = [normal[0] / size, normal[1] / size];
             let t = [-n[1], n[0]];
             let middle = flat.middle();
@@ -344,7 +345,7 @@ pub(crate) fn pin(painter: &Painter, at: Pos2, paper: &Paper) {
     painter.circle(at, 4.5, Color32::from_rgb(238, 178, 40), Stroke::new(1.5, paper.ink));
 }
 
-/// Draws the rubber band of a pull and its force in newtons, which is next to the pointer where there is space.
+/// Draws the rubber band of a pull and, next to the pointer where there is space, its force in newtons.
 pub(crate) fn rubber(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
     let Look { painter, paper, .. } = *look;
     painter.line_segment([from, to], Stroke::new(2.5, RUBBER));
@@ -353,7 +354,7 @@ pub(crate) fn rubber(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], ta
     newtons(look, to, force, taken);
 }
 
-/// Draws the arrow of a push, as long as the displacement of the pointer, and its force in newtons.
+/// Draws the arrow of a push, which is as long as the displacement of the pointer, and its force in newtons.
 pub(crate) fn push(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
     look.painter.circle_filled(from, 4.0, RUBBER);
     if (to - from).length() >= 2.0 {
@@ -362,7 +363,7 @@ pub(crate) fn push(look: &Look<'_>, from: Pos2, to: Pos2, force: &[f64; 3], take
     newtons(look, to, force, taken);
 }
 
-/// Draws a force in newtons, next to the pointer, where there is space.
+/// Writes a force in newtons next to the pointer, where there is space.
 fn newtons(look: &Look<'_>, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
     let Look { painter, paper, .. } = *look;
     let newtons = force.iter().map(|f| f * f).sum::<f64>().sqrt();
@@ -373,8 +374,8 @@ fn newtons(look: &Look<'_>, to: Pos2, force: &[f64; 3], taken: &[Rect]) {
     painter.galley(text_rect.min, galley, RUBBER);
 }
 
-/// The free position for something of this size next to a point: above and to the right if possible, otherwise around it. For a point out of sight it
-/// is at the border.
+/// Finds a free position for a rectangle of this size next to a point: above and to the right of the point if possible, otherwise at another side. If
+/// the point is out of sight, the rectangle is at the border.
 fn beside(at: Pos2, size: Vec2, bounds: Rect, taken: &[Rect]) -> Rect {
     let candidates = [
         (Align2::LEFT_BOTTOM, Vec2::new(12.0, -10.0)),
@@ -384,7 +385,7 @@ fn beside(at: Pos2, size: Vec2, bounds: Rect, taken: &[Rect]) -> Rect {
     ];
     let candidates = candidates.map(|(align, offset)| align.anchor_size(at + offset, size));
     let free = |rect: &Rect| taken.iter().all(|other| !other.intersects(rect.expand(3.0)));
-    // If the point itself is within taken areas, the position is next to these.
+    // If the point itself is within a taken area, positions next to this area are tried, too.
     let around = taken.iter().filter(|other| other.contains(at)).flat_map(|other| {
         let level = candidates[0].min;
         let [left, right] = [other.left() - size.x - 6.0, other.right() + 6.0].map(|x| Pos2::new(x, level.y));
@@ -422,11 +423,11 @@ pub(crate) fn ghost(
 pub(crate) fn credit(look: &Look<'_>) {
     let (rect, credit) = (look.rect, &look.shown.picture.credit);
     if !credit.is_empty() {
-        // Next to the scale bar, on as many lines as needed.
+        // The credit is next to the scale bar, on as many lines as needed.
         let wrap_width = (0.6 * rect.width()).max(120.0);
         let font = FontId::proportional(10.0);
         let galley = look.painter.layout(credit.clone(), font, look.paper.soft, wrap_width);
-        // Above the captions below each of two scenes.
+        // If there are two scenes, the credit is above the caption of its scene.
         let foot = if look.shown.beside.is_some() { Captions::FOOT[0] } else { 0.0 };
         let spot = rect.max - galley.size() - Vec2::new(8.0, 6.0 + foot);
         look.painter.galley(spot, galley, look.paper.soft);
@@ -446,7 +447,7 @@ mod tests {
         let free = beside(Pos2::new(300.0, 200.0), size, room, &[legend, tools]);
         assert!(free.left() > 300.0 && free.bottom() < 200.0, "{free:?}");
         let near = [[480.0, 100.0], [440.0, 200.0], [608.0, 400.0], [12.0, 300.0], [300.0, 70.0], [495.0, 21.0]];
-        // Among the tools, and in the legend.
+        // Some of these points are within the tools or the legend.
         for at in near.into_iter().chain([[200.0, 40.0], [555.0, 120.0], [604.0, 60.0], [520.0, 210.0]]) {
             let at = Pos2::from(at);
             let place = beside(at, size, room, &[legend, tools]);

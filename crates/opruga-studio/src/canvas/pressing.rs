@@ -21,8 +21,8 @@ struct Press {
     beside: bool,
 }
 
-/// A pull that has had no effect yet. While time is stopped, a press without movement only selects a body, and the recording after this moment is
-/// kept.
+/// A pull that has had no effect yet. While time is stopped, a press without movement only selects a body, so that it does not delete what was
+/// recorded after this moment.
 #[derive(Clone, Debug)]
 pub(super) struct Waiting {
     grab: Request,
@@ -31,13 +31,13 @@ pub(super) struct Waiting {
 }
 
 impl Waiting {
-    /// Whether the pointer has moved since, or time has passed.
+    /// Whether the pointer has moved or time has passed since the press.
     fn is_over(&self, shown: &Shown, at: Pos2) -> bool {
         (at - self.at).length() > 2.0 || shown.playing || shown.frames != self.frames
     }
 }
 
-/// The position at which a button was pressed since the last picture; on a slow screen the pointer has moved on since.
+/// The position at which a button was pressed since the previous picture. On a slow screen, the pointer may have moved on since then.
 pub(super) fn pressed_at(ui: &Ui) -> Option<Pos2> {
     let press = |event: &egui::Event| match event {
         egui::Event::PointerButton { pos, pressed: true, .. } => Some(*pos),
@@ -46,8 +46,8 @@ pub(super) fn pressed_at(ui: &Ui) -> Option<Pos2> {
     ui.input(|i| i.events.iter().rev().find_map(press))
 }
 
-/// The path of the pointer since the last picture. If the press `began` since then, the path begins with the press; it ends with the release. On a
-/// slow screen many positions come with one picture.
+/// The path of the pointer since the previous picture. If the press `began` since then, the path begins with the press. If the button was released,
+/// the path ends with the release. On a slow screen, many positions arrive with one picture.
 fn path(events: &[egui::Event], began: bool) -> Vec<Pos2> {
     use egui::Event::{PointerButton as Button, PointerMoved};
     let (mut path, mut down) = (Vec::new(), !began);
@@ -126,7 +126,7 @@ impl Canvas {
             return;
         }
         let began = self.doing == Doing::Nothing && pressed.is_some() && response.contains_pointer();
-        // An action on the right side is treated as if it were on the left, wherever the pointer moves.
+        // An action that begins on the right side is converted to positions on the left side, wherever the pointer then moves.
         if self.doing == Doing::Nothing {
             self.offset = offset.unwrap_or_default();
         }
@@ -150,7 +150,7 @@ impl Canvas {
         if self.waiting.as_ref().is_some_and(|waiting| !holds || waiting.is_over(shown, at)) {
             asks.extend(self.waiting.take().filter(|_| holds).map(|waiting| waiting.grab));
         }
-        // On a slow screen, a press comes together with the movement before it, which does not count.
+        // On a slow screen, a press arrives together with the movement before it, which is ignored.
         let delta = if began { Vec2::ZERO } else { ui.input(|i| i.pointer.delta()) };
         match &mut self.doing {
             Doing::Nothing => {}
@@ -217,7 +217,7 @@ impl Canvas {
             return;
         }
         let Some(under) = under else {
-            // Away from all bodies, dragging moves the view; in space it rotates it.
+            // Away from all bodies, dragging moves the view in the plane and rotates it in space.
             self.doing = if shown.dimension == 3 { Doing::Turning } else { Doing::Panning };
             return;
         };
@@ -227,7 +227,7 @@ impl Canvas {
             (PointerButton::Secondary, ..) => Grip::Push,
             (_, true, _) | (_, _, Tool::Pin) => Grip::Pin,
             (_, _, Tool::Push) => Grip::Push,
-            // The positions of bodies are common to both scenes; the left one is used to place them.
+            // The bodies have the same initial positions in both scenes and can be moved only in the left one.
             (_, _, Tool::Shift) if beside => return,
             (_, _, Tool::Shift) => {
                 let start = self.point(shown, rect, at, depth).unwrap_or(under.point);
@@ -237,7 +237,7 @@ impl Canvas {
             _ => Grip::Pull,
         };
         self.pulled |= grip == Grip::Pull;
-        // A pinned node is grabbed at its own position, so that the session finds the same node.
+        // A pinned node is grabbed at the position of its pin, so that the session finds the same node.
         let pinned = pin.filter(|_| grip == Grip::Pin).map(|pin| {
             let of_left = shown.pins.iter().find(|left| (left.0, left.1) == (pin.0, pin.1));
             of_left.map_or(pin.2, |left| left.2)
@@ -252,7 +252,8 @@ impl Canvas {
         } else {
             asks.push(grab);
         }
-        // A push begins without force although the pointer is next to the node; a pulled node moves to the pointer.
+        // A push begins without force although the pointer is a little away from the node, so the point of the press is stored. A pulled node,
+        // however, moves to the pointer.
         let pressed = self.point(shown, rect, at, depth).filter(|_| grip == Grip::Push);
         self.doing = Doing::Holding(depth, pressed.map(|pressed| [pressed, under.point]));
     }
@@ -280,7 +281,8 @@ impl Canvas {
     }
 }
 
-/// The pin under the pointer, set by the user or, if its nodes are those of the world, by the scene: body, node, position [m].
+/// Finds the pin under the pointer: its body, its node and its position [m]. The user has set it or, if `own_nodes` is set, the scene. `own_nodes`
+/// means that the nodes of the picture are those of the world to which requests refer.
 fn pin_under(shown: &Shown, under: &Under, own_nodes: bool) -> Option<(usize, u32, [f64; 3])> {
     let own = shown.bodies.iter().position(|body| body.number == under.body);
     let own = own.and_then(|index| shown.picture.bodies.get(index));
@@ -311,7 +313,7 @@ mod tests {
         let whole =
             [Event::PointerMoved(d), button(a, true), Event::PointerMoved(b), Event::PointerMoved(c), button(d, false)];
         assert_eq!(path(&whole, true), [a, b, c, d]);
-        // The path in the pictures between press and release, and in the last picture, after which the pointer moves on.
+        // First a picture between press and release, then the picture with the release, after which the pointer moves on.
         assert_eq!(path(&whole[2..4], false), [b, c]);
         assert_eq!(path(&[Event::PointerMoved(b), button(c, false), Event::PointerMoved(d)], false), [b, c]);
         assert!(path(&[], false).is_empty());

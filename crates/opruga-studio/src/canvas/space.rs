@@ -1,5 +1,5 @@
-//! A scene in space, which the renderer of the command line draws to a texture, in parallel to the interface. It needs no graphics card, and draws
-//! depth, smooth shading and a soft shadow.
+//! Draws a scene in space. The renderer of the command line draws it to a texture, in parallel to the interface. This renderer needs no graphics
+//! card, and draws depth, smooth shading and a soft shadow.
 
 use super::arrows::Longest;
 use super::look::Look;
@@ -18,7 +18,7 @@ const MOST_PIXELS: f64 = 1400.0;
 /// The largest fraction of the picture that a scene fills.
 const FILLED: f64 = 0.96;
 
-/// A picture and what it shows.
+/// A picture, and the scene and camera that it shows.
 struct Drawn {
     image: Image,
     shown: Arc<Shown>,
@@ -48,7 +48,7 @@ pub(crate) struct Space {
     texture: Option<TextureHandle>,
     /// The scene and camera of the picture on the screen, to which overlays and presses refer.
     seen: Option<(Arc<Shown>, Eye)>,
-    /// The last order, so that the same picture is not drawn twice.
+    /// The contents of the last picture that was ordered, so that the same picture is not drawn twice.
     last: Option<Last>,
 }
 
@@ -69,7 +69,7 @@ impl Space {
         (self.last, self.seen) = (None, None);
     }
 
-    /// Draws its picture again after its device was lost.
+    /// Makes the picture be uploaded again after its device was lost.
     #[cfg(target_arch = "wasm32")]
     pub(crate) fn forget_texture(&mut self) {
         (self.texture, self.last) = (None, None);
@@ -129,8 +129,8 @@ impl Space {
         self.seen.as_ref().map(|(shown, _)| shown)
     }
 
-    /// The distance of the camera of the picture on the screen from the point in the centre of the view [m]. When the camera comes closer, a held
-    /// body keeps its position behind that point.
+    /// The distance from the camera of the picture on the screen to the point in the centre of the view [m]. The distance of a held body is stored
+    /// relative to this point, so that the body keeps its position when the camera moves closer.
     pub(crate) fn distance(&self, scales: &View, rect: Rect) -> Option<f64> {
         let target = self.seen.as_ref().map(|(_, eye)| *eye).or(self.eye)?.target;
         self.lens(scales, rect)?.see(target).map(|(_, distance)| distance)
@@ -155,7 +155,7 @@ impl Space {
         }
     }
 
-    /// Shows the last picture and orders the next one.
+    /// Shows the latest picture and orders the next one.
     pub(crate) fn show(
         &mut self,
         ui: &Ui,
@@ -170,7 +170,7 @@ impl Space {
         let shrink = (MOST_PIXELS / (f64::from(rect.width().max(rect.height())) * fine)).min(1.0) * fine;
         let side = |points: f32| ((f64::from(points) * shrink).round() as u32).max(1);
         let size = [side(rect.width()), side(rect.height())];
-        // A mark is not necessary if a scene has only one body.
+        // If a scene has only one body, the selected body needs no mark.
         let selected = selected.filter(|_| shown.bodies.len() > 1).map(String::from);
         let wanted: Last = (shown.opened, shown.frames, eye, size, paper.dark, fingerprint(shown), selected.clone());
         if self.last.as_ref() != Some(&wanted) && !self.busy.swap(true, Ordering::AcqRel) {
@@ -196,7 +196,7 @@ impl Space {
                 context.request_repaint();
             }));
         }
-        // If the picture shows this very moment, later additions, such as the displacement of a pull, are drawn over it.
+        // If the picture shows the present moment, changes since it was ordered, such as a moved pointer of a pull, are drawn over it.
         if self.last.as_ref() == Some(&wanted)
             && !self.is_drawing()
             && let Some((seen, _)) = &mut self.seen
@@ -213,7 +213,7 @@ impl Space {
 /// Moves the camera back until it sees the whole box of a view, however narrow the picture is.
 fn whole(mut eye: Eye, view: &View, size: Vec2) -> Eye {
     let sides = [f64::from(size.x), f64::from(size.y)];
-    // Closer parts shrink more slowly as the camera moves back, so a few iterations are needed.
+    // When the camera moves back, different parts of the box shrink by different factors, so a few iterations are needed.
     for _ in 0..8 {
         let lens = eye.lens(view, sides);
         let mut most = 0.0_f64;
@@ -233,7 +233,7 @@ fn whole(mut eye: Eye, view: &View, size: Vec2) -> Eye {
     eye
 }
 
-/// A fingerprint of everything that changes a picture of the same frame.
+/// A fingerprint of everything that may change the picture of a frame.
 fn fingerprint(shown: &Shown) -> u64 {
     let picture = &shown.picture;
     let label = picture.legend.as_ref().map_or(0, |legend| legend.label.len() as u64 * 31 + legend.unit.len() as u64);
@@ -256,7 +256,7 @@ fn drawn(order: &Order) -> Option<Drawn> {
     if let Some(legend) = &mut picture.legend {
         legend.range = Some(order.range);
     }
-    // Labels and pulls are drawn by the interface, sharper than in the picture.
+    // The interface itself draws labels and pulls, which are then sharper than in the picture.
     picture.pulls.clear();
     picture.bodies.iter_mut().for_each(|body| body.label.clear());
     let selected = order.shown.bodies.iter().position(|body| Some(&body.name) == order.selected.as_ref());

@@ -22,7 +22,7 @@ impl Tool {
     /// All of them, in the order of the toolbar.
     pub const ALL: [Tool; 5] = [Tool::Pull, Tool::Push, Tool::Pin, Tool::Shift, Tool::Draw];
 
-    /// Its name and what it does.
+    /// The name of the tool and a text about what it does.
     pub fn words(self, language: Language) -> (&'static str, &'static str) {
         match self {
             Tool::Pull => (language.pull(), language.pull_hint()),

@@ -12,7 +12,7 @@ use opruga::pictures::Quantity;
 /// The choice in the upper bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chosen {
-    /// Nothing that concerns the window itself.
+    /// No choice that concerns the window itself.
     Nothing,
     /// Open the gallery.
     Gallery,
@@ -28,9 +28,9 @@ pub enum Chosen {
     Theme,
     /// Save a file.
     Keep(What),
-    /// Copy an address that contains the scene; on a web page.
+    /// Copy an address that contains the scene. Only on a web page.
     Link,
-    /// Open a file; on a web page, because files cannot be dropped on a phone.
+    /// Open a file. Only on a web page, because files cannot be dropped on a phone.
     File,
 }
 
@@ -102,7 +102,7 @@ pub fn file_name(words: Language, what: What) -> &'static str {
     }
 }
 
-/// The buttons of other parts of the window, from left to right or from the right.
+/// Shows the buttons of other parts of the window, placed from left to right or from right to left.
 fn windows(ui: &mut Ui, words: Language, chosen: &mut Chosen, from_right: bool) {
     let theme = if ui.visuals().dark_mode { words.light() } else { words.dark() };
     let mut buttons = [
@@ -125,7 +125,7 @@ fn windows(ui: &mut Ui, words: Language, chosen: &mut Chosen, from_right: bool) 
     }
 }
 
-/// Play, step, and the time slider.
+/// Shows the bar below the scene: play, step, and the time slider.
 pub fn time(ui: &mut Ui, shown: &Shown, words: Language, narrow: bool, asks: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         flow(ui, shown, words, asks);
@@ -141,7 +141,7 @@ pub fn time(ui: &mut Ui, shown: &Shown, words: Language, narrow: bool, asks: &mu
     }
 }
 
-/// The controls that start and stop time.
+/// Shows the controls that start and stop time.
 fn flow(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
     if ui.button(words.reset()).on_hover_text(format!("{}  (Home)", words.reset_hint())).clicked() {
         asks.push(Request::Reset);
@@ -159,7 +159,7 @@ fn flow(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
     }
 }
 
-/// Slow motion.
+/// Shows the choice of the speed of simulated time.
 fn speed(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
     let speed = ui.label(words.speed());
     let mut wanted = shown.speed;
@@ -170,7 +170,7 @@ fn speed(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
     }
 }
 
-/// The time slider.
+/// Shows the time slider.
 fn course(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) {
     let time = ui.label(words.time());
     let mut frame = shown.frames;
@@ -193,9 +193,9 @@ fn course(ui: &mut Ui, shown: &Shown, words: Language, asks: &mut Vec<Request>) 
     }
 }
 
-/// Marks how far a recording reaches: a line along the time slider, a mark at its end, and the time in seconds.
+/// Marks where a recording ends: a line along the time slider, a mark at the end of the line, and the time in seconds.
 fn end_of_recording(ui: &Ui, shown: &Shown, words: Language, until: u64, slider: Rect) {
-    // The handle of the slider stays within its ends.
+    // The centre of the handle does not reach the ends of the slider.
     let inner = slider.shrink2(vec2(0.5 * slider.height().min(slider.width()) * 0.8, 0.0));
     let share = until as f32 / shown.latest.max(1) as f32;
     let (x, y) = (inner.left() + share.min(1.0) * inner.width(), slider.center().y);
@@ -209,13 +209,13 @@ fn end_of_recording(ui: &Ui, shown: &Shown, words: Language, until: u64, slider:
     response.on_hover_text(format!("{end}\n{}", words.recording_hint()));
 }
 
-/// The menu for the colours and for the other parts of the picture.
+/// Shows the menu for the colours and for the other parts of the picture.
 pub fn view_menu(ui: &mut Ui, shown: &Shown, words: Language, now: Show, asks: &mut Vec<Request>) {
     let mut show = now;
     let drawn = shown.has_drawings && now.own_colours;
     let name = if drawn { words.own_colours() } else { quantity_name(words, now.quantity) };
     ui.menu_button(format!("{}: {name}", words.colour()), |ui| {
-        // A drawing has its own colours until another colouring is chosen for it.
+        // A drawing has its own colours until the user chooses a quantity for the colours.
         if shown.has_drawings {
             let choice = ui.radio(drawn, words.own_colours()).on_hover_text(words.own_colours_hint());
             if choice.clicked() {
@@ -254,7 +254,7 @@ pub fn view_menu(ui: &mut Ui, shown: &Shown, words: Language, now: Show, asks: &
             }
         }
     });
-    // Several of them can be chosen at once.
+    // The menu stays open after a click, because several items can be chosen at once.
     let open = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     MenuButton::new(words.overlays()).config(open).ui(ui, |ui| {
         ui.checkbox(&mut show.springs, words.springs());

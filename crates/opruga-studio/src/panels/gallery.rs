@@ -18,7 +18,7 @@ pub struct Gallery {
     /// The folder in which pictures are stored between starts.
     #[cfg(not(target_arch = "wasm32"))]
     pub cache: Option<std::path::PathBuf>,
-    /// The pictures drawn so far; none if a scene cannot be drawn.
+    /// The pictures drawn so far; none for a scene that cannot be drawn.
     pictures: BTreeMap<&'static str, Option<TextureHandle>>,
     coming: Option<(&'static str, Receiver<Option<Pixels>>)>,
     /// The scenes whose cards are in sight.
@@ -37,7 +37,7 @@ impl Gallery {
         Gallery { registries, ..Gallery::default() }
     }
 
-    /// Draws its pictures again after their device was lost.
+    /// Forgets the pictures after their device was lost, so that they are drawn again.
     #[cfg(target_arch = "wasm32")]
     pub fn forget_textures(&mut self) {
         (self.pictures, self.coming) = (BTreeMap::new(), None);
@@ -122,7 +122,7 @@ impl Gallery {
         .inner
     }
 
-    /// Receives a finished picture, and orders the first visible one that is missing; pictures out of sight are not drawn.
+    /// Receives a finished picture, and orders the first missing picture whose card is visible. Pictures out of sight are not drawn.
     fn take(&mut self, ui: &Ui) {
         if let Some((name, coming)) = &self.coming {
             let done = match coming.try_recv() {

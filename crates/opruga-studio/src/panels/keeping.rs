@@ -1,5 +1,5 @@
-//! Saving: the scene, pictures, films and tables. Films and tables are computed again from the scene in the background, so they are the same as those
-//! that the command line makes. A desktop window writes files, a web page gives them as downloads.
+//! Saves the scene, pictures, films and tables. Films and tables are computed again from the scene in the background, so they are the same as those
+//! that the command line makes. A desktop window writes files, and a web page offers them as downloads.
 
 use crate::differences::right_of;
 use crate::document::Document;
@@ -19,7 +19,7 @@ use std::sync::mpsc::Receiver;
 
 /// The number of pictures of a film per simulated second.
 const RATE: f64 = 30.0;
-/// The largest number of frames of a GIF animation, which would otherwise be too large.
+/// The largest number of frames of a GIF animation. With more frames, the file would be too large.
 const MOST_GIF_FRAMES: usize = 300;
 
 /// A type of file.
@@ -27,13 +27,13 @@ const MOST_GIF_FRAMES: usize = 300;
 pub enum What {
     /// The scene with everything that was done.
     Scene,
-    /// The present moment.
+    /// A picture of the present moment.
     Picture,
     /// A film as MP4.
     Film,
     /// A film as GIF.
     Animation,
-    /// A row for every frame.
+    /// A table with a row for every frame.
     Table,
 }
 
@@ -108,7 +108,7 @@ impl Keeping {
         self.making.push(Making { what, progress: Progress::default(), stage: Stage::Asked(show, link.copy()) });
     }
 
-    /// Checks whether something is finished.
+    /// Checks whether a file is finished.
     pub fn poll(&mut self, link: &Link) {
         let (message, message_count, saved) = (&mut self.message, &mut self.message_count, &mut self.saved);
         self.making.retain_mut(|Making { what, progress, stage }| match stage {
@@ -224,7 +224,7 @@ async fn table(copied: &Copied, progress: &Progress) -> Result<Vec<u8>, Report> 
         engine.frame()?;
         rows.push(engine.row());
     }
-    // Bodies may be added and removed, so the table has columns for everything that existed at any time.
+    // Bodies may be added and removed during the run, so the table has columns for everything that existed at any time.
     let mut names: Vec<String> = Vec::new();
     for (name, _) in rows.iter().flatten() {
         if !names.contains(name) {

@@ -1,4 +1,4 @@
-//! Shapes that become bodies.
+//! The menu of shapes that become bodies.
 
 use crate::session::{Edit, Request};
 use crate::shown::Shown;
@@ -6,12 +6,12 @@ use crate::words::Language;
 use egui::Ui;
 use toml_edit::{InlineTable, Value};
 
-/// Name, shape, mass, models.
+/// A sample body: its name, shape, mass and models.
 type Sample = (fn(Language) -> &'static str, &'static str, f64, &'static str);
 
 const GAS: &str = "{ kind = \"mass_spring\", stiffness = 1600.0, damping = 1.0 }, { kind = \"pressure\", nRT = 40.0 }, \
                    { kind = \"bending\", stiffness = 0.02 }";
-/// Without springs along the diagonals, nothing would prevent its cells from folding flat.
+/// The springs of a lattice. Without those along the diagonals (`edges = "shear"`), nothing would prevent the cells from folding flat.
 const JELLY: &str = "{ kind = \"mass_spring\", stiffness = 800.0, damping = 0.5, edges = \"shear\" }";
 const ROPE: &str = "{ kind = \"mass_spring\", stiffness = 800.0, damping = 0.5 }";
 const BALLOON: &str =
@@ -56,7 +56,7 @@ const SPACE: [Sample; 4] = [
     (Language::of_jelly, "{ kind = \"grid\", size = [0.6, 0.6, 0.6], cells = [5, 5, 5] }", 0.8, JELLY),
 ];
 
-/// The menu of shapes; a chosen shape is placed at a point, or near it if there is no space.
+/// Shows the menu of shapes. A chosen shape is placed at the point `at`, or near it if there is no space.
 pub fn menu(ui: &mut Ui, shown: &Shown, words: Language, at: [f64; 3], asks: &mut Vec<Request>) {
     let samples: &[Sample] = if shown.dimension == 3 { &SPACE } else { &PLANE };
     ui.menu_button(words.add(), |ui| {
@@ -106,7 +106,7 @@ mod tests {
         }
     }
 
-    /// The volume of a closed surface, the area of a closed outline or an open surface, or the length of a line.
+    /// The volume within a closed surface, the area within a closed outline or of an open surface, or the length of a line.
     fn enclosed(body: &BodyPicture) -> f64 {
         let at = |node: u32| body.positions[node as usize];
         let cross = |a: [f64; 3], b: [f64; 3]| {

@@ -1,4 +1,4 @@
-//! A parameter in the panel: its slider, unit and description, all made from the specification of its model.
+//! Shows a parameter in the panel: its slider, unit and description. All of them are made from the specification of the model.
 
 use crate::words::{Language, Part};
 use egui::{ComboBox, DragValue, Response, RichText, Slider, SliderClamping, Ui};
@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 /// A field of a kind in the panel, with the dimension of the scene and the language.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldContext<'a> {
-    /// The path that identifies it in the interface.
+    /// The path that identifies the field in the interface.
     pub path: &'a str,
-    /// What its kind belongs to.
+    /// The part of a scene to which its kind belongs, such as a model or an integrator.
     pub part: Part,
     /// Its kind.
     pub kind: &'a str,
@@ -31,19 +31,19 @@ pub struct FieldContext<'a> {
 pub enum Change {
     /// Another value of the field.
     Value(Value),
-    /// Other values of its kind, because the field replaces another one, or is removed.
+    /// Other values of the whole kind, because the field replaces another one, or is removed.
     Whole(Values),
 }
 
-/// The values that are being set: a slider that is being dragged shows the value of the pointer, and not the one reported by the simulation.
+/// The values that the user is setting. A slider that is being dragged shows the value at the pointer, and not the value that the simulation reports.
 #[derive(Debug, Default)]
 pub struct Hand {
     grabbed: Option<(String, Value)>,
-    /// The upper ends of sliders without a limit, so that they do not change during a drag.
+    /// The upper ends of sliders without a limit. They are stored so that they do not change during a drag.
     ends: BTreeMap<String, f64>,
 }
 
-/// The initial values of a kind: its defaults, required fields, and the first of fields of which exactly one must be given.
+/// Makes the initial values of a kind: its defaults, its required fields and, if exactly one of several fields must be given, the first of them.
 pub fn begin(spec: &'static Spec, dimension: usize) -> Values {
     let mut values = Values::defaults(spec, dimension);
     let chosen = |field: &&Field| match field.default {
@@ -60,11 +60,11 @@ pub fn begin(spec: &'static Spec, dimension: usize) -> Values {
     values
 }
 
-/// The same values without those of some fields, which are removed or get their defaults again.
+/// Returns the same values without those of the named fields. These fields are removed or get their defaults again.
 fn without(spec: &'static Spec, values: &Values, names: &[&str], dimension: usize) -> Values {
     let mut rest = Values::defaults(spec, dimension);
     for (name, value) in values.iter().filter(|(name, _)| !names.contains(name)) {
-        // It was allowed before.
+        // The value was allowed before, so it is allowed now.
         let _ = rest.set(spec, name, value.clone(), dimension);
     }
     rest
@@ -75,11 +75,11 @@ fn companions(spec: &Spec, name: &str) -> &'static [&'static str] {
     spec.fields.iter().find(|field| field.name == name).map_or(&[], |field| field.companions)
 }
 
-/// The values with this field instead of the other one of the choice; none if no starting value is known for it, or if it does not belong to a
-/// choice.
+/// Returns the values with this field instead of another field of the same choice; none if no starting value is known for the field, or if it does
+/// not belong to a choice.
 pub fn instead(spec: &'static Spec, values: &Values, field: &Field, dimension: usize) -> Option<Values> {
     let Unset::OneOf(set) = field.default else { return None };
-    // Values that only another field of the choice requires are removed with it.
+    // Values that only another field of the choice requires are removed together with that field.
     let asked_for = |name: &&str| spec.fields.iter().find(|f| f.name == *name).into_iter().flat_map(words_of);
     let words = set.iter().flat_map(asked_for).map(|(name, _)| name);
     let companions = set.iter().flat_map(|name| companions(spec, name)).copied();
@@ -141,7 +141,7 @@ fn usual(unit: &str) -> f64 {
     }
 }
 
-/// Shows a parameter; returns the request if it was changed. Values that no slider can represent are shown but cannot be changed.
+/// Shows a parameter. Returns the request if the user has changed it. Values that no slider can represent are shown but cannot be changed.
 pub fn show(ui: &mut Ui, hand: &mut Hand, context: FieldContext<'_>, now: Option<&Value>) -> Option<Change> {
     let FieldContext { path, part, kind, field, words, .. } = context;
     let grabbed =
@@ -184,23 +184,23 @@ pub fn show(ui: &mut Ui, hand: &mut Hand, context: FieldContext<'_>, now: Option
             .inner
         }
     };
-    // A control without effect is shown with the reason, but is disabled.
+    // A control without effect is disabled, and the reason is shown.
     ui.push_id(path, |ui| ui.add_enabled_ui(silent.is_none(), shown).inner).inner
 }
 
-/// Explains a control, whether it is enabled or not.
+/// Shows an explanation when the pointer is over a control, whether the control is enabled or not.
 fn explain(response: Response, about: &str) -> Response {
     response.on_hover_text(about).on_disabled_hover_text(about)
 }
 
-/// Whether no given field requires this field.
+/// Whether none of the given fields requires this field.
 fn companion_is_silent(spec: &Spec, values: &Values, name: &str) -> bool {
     let needs = |field: &Field| field.companions.contains(&name) && values.get(field.name).is_some();
     !spec.fields.iter().any(needs)
 }
 
-/// Shows a field that the scene does not give: a button that gives it a value, possibly instead of another field, or only its name if a button cannot
-/// give it.
+/// Shows a field that the scene does not give. A button gives the field a value, possibly instead of another field. If no starting value is known,
+/// only the name is shown.
 fn absent(ui: &mut Ui, context: FieldContext<'_>, name: &str, unit: &str, about: &str) -> Option<Change> {
     let FieldContext { part, kind, field, words, .. } = context;
     let start = starting(field).map(Change::Value);
@@ -234,7 +234,7 @@ fn number(
     whole: bool,
 ) -> Option<f64> {
     let (low, high, open) = ends(field, now, whole);
-    // An upper end without a limit does not change after the slider was first shown, unless the value has exceeded it.
+    // If there is no limit, the upper end does not change after the slider was first shown, unless the value has exceeded it.
     let high = if open {
         let end = hand.ends.entry(path.to_string()).or_insert(high);
         if now > *end {
@@ -267,13 +267,13 @@ fn number(
     changed.then_some(x)
 }
 
-/// The upper end of sliders for whole numbers whose range extends beyond it.
+/// The upper end of sliders for whole numbers whose allowed range is larger.
 const MOST_WHOLE: i64 = 100_000;
 
-/// Limits beyond this are not used as ends of sliders.
+/// Limits whose magnitude is larger than this are not used as ends of sliders.
 const FAR: f64 = 1e5;
 
-/// The ends of a slider, and whether the upper one may grow.
+/// Returns the ends of a slider, and whether the upper one may grow.
 fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
     let default = match field.default {
         Unset::Number(x) => x,
@@ -284,7 +284,7 @@ fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
     let wide = 10f64.powf((20.0 * size).log10().ceil());
     match field.range {
         Allowed::Number { least, greatest } => {
-            // A distant limit is not used as an end, because it says what is possible and not what is usual.
+            // A very large limit is not used as an end, because it gives the possible values and not the usual ones.
             let low = match least {
                 Bound::Closed(x) | Bound::Open(x) if x >= -FAR => x,
                 _ if whole => 0.0,
@@ -296,7 +296,7 @@ fn ends(field: &Field, now: f64, whole: bool) -> (f64, f64, bool) {
                 _ => (low, wide, true),
             }
         }
-        // For numbers of vertices and similar counts, the end is a practical number.
+        // Numbers of vertices and similar counts have very large limits, so the slider ends at a practical number.
         Allowed::Integer { least, greatest } if greatest >= MOST_WHOLE => {
             (least as f64, (MOST_WHOLE as f64).max(wide), false)
         }
@@ -356,7 +356,7 @@ mod tests {
         assert!(low == 3.0 && (200.0..1e6).contains(&high));
     }
 
-    /// A body of every type: an outline with gas in it, one with cells, and the same in space.
+    /// Bodies of all types: an outline that may contain gas and an outline with cells, in the plane and in space.
     const BODIES: [(usize, &str); 4] = [
         (2, "kind = \"ring\", radius = 0.5, vertices = 16, center = [0.0, 2.0]"),
         (2, "kind = \"grid\", corner = [0.0, 1.0], size = [1.0, 1.0], cells = [2, 2]"),
@@ -372,7 +372,7 @@ mod tests {
         )
     }
 
-    /// Why a body of this scene cannot have these models; none if it can.
+    /// Returns the reason why the body of this scene cannot have these models; none if it can.
     fn refused(text: &str, models: Vec<Values>) -> Option<String> {
         use crate::session::{Request, Session};
         let opened = Session::open("it", text, opruga::io::Files::default(), opruga::Options::default());

@@ -1,4 +1,4 @@
-//! Curves over time: energy, gas, momentum, computing time.
+//! Shows curves over time: energy, gas, momentum and computing time.
 
 use crate::samples::Sample;
 use crate::shown::Shown;
@@ -8,10 +8,10 @@ use egui_plot::{AxisHints, GridInput, GridMark, Line, Plot, PlotPoints, VLine};
 use opruga::draw::{OKABE_ITO, format_tick, format_value, nice_ticks};
 use std::sync::PoisonError;
 
-/// A curve: runs of points, between which the values are unknown.
+/// A curve, divided into runs of points. Between two runs the values are unknown.
 type Curve = Vec<Vec<[f64; 2]>>;
 
-/// Shows the curves side by side; those of gas belong to the selected body.
+/// Shows the plots side by side. The curves of gas belong to the selected body.
 pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>, available: egui::Vec2) {
     let samples = shown.samples.read().unwrap_or_else(PoisonError::into_inner);
     let selected = shown.bodies.iter().find(|body| selected == Some(body.name.as_str()));
@@ -54,7 +54,7 @@ pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>,
         let lines = energies.into_iter().zip(0..).map(|(name, k)| (name, curve(&|s| Some(s.energy[k])))).collect();
         plot(ui, "energy", words.energy(), size, now, lines);
         if let Some(body) = selected.filter(|_| !readings.is_empty()) {
-            // Volume and pressure differ in magnitude: each is shown as a fraction of its largest value.
+            // Volume and pressure differ in magnitude, so each is shown as a fraction of its largest value.
             let share = |name: &str| {
                 let value = |sample: &Sample| {
                     sample.readings_of(body.number).iter().find(|(other, _)| *other == name).map(|(_, x)| *x)
@@ -75,7 +75,7 @@ pub fn show(ui: &mut Ui, shown: &Shown, words: Language, selected: Option<&str>,
     });
 }
 
-/// About `count` round numbers on an axis. All of them get the spacing of the whole grid, so that they look alike.
+/// Returns about `count` round numbers on an axis. All marks get the spacing of the whole grid, so that they look alike.
 fn marks(input: GridInput, count: usize) -> Vec<GridMark> {
     let ticks = nice_ticks(input.bounds.0, input.bounds.1, count);
     let step_size = ticks.windows(2).map(|pair| pair[1] - pair[0]).fold(input.bounds.1 - input.bounds.0, f64::min);
@@ -87,7 +87,7 @@ fn figure(mark: &GridMark) -> String {
     if mark.step_size > 0.0 { format_tick(mark.value, mark.step_size) } else { format_value(mark.value) }
 }
 
-/// A curve thinned for a number of screen columns: of the points in one column it keeps the first, the lowest, the highest and the last.
+/// Thins a curve for a number of screen columns. Of the points in one column, the first, the lowest, the highest and the last are kept.
 fn thinned(points: Vec<[f64; 2]>, columns: usize) -> Vec<[f64; 2]> {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return points };
     if points.len() <= 4 * columns || last[0] <= first[0] {
@@ -112,7 +112,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, now: Option<f64>, 
     let dark = ui.visuals().dark_mode;
     let ink = |number: usize| {
         let [r, g, b] = OKABE_ITO[number % OKABE_ITO.len()];
-        // Black is the seventh of these colours.
+        // One of these colours is black, which is not visible on a dark background.
         if dark && (r, g, b) == (0, 0, 0) { Color32::from_gray(200) } else { Color32::from_rgb(r, g, b) }
     };
     ui.vertical(|ui| {
@@ -126,7 +126,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, now: Option<f64>, 
                 ui.label(RichText::new(*name).size(11.0).color(ink(number)));
             }
         });
-        // Short labels, which may be close to one another.
+        // The labels are short, so they may be close to one another.
         let seconds = AxisHints::new_x().label_spacing(24.0..=32.0);
         let seconds = seconds.formatter(|mark, _| format!("{} s", figure(&mark)));
         let plot = Plot::new(id)
@@ -142,7 +142,7 @@ fn plot(ui: &mut Ui, id: &str, title: &str, size: egui::Vec2, now: Option<f64>, 
             .y_axis_formatter(|mark, _| figure(&mark))
             .y_axis_min_width(30.0);
         let weak = ui.visuals().weak_text_color();
-        // Points that the screen cannot distinguish are not drawn, because a minute has thousands of moments.
+        // Points that the screen cannot distinguish are not drawn, because a minute of simulated time has thousands of points.
         let ends = lines.iter().flat_map(|(_, curve)| curve).flat_map(|run| run.first().into_iter().chain(run.last()));
         let (first, last) = ends.fold((f64::MAX, f64::MIN), |(a, b), point| (a.min(point[0]), b.max(point[0])));
         let columns = |run: &[[f64; 2]]| {
@@ -191,7 +191,7 @@ mod tests {
         assert_eq!((kept[0], kept[kept.len() - 1]), (curve[0], curve[2999]));
         assert!(kept.contains(&curve[1234]) && kept.contains(&curve[2345]));
         assert!(kept.windows(2).all(|pair| pair[0][0] < pair[1][0]), "in the order of time");
-        // Curves with few points, and points of the same moment, stay as they are.
+        // Curves with few points are not changed.
         assert_eq!(thinned(curve[..700].to_vec(), 180).len(), 700);
         assert_eq!(thinned(vec![[1.0, 2.0]; 900], 180).len(), 900);
         assert!(thinned(Vec::new(), 180).is_empty());

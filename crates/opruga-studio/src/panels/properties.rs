@@ -1,4 +1,4 @@
-//! The side panel: the selected body, the world, the obstacles. All of it is made from the specifications of models, integrators, shapes and
+//! The side panel with the selected body, the world and the obstacles. It is made from the specifications of models, integrators, shapes and
 //! obstacles, so that new ones appear without further work.
 
 use super::parameter::{self, Change, FieldContext, Hand};
@@ -19,7 +19,7 @@ pub struct Properties {
     /// The specifications that it offers.
     catalogue: Catalogue,
     hand: Hand,
-    /// A field of a shape that is set when the pointer is released.
+    /// The new value of a field of a shape, which is set when the pointer is released.
     pending: Option<(String, &'static str, Value)>,
     /// Whether the hash of the state is displayed.
     pub hash: bool,
@@ -27,7 +27,7 @@ pub struct Properties {
     substeps: Option<u32>,
 }
 
-/// The specifications of a dimension.
+/// The specifications that exist in the dimension of the scene.
 struct Kinds {
     models: Vec<&'static Spec>,
     integrators: Vec<&'static Spec>,
@@ -106,7 +106,7 @@ impl Properties {
         });
     }
 
-    /// Shows a parameter; `whole` makes the request if its kind gets other values as a whole.
+    /// Shows a parameter. `whole` makes the request if the values of its whole kind change.
     fn set(
         &mut self,
         ui: &mut Ui,
@@ -142,7 +142,7 @@ impl Properties {
                         "nRT" => " J",
                         _ => "",
                     };
-                    // Each has a fixed height, so that the items below stay where they are, however many numbers there are.
+                    // The height is fixed, so that the items below stay where they are, however many numbers there are.
                     let text = format!("{} {}{unit}", words.reading(name), opruga::draw::format_value(*x));
                     let layout = egui::Layout::left_to_right(egui::Align::Center);
                     ui.allocate_ui_with_layout(Vec2::new(half, 14.0), layout, |ui| {
@@ -215,7 +215,7 @@ impl Properties {
         });
     }
 
-    /// Chooses another model instead of this one, or none.
+    /// Lets the user choose another model instead of this one, or none.
     fn another_model(
         &mut self,
         ui: &mut Ui,
@@ -249,7 +249,7 @@ impl Properties {
         });
     }
 
-    /// The integrator of the scene, or of a body.
+    /// Shows the integrator of the scene, or of a body.
     fn integrator(
         &mut self,
         ui: &mut Ui,
@@ -308,14 +308,14 @@ impl Properties {
         }
     }
 
-    /// The number of nodes of the body's shape.
+    /// Shows the fields of a shape that determine its number of nodes.
     fn shape(&mut self, ui: &mut Ui, body: &BodyShown, dimension: usize, words: Language, asks: &mut Vec<Request>) {
         let Some(shape) = &body.shape else { return };
         let Some(spec) = opruga::shapes::all().into_iter().find(|spec| spec.kind == shape.kind()) else { return };
         let title = RichText::new(format!("{}: {}", words.shape(), words.kind(Part::Shape, spec.kind))).strong();
         CollapsingHeader::new(title).id_salt(("shape", &body.title)).default_open(false).show(ui, |ui| {
             for field in spec.fields.iter().filter(|f| f.name != "center" && f.name != "corner") {
-                // Every value makes another body, but to the user it is the same body.
+                // Every value makes a new body, but for the user it is the same body, so the path contains its title.
                 let path = &format!("shape.{}.{}", body.title, field.name);
                 let now = shape.get(field.name);
                 let context = FieldContext {
@@ -338,7 +338,7 @@ impl Properties {
                     None => continue,
                 };
                 if slider && ui.input(|i| i.pointer.any_down()) {
-                    // A new mesh for every movement of the pointer would be too much, so only the last value counts.
+                    // Making a new mesh for every movement of the pointer would take too long, so only the last value counts.
                     self.pending = Some((body.name.clone(), field.name, value));
                 } else {
                     asks.push(Request::Edit(Edit::Shape(body.name.clone(), field.name, value)));
@@ -352,7 +352,7 @@ impl Properties {
         }
     }
 
-    /// Whether and how bodies come into contact.
+    /// Shows whether there is contact between bodies, and its parameters.
     fn contact(&mut self, ui: &mut Ui, shown: &Shown, dimension: usize, words: Language, asks: &mut Vec<Request>) {
         let mut touch = shown.contact.is_some();
         if ui.checkbox(&mut touch, words.bodies_touch()).on_hover_text(words.bodies_touch_hint()).changed() {
@@ -360,7 +360,7 @@ impl Properties {
         }
         let Some(values) = &shown.contact else { return };
         let spec = values.spec();
-        // A choice of one word is not shown.
+        // A choice between words is not shown if there is only one word.
         for field in spec.fields.iter().filter(|field| !matches!(field.range, Allowed::Choice([_]))) {
             let path = &format!("contact.{}", field.name);
             let row = FieldContext {
@@ -407,10 +407,10 @@ impl Properties {
         self.integrator(ui, words, own, None, kinds, asks);
         let label = ui.label(words.substeps()).on_hover_text(words.substeps_hint());
         let mut substeps = self.substeps.unwrap_or(shown.substeps);
-        // A slider whose range ends before its value would set the value to its end.
+        // The range includes the present value, because a slider would otherwise change the value to the end of its range.
         let most = (4 * shown.substeps.max(16)).next_power_of_two().min(MOST_SUBSTEPS);
         let response = ui.add(Slider::new(&mut substeps, 1..=most).logarithmic(true)).labelled_by(label.id);
-        // Only the value at release counts, not those in between.
+        // Only the value at the release of the pointer counts.
         self.substeps = response.dragged().then_some(substeps);
         if (response.changed() || response.drag_stopped()) && !response.dragged() && substeps != shown.substeps {
             asks.push(Request::Set("time.substeps".into(), Value::Integer(i64::from(substeps))));
@@ -447,7 +447,7 @@ fn name(response: &egui::Response, text: &str) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, text));
 }
 
-/// Gravity as an arrow with a draggable tip; returns the new gravity if it was changed.
+/// Shows gravity as an arrow with a draggable tip. Returns the new gravity if the user has changed it.
 fn gravity_arrow(ui: &mut Ui, now: [f64; 3], y_down: bool, words: Language) -> Option<[f64; 3]> {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(84.0), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, words.gravity()));

@@ -1,4 +1,5 @@
-//! The status line: performance and other numbers. Every number has the space of its longest form, so that nothing below moves while they change.
+//! The status line with performance and other numbers. Every number has the space of its longest form, so that nothing moves while the numbers
+//! change.
 
 use super::bars::file_name;
 use super::keeping::What;
@@ -27,8 +28,8 @@ struct Number {
     about: String,
 }
 
-/// Shows the status line: the numbers, and the renderer. It includes the rate of pictures if they are consecutive, the computing time of the present
-/// frame so far, and the progress of its preparation. Its height depends only on the width of the window.
+/// Shows the status line with the numbers and the name of the renderer. It includes the rate of pictures if they are consecutive, the computing time
+/// of the present frame so far, and the progress of a preparation. The height of the line depends only on the width of the window.
 pub fn status(
     ui: &mut Ui,
     shown: &Shown,
@@ -38,7 +39,7 @@ pub fn status(
     drawn_by: Option<&[String; 2]>,
     mut making: impl Iterator<Item = (What, u32)>,
 ) {
-    // If another row would be needed for the slowdown, it is shown only on hovering.
+    // In a narrow window, the slowdown is shown only while the pointer is over the line, because it would need another row.
     let numbers = numbers(shown, words, rate, narrow || ui.available_width() < BROAD);
     let font = FontId::proportional(SIZE);
     let wide: Vec<f32> = numbers
@@ -56,7 +57,7 @@ pub fn status(
                 let layout = Layout::left_to_right(Align::Center);
                 ui.allocate_ui_with_layout(vec2(wide[number], TALL), layout, |ui| {
                     ui.set_min_size(vec2(wide[number], TALL));
-                    // All numbers except the first belong to the previous frame.
+                    // While a frame is being computed, all numbers except the first belong to the previous frame.
                     if busy.is_some() && number > 0 {
                         ui.disable();
                     }
@@ -83,7 +84,7 @@ pub fn status(
                     notes.push((small(text).color(theme::attention(ui.visuals())), String::new()));
                 }
                 for (what, hundredths) in making.by_ref() {
-                    // If there is little space, the name is cut.
+                    // If there is little space, the end of the name is cut off.
                     let text = small(format!("{hundredths} % {}", file_name(words, what)));
                     notes.push((text.strong(), words.working().into()));
                 }
@@ -146,7 +147,7 @@ fn numbers(shown: &Shown, words: Language, rate: Option<f64>, narrow: bool) -> V
     ]
 }
 
-/// Distributes numbers of these widths over rows; the last row has space after them.
+/// Distributes numbers of these widths over rows. The last row has space left for the text after the numbers.
 fn rows(wide: &[f32], available: f32) -> Vec<core::ops::Range<usize>> {
     let (mut rows, mut first, mut used) = (Vec::new(), 0, 0.0);
     for (index, wide) in wide.iter().enumerate() {
@@ -163,7 +164,7 @@ fn rows(wide: &[f32], available: f32) -> Vec<core::ops::Range<usize>> {
     rows
 }
 
-/// Shows the beginning of the first warning, and the number of the others; a click shows all of them.
+/// Shows the beginning of the first warning and the number of the others. A click shows all of them.
 fn warnings(ui: &mut Ui, shown: &Shown, words: Language) {
     let warnings = of_both(shown);
     let Some(&(right, first)) = warnings.first() else { return };
@@ -190,7 +191,7 @@ fn warnings(ui: &mut Ui, shown: &Shown, words: Language) {
     }
 }
 
-/// The warnings, followed by those that only the right scene has; for each, whether it is one of these.
+/// Returns the warnings of the left scene, followed by those that only the right scene has, each with whether it belongs to the right scene only.
 fn of_both(shown: &Shown) -> Vec<(bool, &Warning)> {
     let own =
         |warning: &&Warning| !shown.warnings.iter().any(|w| (&w.code, &w.message) == (&warning.code, &warning.message));
@@ -198,7 +199,7 @@ fn of_both(shown: &Shown) -> Vec<(bool, &Warning)> {
     shown.warnings.iter().map(|warning| (false, warning)).chain(right.map(|warning| (true, warning))).collect()
 }
 
-/// The step divided by the largest stable one; of two scenes, the larger ratio; none if there is no limit.
+/// The substep divided by the largest stable one. For two scenes, it is the larger ratio. None if there is no limit.
 fn margin(shown: &Shown) -> Option<f64> {
     let limited = shown.stable_step.is_finite() && shown.stable_step > 0.0;
     let own = limited.then(|| shown.frame / f64::from(shown.substeps.max(1)) / shown.stable_step);
@@ -206,7 +207,7 @@ fn margin(shown: &Shown) -> Option<f64> {
     own.into_iter().chain(of_right).max_by(f64::total_cmp)
 }
 
-/// The beginning of a sentence up to its first aside, as far as it fits, in whole words.
+/// Returns the beginning of a sentence up to its first parenthesis or semicolon, shortened to whole words that fit.
 fn beginning(sentence: &str) -> String {
     const MOST: usize = 60;
     let whole = sentence.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -219,7 +220,7 @@ fn beginning(sentence: &str) -> String {
     if end < whole.len() { format!("{cut} …") } else { whole }
 }
 
-/// A count with at most six characters: from a million in millions (M), from a thousand million in thousand millions (G).
+/// A count with at most six characters. Counts from a million are given in millions (M), and those from a thousand million in thousand millions (G).
 fn short(count: f64) -> String {
     if count < 999_999.5 {
         return format!("{count:.0}");

@@ -15,7 +15,7 @@ const WORK: u64 = 96_000_000;
 /// The pixels of a picture: red, green, blue and opacity.
 pub(super) type Pixels = Vec<u8>;
 
-/// Draws a scene a little after its start, or at its start if it is large.
+/// Draws a scene as it is a little after its start or, if the scene is large, at its start.
 pub(super) async fn draw(name: &str, registries: &Registries) -> Option<Pixels> {
     let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
     let text = opruga::scenes::find(name)?;
@@ -60,8 +60,8 @@ mod kept {
     /// The size of a picture in bytes.
     const BYTES: usize = 4 * SIZE[0] as usize * SIZE[1] as usize;
 
-    /// The picture of a scene: the one stored in a folder, or one that is drawn now and stored there. If it cannot be stored, it is drawn again the
-    /// next time.
+    /// Returns the picture of a scene, which is read from a folder or, if it is not there, drawn now and stored there. A picture that cannot be
+    /// stored is drawn again the next time.
     pub(crate) async fn kept_or_drawn(
         name: &'static str,
         registries: &Registries,
@@ -128,7 +128,7 @@ mod kept {
             };
             let first = drawn();
             assert_eq!((first.len(), files().len()), (BYTES, 1));
-            // If another picture is stored in its place, that picture is shown, so nothing was drawn.
+            // If another picture is stored under the same name, that picture is shown, which proves that nothing was drawn.
             let other = vec![7; BYTES];
             keep(&folder, "two-chambers", &files()[0], &other).expect("it is kept");
             assert_eq!(drawn(), other);
@@ -139,7 +139,7 @@ mod kept {
             assert_eq!(drawn(), first);
             assert_eq!(files().len(), 2, "that of another scene stays: {:?}", files());
             std::fs::remove_dir_all(&folder).expect("it goes");
-            // There is a file in place of the folder.
+            // There is a file where the folder should be.
             std::fs::write(&folder, b"").expect("a file");
             assert_eq!(drawn(), first);
             std::fs::remove_file(&folder).expect("it goes");

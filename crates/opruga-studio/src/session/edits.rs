@@ -1,8 +1,8 @@
 //! Edits of the scene: parameters, models and integrators; bodies that are added, removed and moved.
 //!
-//! At the start, an edit is written into the scene itself, and its world is rebuilt. Later, it becomes a command. Parameters, models and integrators
-//! change on the moving body; a body that is moved, rotated, scaled or given another resolution is removed and replaced by one at rest in its new
-//! form.
+//! At the start, an edit is written into the scene itself, and the world is rebuilt. Later, an edit becomes a command. Parameters, models and
+//! integrators change while the body moves. A body that is moved, rotated, scaled or given another resolution, however, is replaced by a body at rest
+//! in the new form.
 
 use super::Session;
 use super::travel::Past;
@@ -27,17 +27,17 @@ pub struct Placed {
 /// A change of the bodies of the scene.
 #[derive(Clone, Debug)]
 pub enum Edit {
-    /// A new body; its table as in the scene file, with a name that another body may already have.
+    /// Adds a new body with this table, as in the scene file. Another body may already have its name.
     Add(InlineTable),
-    /// A new body with its centre at a point, or at the nearest position at which it intersects no other body and no obstacle \[m\].
+    /// Adds a new body with its centre at a point or, if it would intersect another body or an obstacle there, at the nearest free position \[m\].
     Drop(InlineTable, [f64; 3]),
-    /// A copy of a body next to it.
+    /// Adds a copy of a body next to it.
     Duplicate(String),
     /// Moves, rotates or scales a body.
     Transform(String, Placed),
-    /// Another value of a field of its shape, such as its number of vertices.
+    /// Gives a field of the shape of a body another value, such as its number of vertices.
     Shape(String, &'static str, Value),
-    /// Removes a field of its shape.
+    /// Removes a field of the shape of a body.
     ShapeWithout(String, &'static str),
     /// Removes a body.
     Delete(String),
@@ -50,7 +50,7 @@ impl Session {
         self.engine.frames() == 0
     }
 
-    /// Continues with a document that differs at its start.
+    /// Continues with a document whose scene differs from the start on.
     fn begin_with(&mut self, document: crate::document::Document, own_commands: usize) -> Result<(), Report> {
         let had_pins = self.grabbed.is_some() || !self.pins_shown().is_empty();
         self.take(document, own_commands, [0; 2])?;
@@ -61,7 +61,7 @@ impl Session {
         Ok(())
     }
 
-    /// Sets a parameter; for a value that is being dragged, `press` is the number of the press.
+    /// Sets a parameter. If the user is dragging its slider, `press` is the number of the press.
     pub(super) fn set(&mut self, path: &str, value: Value, press: Option<u64>) -> Result<(), Report> {
         self.branch()?;
         let past = Past { press, ..self.past(Step::Set(path.into())) };
@@ -84,7 +84,8 @@ impl Session {
         Ok(())
     }
 
-    /// Removes a field of an obstacle. At the start, the scene then does not give it; later, it gets the equivalent value, if there is one.
+    /// Removes a field of an obstacle. At the start, it is removed from the scene. Later, it gets the value that is equivalent to its absence, if
+    /// there is one.
     pub(super) fn unset(&mut self, path: &str) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Set(path.into()));
@@ -144,8 +145,8 @@ impl Session {
         Ok(())
     }
 
-    /// Resets the integrator of a body to that of the scene. At the start, the body then has no integrator of its own. A moving body gets its own
-    /// integrator that is equal to that of the scene.
+    /// Resets the integrator of a body to that of the scene. At the start, the body then has no integrator of its own. Later, it gets its own
+    /// integrator, which is equal to that of the scene.
     pub(super) fn as_the_scene(&mut self, body: usize) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Integrator);
@@ -232,8 +233,8 @@ impl Session {
             Edit::Transform(name, placed) => {
                 let mut table = self.table_of(name)?;
                 self.transform(name, &mut table, placed)?;
-                // Handles rotate and scale about the opposite side or the centre, so the displacement of the centre does not show which edit was
-                // meant.
+                // Handles rotate and scale a body about its opposite side or its centre. The centre may therefore move with every edit, and its
+                // displacement does not show which edit the user meant.
                 let step = match placed {
                     Placed { scaled, .. } if *scaled != 1.0 => Step::Scale,
                     Placed { turned, .. } if *turned != 0.0 => Step::Turn,
@@ -284,7 +285,7 @@ impl Session {
         self.document.body(name).ok_or_else(|| Report::Copy(name.to_string()))
     }
 
-    /// The displacement of the centre of a body from its initial position [m].
+    /// The displacement of the present centre of a body from its initial position [m].
     fn displacement_of(&mut self, name: &str) -> [f64; 3] {
         if self.at_start() {
             return [0.0; 3];
@@ -322,7 +323,7 @@ impl Session {
             return Err(Report::Scaled(placed.scaled));
         }
         let (sin, cos) = placed.turned.sin_cos();
-        // The position compensates for the displacement of the mesh's centre that the rotation causes.
+        // The rotation displaces the centre of the mesh. The position is changed so that the centre stays where it is.
         let turned = match dimension {
             2 => [cos * middle[0] - sin * middle[1], sin * middle[0] + cos * middle[1], 0.0],
             _ => [cos * middle[0] + sin * middle[2], middle[1], cos * middle[2] - sin * middle[0]],
@@ -351,7 +352,7 @@ impl Session {
         Ok(())
     }
 
-    /// Removes a body, adds one, or both.
+    /// Removes a body, adds a body, or does both.
     fn exchange(&mut self, step: Step, old: Option<&str>, new: Option<InlineTable>) -> Result<(), Report> {
         let past = self.past(step);
         let mut document = self.document.clone();
@@ -392,7 +393,7 @@ impl Session {
                 Err(errors) => Err(Report::Scene(errors)),
             };
             if let Err(refusal) = added {
-                // The message names the body that was to be changed, not the one that was never made.
+                // The message names the body that the user wanted to change, and not the new body, which was never made.
                 let refusal = self.titled(refusal);
                 self.back_to(past)?;
                 if old.is_some() {
@@ -436,7 +437,7 @@ pub(super) fn shift(table: &mut InlineTable, by: [f64; 3], dimension: usize) {
     table.insert("position", Toml::Array(numbers(&position)));
 }
 
-/// The rotation vector of a rotation followed by one about the y axis, computed as the product of their quaternions.
+/// Returns the rotation vector of the rotation `first` followed by a rotation about the y axis. It is computed as the product of their quaternions.
 fn turn_about_y(angle: f64, first: [f64; 3]) -> [f64; 3] {
     let size = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
     let half = 0.5 * size(first);

@@ -1,4 +1,4 @@
-//! Warnings at the end of a scene. Shapes are checked at the end, and whenever time is stopped after it.
+//! Shows the warnings at the end of a scene. Shapes are checked at the end, and whenever time is stopped after the end.
 
 use super::Session;
 use crate::report::Report;
@@ -12,7 +12,7 @@ pub(super) struct Ends {
     early: Vec<Warning>,
     /// The warnings about the shapes, and the frame from which they apply.
     shape_warnings: Option<(u64, Vec<Warning>)>,
-    /// The codes of the warnings that were shown to the user at the end; each is shown once.
+    /// The codes of the warnings that were last shown to the user at the end, so that the same warnings are not shown again.
     reported: Vec<String>,
 }
 
@@ -35,7 +35,7 @@ impl Ends {
 }
 
 impl Session {
-    /// Checks the shapes at the end of the scene on the command line, and shows the warnings that the command line would print.
+    /// Checks the shapes when the run reaches the end that it has on the command line, and shows the warnings that the command line would print.
     pub(super) fn look_at_the_end(&mut self) {
         if self.engine.frames() != self.engine.end() {
             return;
@@ -43,7 +43,7 @@ impl Session {
         let all = self.look_at_shapes();
         let new_warnings: Vec<Warning> = all.iter().filter(|w| !self.ends.early.contains(w)).cloned().collect();
         let refused = self.message.as_ref().is_some_and(|message| message.severity == Severity::Refused);
-        // Numbers in them may differ when the end is reached again, so reported warnings are recognised by their codes.
+        // Numbers in warnings may differ when the end is reached again, so reported warnings are recognised by their codes.
         let codes: Vec<String> = all.into_iter().map(|warning| warning.code.to_string()).collect();
         if !new_warnings.is_empty() && !refused && self.ends.reported != codes {
             let time = self.engine.time();
@@ -59,7 +59,7 @@ impl Session {
         }
     }
 
-    /// All present warnings.
+    /// Checks the shapes, and returns all present warnings.
     fn look_at_shapes(&mut self) -> Vec<Warning> {
         let all = self.engine.warnings_at_the_end();
         self.ends.shape_warnings = Some((self.engine.frames(), all.clone()));

@@ -5,7 +5,7 @@ use crate::report::Report;
 use crate::shown::Severity;
 
 impl Session {
-    /// Stops time if a body has grown beyond all proportions, and offers a remedy.
+    /// Stops time if a body has grown to many times its size, and offers a remedy.
     pub(super) fn stop_where_a_body_exploded(&mut self) {
         let Some(exploded) = self.engine.exploded() else { return };
         (self.playing, self.goal) = (false, None);

@@ -9,8 +9,8 @@ use toml_edit::InlineTable;
 /// The lowest and the highest corner of a box [m].
 type Ends = [[f64; 3]; 2];
 
-/// The spacing of the positions that are tried, relative to the size of the body, in the plane and in space. The positions reach up to six sizes away
-/// in the plane and up to four in space.
+/// The spacing of the positions that are tried, in the plane and in space, relative to the size of the body. The positions are up to six times this
+/// size away in the plane, and up to four times in space.
 const APART: [f64; 2] = [0.25, 0.5];
 const TRIED: [i32; 2] = [24, 8];
 /// The gap between a body and its neighbours, relative to the size of the body.
@@ -40,8 +40,8 @@ fn meet(a: &Ends, b: &Ends, dimension: usize) -> bool {
     (0..dimension).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
 }
 
-/// Whether a body in this box may intersect an obstacle. A container does not count for a body inside it. `hollow` says whether an obstacle that
-/// looks the same in both cases is hollow.
+/// Whether a body in this box may intersect an obstacle. A body inside a container does not intersect the container. `hollow` distinguishes hollow
+/// from solid obstacles whose pictures are equal.
 fn is_in(ends: &Ends, obstacle: &ColliderPicture, hollow: bool, dimension: usize) -> bool {
     let meets = |other: &Ends| meet(ends, other, dimension);
     match obstacle {
@@ -67,8 +67,8 @@ fn is_in(ends: &Ends, obstacle: &ColliderPicture, hollow: bool, dimension: usize
     }
 }
 
-/// The free displacement nearest to the desired one, among those that are tried; the desired one if none is free. Of two displacements of equal
-/// length, the higher one is chosen.
+/// Returns the free displacement that is nearest to the desired one among those that are tried; the desired one if none is free. Of two displacements
+/// that are equally near, the one that leads higher is chosen.
 fn nearest(wanted: [f64; 3], size: f64, dimension: usize, free: impl Fn([f64; 3]) -> bool) -> [f64; 3] {
     if free(wanted) {
         return wanted;
@@ -87,21 +87,20 @@ impl Session {
     /// Moves the table of a new body so that its centre is at a point, or at the nearest free position.
     pub(super) fn land(&mut self, table: &mut InlineTable, at: [f64; 3]) {
         let dimension = self.dimension();
-        // A table that cannot be read is refused when it is added.
+        // A table that cannot be read is refused later, when the body is added.
         let Some([low, high]) = self.box_of(table) else { return shift(table, at, dimension) };
         let by = self.free_displacement(table, [0, 1, 2].map(|d| at[d] - 0.5 * (low[d] + high[d])));
-        // Rounded to a hundredth of its size, because users do not point more precisely.
+        // The displacement is rounded to a hundredth of the size of the body, because users do not point more precisely.
         let size = (0..dimension).map(|d| high[d] - low[d]).fold(0.0, f64::max);
         let unit = if size > 0.0 { 10f64.powi(size.log10().floor() as i32 - 2) } else { 0.01 };
         let rounded = by.map(|x| {
-            // The number is divided by the reciprocal of the unit if that is whole, so that 0.01 is written instead of
-            // 0.010000000000000002.
+            // A unit below 1 is the reciprocal of a whole number. Dividing by this whole number gives 0.01 instead of 0.010000000000000002.
             if unit < 1.0 { (x / unit).round() / (1.0 / unit).round() } else { (x / unit).round() * unit }
         });
         shift(table, rounded, dimension);
     }
 
-    /// The displacement nearest to a desired one that moves a body with this table out of everything that exists.
+    /// Returns the displacement nearest to the desired one at which a body with this table intersects nothing.
     pub(super) fn free_displacement(&mut self, table: &InlineTable, wanted: [f64; 3]) -> [f64; 3] {
         let Some(own) = self.box_of(table) else { return wanted };
         let shown = self.engine.shown(&self.show);
@@ -147,7 +146,7 @@ mod tests {
             (ball(1.4), true),
             (room(false), true),
             (room(true), false),
-            // The box is inside the box around the whole line, but intersects none of its segments.
+            // The tested box is inside the box around the whole line, but intersects none of its segments.
             (line, false),
         ] {
             assert_eq!(is_in(&unit, &obstacle, false, 2), wanted, "{obstacle:?}");

@@ -48,10 +48,10 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockWriteGuard};
 use std::time::Duration;
 use travel::Past;
 
-/// The memory budget of the keyframes [bytes]; less on a web page, which may be open on a phone.
+/// The memory budget of the keyframes [bytes]. It is smaller on a web page, which may be open on a phone.
 const KEYFRAME_BYTES: usize = if cfg!(target_arch = "wasm32") { 64 << 20 } else { 256 << 20 };
 
-/// How long frames are computed on the way to another moment before the interface is served again.
+/// How long frames are computed on the way to another moment before the next picture is shown.
 const SEEK_BUDGET: Duration = Duration::from_millis(40);
 
 /// A request to a session.
@@ -67,7 +67,7 @@ pub enum Request {
         files: Files,
     },
     /// Add a shape from a file to the scene, with its centre at a point and with this size [m]. If its dimension differs from that of the scene, open
-    /// a scene around it with as many substeps as it needs.
+    /// a new scene around it, with as many substeps as this scene needs.
     Take(Shape, [f64; 3], f64),
     /// Start or stop time.
     Play(bool),
@@ -83,9 +83,9 @@ pub enum Request {
     Speed(f64),
     /// Grab a body at a point.
     Grab(Grip, usize, [f64; 3]),
-    /// Grab a body at a point of the scene beside it; the action applies to both.
+    /// Grab a body at a point of the scene on the right. The action applies to both scenes.
     GrabBeside(Grip, usize, [f64; 3]),
-    /// The pointer has moved.
+    /// Move the pointer to a point.
     Lead([f64; 3]),
     /// Release.
     Release,
@@ -118,21 +118,21 @@ pub enum Request {
     Compare(bool),
     /// Add a difference of the right scene.
     Differ(Difference),
-    /// The scene with this fingerprint was saved.
+    /// Note that the scene with this fingerprint was saved.
     Saved(u64),
 }
 
 impl Request {
-    /// Whether a long frame should be interrupted for it.
+    /// Whether a long frame should be interrupted for this request.
     #[cfg(not(target_arch = "wasm32"))]
     pub(crate) fn breaks_off(&self) -> bool {
         use Request::{Accept, Draw, Open, Play, Replay, Reset, Seek};
         let now = matches!(self, Open { .. } | Play(false) | Replay | Reset | Seek(_) | Accept(_));
-        // Values that are being dragged come with every picture. If they interrupted frames, no frame would ever be completed.
+        // While a slider is dragged, values come with every picture. If they interrupted frames, no frame would ever be completed.
         now || self.is_edit() && !matches!(self, Draw(..))
     }
 
-    /// Whether it changes the scene.
+    /// Whether this request changes the scene.
     fn is_edit(&self) -> bool {
         use Request::{AsTheScene, Compare, Differ, Draw, Edit, Integrator, Models, Redo, Set, Take, Undo, Unset};
         let sets = matches!(self, Set(..) | Unset(..) | Draw(..) | Models(..) | Integrator(..) | AsTheScene(..));
@@ -152,17 +152,17 @@ pub struct Session {
     renamed: Vec<(String, String)>,
     /// The last body that was added or copied, with a running number.
     newest: Option<(u64, String)>,
-    /// The number of commands that the scene had when it was opened; later ones were recorded.
+    /// The number of commands of the scene itself. The commands after these were recorded.
     own_commands: usize,
-    /// The scene at its start, without anything that was recorded. A reset restores it. When the user grabs a body that the scene itself drags, the
-    /// commands of the scene change.
+    /// The scene at its start, without anything that was recorded. A reset restores it, also if the commands of the scene have changed because the
+    /// user has grabbed a body that the scene itself drags.
     start: Document,
     keyframes: Keyframes,
-    /// The samples of the curves; the interface reads them.
+    /// The samples of the curves, which the interface reads.
     samples: Arc<RwLock<Samples>>,
-    /// The last frame of this run.
+    /// The last computed frame of this run.
     latest: u64,
-    /// The frame to go to.
+    /// The frame to which the session is going; none if it has arrived.
     goal: Option<u64>,
     undo: Vec<Past>,
     redo: Vec<Past>,
@@ -180,20 +180,20 @@ pub struct Session {
     message: Option<Message>,
     messages: u64,
     opened: u64,
-    /// How often the state was replaced by a different one at once.
+    /// How often the state was suddenly replaced by a different one.
     replaced: u64,
     /// How often the user has reset the scene to its start.
     resets: u64,
-    /// The reports at the end of the scene.
+    /// The warnings at the end of the scene.
     ends: ends::Ends,
     /// A fingerprint of the text of the scene as it was opened or saved.
     clean: u64,
-    /// The request that was refused because its step was too long, or interrupted because a frame took too long.
+    /// The last request that was refused because the step is too long for it, or interrupted because a frame took too long.
     refused: Option<Request>,
     patience: Patience,
-    /// The recording that it was opened from.
+    /// The recording from which the session was opened, if there is one.
     recording: Option<recorded::Viewed>,
-    /// The session before another scene was opened, if it contained work.
+    /// The session that was open before another scene was opened, if it contained work.
     before: Option<Box<Session>>,
 }
 
@@ -211,7 +211,7 @@ fn mark(text: &str) -> u64 {
 }
 
 impl Session {
-    /// Opens a scene with [`opruga::Options`], with the models and integrators of the library by default.
+    /// Opens a scene. `setting` is either [`opruga::Options`], which means the models and integrators of the library, or a [`Setting`].
     ///
     /// # Errors
     /// All errors in it.
@@ -221,7 +221,7 @@ impl Session {
         Session::begin(document, files, setting)
     }
 
-    /// Makes a session from a document that was read.
+    /// Makes a session from a document.
     fn begin(document: Document, files: Files, setting: Setting) -> Result<Session, Report> {
         let engine = pair::build(&document, None, &files, &setting)?;
         let mut session = Session {
@@ -264,7 +264,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Handles a request. If it cannot be done, [`Shown::message`] reports that, and nothing changes.
+    /// Handles a request. If it cannot be done, [`Shown::message`] reports this, and nothing changes.
     pub fn handle(&mut self, request: Request) {
         let again = request.clone();
         let (before, edits) = (self.messages, request.is_edit());
@@ -338,7 +338,7 @@ impl Session {
             }
         };
         match outcome {
-            // An earlier refusal is obsolete when something else was accepted.
+            // When another edit was accepted, an earlier refusal is obsolete.
             Ok(()) if edits && self.messages == before => {
                 self.message = self.message.take().filter(|message| message.severity != Severity::Refused);
             }
@@ -349,7 +349,7 @@ impl Session {
         }
     }
 
-    /// Lets real time pass; at most `budget` is spent on frames, measured by `clock`.
+    /// Lets real time pass. Frames are computed for at most `budget`, measured by `clock`.
     pub fn tick(&mut self, elapsed: Duration, budget: Duration, clock: &dyn Fn() -> Duration) {
         if self.goal.is_some() {
             let start = clock();
@@ -376,7 +376,7 @@ impl Session {
         let mut pacing = std::mem::take(&mut self.pacing);
         let outcome = pacing.run(elapsed, speed, length, budget, || {
             let start = clock();
-            // A frame may have stopped time.
+            // Time may have been stopped during a frame.
             if !self.playing || self.stops_at_the_end() {
                 return Err(None);
             }
@@ -393,7 +393,7 @@ impl Session {
         }
     }
 
-    /// Computes one frame; before it the pointer is updated, after it a keyframe is kept.
+    /// Computes one frame. Updates the pointer before the frame, and keeps a keyframe after it if one is due.
     fn frame(&mut self) -> Result<(), WorldError> {
         if self.recorded_frame()? {
             self.sample();
@@ -425,7 +425,7 @@ impl Session {
         self.samples.write().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adds the sample of the present frame to the curves, if it does not exist.
+    /// Adds the sample of the present frame to the curves, unless it exists already.
     fn sample(&mut self) {
         if self.samples().wants(self.engine.frames()) {
             let mut sample = self.engine.sample();

@@ -1,4 +1,4 @@
-//! The remedies that are offered if something was refused or a motion has failed, and their execution when the user accepts them.
+//! Offers remedies if a request was refused or a motion has failed, and executes them when the user accepts them.
 
 use super::{Edit, Request, Session};
 use crate::document::{Document, read};
@@ -9,18 +9,18 @@ use opruga::io::Files;
 use opruga::world::schema::MOST_SUBSTEPS;
 use opruga::{Registries, WorldError, catalogue_of};
 
-/// The integrator that is offered instead of one without a stable step; it is equally cheap.
+/// The integrator that is offered instead of one without a stable step. A step of it takes about the same time.
 fn steady(registries: &Registries) -> Option<&'static Spec> {
     catalogue_of(registries).integrators.into_iter().find(|spec| spec.has_role(Role::OfferedExplicit))
 }
 
-/// The time of a frame above which the user is informed [s].
+/// The user is informed about the computing time of a frame if it is longer than this [s].
 const LONG: f64 = 1.0;
-/// The largest time of a frame with an offered remedy [s]: nothing else can be done in the meantime.
+/// The longest computing time of a frame for which a remedy is offered [s]. During a longer frame, nothing else could be done for too long.
 const TOO_LONG: f64 = 4.0;
-/// The time of a node in a substep if nothing has been measured yet, and its lower limit [s].
+/// The computing time of a node in a substep that is assumed before anything was measured, and the lower limit of this time [s].
 const NODE: [f64; 2] = [2e-8, 1e-8];
-/// The time of a substep that does not depend on the number of nodes is assumed to be at most this [s].
+/// The part of the computing time of a substep that does not depend on the number of nodes is assumed to be at most this [s].
 const OVERHEAD: f64 = 5e-6;
 
 impl Session {
@@ -44,7 +44,7 @@ impl Session {
                         None => session.integrator(values),
                     };
                     match take(self, &values) {
-                        // This integrator has a stable step, which may be shorter.
+                        // This integrator has a stable step, which may be shorter than the present step.
                         Err(Report::World(WorldError::UnstableStep { substeps, .. }))
                             if substeps <= MOST_SUBSTEPS
                                 && self.frame_would_take(self.nodes_now(), with_a_margin(substeps)) <= TOO_LONG =>
@@ -60,7 +60,7 @@ impl Session {
             }
             Offer::Substeps(substeps) => {
                 let refused = self.refused.take();
-                // A scene that could not be opened has its own number of substeps.
+                // If a scene could not be opened, the number of substeps of that scene is changed.
                 if let Some(Request::Open { name, text, files }) = refused {
                     return self.open_with(&name, &text, files, *substeps);
                 }
@@ -102,7 +102,7 @@ impl Session {
         Ok(())
     }
 
-    /// The remedy after the motion of a body has failed.
+    /// Returns the remedy that is offered after the motion of a body has failed.
     pub(super) fn offer_after_a_failure(&mut self, body: &str) -> Option<Offer> {
         let shown = self.engine.shown(&self.show);
         let more = 2 * u64::from(shown.substeps) <= u64::from(MOST_SUBSTEPS);
@@ -119,7 +119,7 @@ impl Session {
             WorldError::Diverged { body, .. }
             | WorldError::Step { body, .. }
             | WorldError::NotConverged { body, .. } => self.offer_after_a_failure(body),
-            // If a frame cannot have that many substeps, the message names other remedies.
+            // If more substeps are needed than a frame may have, the message names other remedies.
             WorldError::UnstableStep { substeps, .. } if *substeps <= MOST_SUBSTEPS => {
                 let wanted = with_a_margin(*substeps);
                 let nodes = self.nodes_with(request.as_ref());
@@ -132,7 +132,8 @@ impl Session {
                     self.refused = request;
                     Some(Offer::Substeps(wanted))
                 } else {
-                    // This is the present number: fewer substeps were requested, and the number stays the same.
+                    // The request was for fewer substeps, and the number that is needed is not above the present one. Nothing is offered, because the
+                    // present number stays.
                     None
                 }
             }
@@ -148,7 +149,7 @@ impl Session {
         self.engine.positions().len()
     }
 
-    /// The number of nodes after a request.
+    /// The number of nodes that the scene would have after a request.
     fn nodes_with(&self, request: Option<&Request>) -> usize {
         let now = self.nodes_now();
         let of = |document: &Document, files: &Files| -> Vec<usize> {
@@ -166,7 +167,7 @@ impl Session {
                 let with = |other: &Value| {
                     let mut table = self.document.body(name)?;
                     table.get_mut("shape")?.as_inline_table_mut()?.insert(*field, crate::document::toml(other));
-                    // Its pinned nodes do not matter.
+                    // The pinned nodes of the body do not matter here.
                     table.remove("pin");
                     table.insert("name", self.document.free_name(name).into());
                     let mut bare = self.document.without_nodes();
@@ -182,8 +183,8 @@ impl Session {
         }
     }
 
-    /// The estimated time of a frame with this many nodes and substeps [s], according to recent frames: a substep has a fixed cost, and the rest is
-    /// proportional to the number of nodes.
+    /// Estimates the computing time of a frame with this many nodes and substeps from recent frames [s]. A part of the time of a substep is fixed,
+    /// and the rest is proportional to the number of nodes.
     fn frame_would_take(&self, nodes: usize, substeps: u32) -> f64 {
         let now = f64::from(self.engine.substeps().max(1));
         let one = self.pacing.cost() / now;
@@ -195,7 +196,7 @@ impl Session {
         f64::from(substeps) * (itself + node * nodes as f64)
     }
 
-    /// A shape between the present one and the refused one, with which a frame would not take long.
+    /// Offers a shape between the present one and the refused one, for which a frame would not take long.
     fn coarser(&mut self, request: Option<&Request>, nodes: usize, substeps: u32) -> Option<Offer> {
         let Some(Request::Edit(Edit::Shape(name, field, Value::Integer(wanted)))) = request else { return None };
         let shape = self.document.shape(name, self.engine.dimension())?;
@@ -207,7 +208,8 @@ impl Session {
         if *now < 1 || ratio <= 0.0 {
             return None;
         }
-        // The numbers of substeps and of nodes are assumed to be powers of the value. The present and the refused value determine the exponents.
+        // The number of substeps and the number of nodes are assumed to be proportional to powers of the value of the field. The present and the
+        // refused value determine the exponents.
         let of_steps = (f64::from(substeps) / needed).ln() / ratio;
         let of_nodes = (nodes as f64 / self.nodes_now().max(1) as f64).ln() / ratio;
         let takes = |value: i64| {
@@ -224,7 +226,8 @@ impl Session {
     }
 }
 
-/// If the world warns that no step is stable for the integrator of a body: the index of the body, or none if it uses the integrator of the scene.
+/// If the world warns that no step is stable for the integrator of a body, returns the index of the body, or none if the body uses the integrator of
+/// the scene.
 fn without_a_stable_step(shown: &Shown, name: &str) -> Option<Option<usize>> {
     let body = shown.bodies.iter().find(|body| body.name == name)?;
     let values = body.integrator.as_ref().or(shown.integrator.as_ref())?;
@@ -232,7 +235,7 @@ fn without_a_stable_step(shown: &Shown, name: &str) -> Option<Option<usize>> {
     shown.warnings.iter().any(warned).then(|| body.integrator.is_some().then_some(body.number))
 }
 
-/// Slightly more substeps than the minimum, so that the next change does not fail at once, but never more than a frame may have.
+/// Returns slightly more substeps than the minimum, so that the next change is not refused at once, but never more than a frame may have.
 pub(super) fn with_a_margin(substeps: u32) -> u32 {
     substeps.saturating_add(substeps / 8 + 1).min(MOST_SUBSTEPS)
 }

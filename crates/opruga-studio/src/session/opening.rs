@@ -29,18 +29,18 @@ impl Session {
         (next.opened, next.messages, next.patience) = (self.opened + 1, self.messages, self.patience.anew());
         next.resets = self.resets;
         let before = std::mem::replace(self, next);
-        // Only one previous session is kept, because every session contains its states.
+        // Only one previous session is kept, because the states of every session need memory.
         let worked_on = before.document.commands() > before.own_commands || !before.undo.is_empty();
         self.before = worked_on.then(|| Box::new(Session { before: None, ..before }));
         self.pacing.rest();
     }
 
-    /// The step that an undo would revert if nothing was done in this scene: the opening of this scene.
+    /// Returns the opening of this scene as a step, if it can be undone. An undo reverts it if nothing was done in this scene.
     pub(super) fn opening(&self) -> Option<Step> {
         self.before.as_ref().map(|before| Step::Open(before.document.name.clone()))
     }
 
-    /// Returns to the scene that was open before, as it was left, if there is one.
+    /// Returns to the scene that was open before this one, if there is one, as the user left it.
     pub(super) fn open_before(&mut self) {
         let (Some(step), Some(before)) = (self.opening(), self.before.take()) else { return };
         self.go_over_to(*before, false);
@@ -48,14 +48,15 @@ impl Session {
         self.report(Severity::Done, Report::Undone(step, time), None);
     }
 
-    /// Adds a shape from a file as another body; opens a scene around it if its dimension differs.
+    /// Adds a shape from a file as another body. If its dimension differs from that of the scene, opens a new scene around it.
     pub(super) fn take_shape(&mut self, shape: &Shape, middle: [f64; 3], size: f64) -> Result<(), Report> {
         let fits = (self.dimension() == 3) == shape.space;
         let files: Vec<(String, Arc<[u8]>)> = match fits {
             true => named_files(&shape.name, &shape.text, &shape.files, &self.setting.registries).into_iter().collect(),
             false => Vec::new(),
         };
-        // If the file cannot be read, or the shape consists of several files, the scene around it reports or shows this.
+        // If the file cannot be read, or if the shape consists of several files, a new scene around the shape is opened. It reports the error or
+        // shows the shape.
         let [(_, bytes)] = &files[..] else { return self.open_around(shape) };
         let file = self.free_file(&shape.file, bytes);
         let Some(body) = shape.body(&file, size) else { return Err(Report::NameOfFile(shape.file.clone())) };
@@ -65,7 +66,7 @@ impl Session {
         outcome.map_err(|report| {
             self.files = before;
             match report {
-                // Errors that are about no other file are errors about this one.
+                // Errors that name no file are errors in this file.
                 Report::Scene(mut errors) => {
                     errors.iter_mut().filter(|e| e.file.is_empty()).for_each(|e| e.file.clone_from(&shape.file));
                     Report::Scene(errors)
@@ -75,19 +76,19 @@ impl Session {
         })
     }
 
-    /// A name under which the scene can store a file with these bytes: its own, or one with a number.
+    /// Returns a name under which the scene can store a file with these bytes: the name of the file, or this name with a number.
     fn free_file(&self, file: &str, bytes: &Arc<[u8]>) -> String {
         let (stem, ending) = file.rsplit_once('.').unwrap_or((file, ""));
         let numbered = |number: u32| if number == 1 { file.to_string() } else { format!("{stem}-{number}.{ending}") };
         let free = |name: &String| match self.files.file_in_memory(name) {
             Some(other) => other == bytes,
-            // The same file may already exist next to the scene.
+            // A name is also free if the file with this name next to the scene has the same bytes.
             None => self.files.path_of(name).is_none_or(|path| !path.exists() || holds(&path, bytes)),
         };
         (1..=u32::MAX).map(numbered).find(free).unwrap_or_else(|| file.to_string())
     }
 
-    /// A session of a scene around a shape, with as many substeps as it needs.
+    /// Makes a session of a scene around a shape, with as many substeps as the scene needs.
     ///
     /// # Errors
     /// The errors of the file.

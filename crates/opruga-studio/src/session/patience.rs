@@ -1,4 +1,4 @@
-//! The time limit of a frame in environments in which it cannot be interrupted, such as a web page, which has only one thread.
+//! Limits the computing time of a frame where a request cannot interrupt it, such as on a web page, which has only one thread.
 
 use super::{Request, Session};
 use crate::report::Report;
@@ -16,7 +16,7 @@ fn seconds() -> f64 {
     BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// An interrupter of long frames that also watches the clock.
+/// Makes an interrupter of long frames that also watches the clock.
 pub fn by_the_clock() -> Arc<BreakOff> {
     Arc::new(BreakOff::with_clock(seconds))
 }
@@ -34,7 +34,7 @@ impl Patience {
     /// No limit.
     pub(super) const ENDLESS: Patience = Patience { first: f64::INFINITY, now: f64::INFINITY };
 
-    /// The initial limit, for a scene that was just opened.
+    /// Returns to the initial limit, for a scene that was just opened.
     pub(super) fn anew(self) -> Patience {
         Patience { now: self.first, ..self }
     }
@@ -46,8 +46,8 @@ impl Session {
         Arc::clone(&self.setting.options.break_off)
     }
 
-    /// Interrupts frames that take longer than this [s], returns to the last good one, and asks the user whether to wait. The options must contain
-    /// the result of [`by_the_clock`].
+    /// Sets a limit for frames [s]. A frame that takes longer is interrupted, the session returns to the previous frame, and the user is asked
+    /// whether to wait. The options must contain the result of [`by_the_clock`].
     pub fn wait_for_frames(&mut self, seconds: f64) {
         self.patience = Patience { first: seconds, now: seconds };
     }
@@ -57,8 +57,8 @@ impl Session {
         self.setting.options.break_off.end_after(self.patience.now);
     }
 
-    /// Handles the interruption of a frame that was needed for a request. If another request interrupted it, that one takes its place; if it took too
-    /// long, time stops and the user is asked.
+    /// Handles the interruption of a frame that was needed for a request. If another request interrupted the frame, that request is handled instead.
+    /// If the frame took too long, time stops and the user is asked whether to wait.
     pub(super) fn broken_off(&mut self, wanted: Request) {
         if self.setting.options.break_off.is_asked() || self.patience.now.is_infinite() {
             return;

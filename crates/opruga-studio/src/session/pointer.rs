@@ -7,7 +7,7 @@ use crate::report::{Report, Step};
 use crate::shown::Severity;
 use opruga::WorldError;
 
-/// The force of a push per metre of displacement of the pointer from the point of the press [N/m].
+/// The force of a push for each metre between the pointer and the point of the press [N/m].
 const PUSH_STIFFNESS: f64 = 20.0;
 
 /// The action of a press of the pointer.
@@ -21,20 +21,20 @@ pub enum Grip {
     Pin,
 }
 
-/// What the pointer holds.
+/// The node that the pointer holds, and the action on it.
 #[derive(Clone, Debug)]
 pub(super) struct Grabbed {
     grip: Grip,
     body: usize,
     node: u32,
-    /// The command in the world and in the document; none while a push has no force.
+    /// The numbers of the command in the world and in the document; none while a push has no force.
     command: Option<[usize; 2]>,
     /// The frame at which that command began.
     since: u64,
     /// The point of the body that was pressed [m].
     pressed: [f64; 3],
     pointer: [f64; 3],
-    /// Whether the pointer has moved since the last push began.
+    /// Whether the pointer has moved since the present force of the push was set.
     moved: bool,
     /// Whether a push has acted since the press.
     has_pushed: bool,
@@ -43,7 +43,7 @@ pub(super) struct Grabbed {
 }
 
 impl Grabbed {
-    /// The force of a push, which depends only on the pointer, wherever the node moves [N].
+    /// The force of a push [N]. It depends only on the pointer, and not on the motion of the node.
     fn force(&self) -> [f64; 3] {
         [0, 1, 2].map(|d| PUSH_STIFFNESS * (self.pointer[d] - self.pressed[d]))
     }
@@ -54,7 +54,7 @@ impl Grabbed {
 pub(super) struct Released {
     body: usize,
     node: u32,
-    /// The frame at which it was released, and the last one in which it acts.
+    /// The frame at which it was released, and the last frame in which it acts.
     at: [u64; 2],
 }
 
@@ -71,14 +71,14 @@ pub(super) struct Pinned {
 }
 
 impl Pinned {
-    /// Whether it is pinned before a frame.
+    /// Whether the point is pinned at the start of a frame.
     fn holds(&self, frame: u64) -> bool {
         self.at <= frame && self.until.is_none_or(|until| until > frame)
     }
 }
 
 impl Session {
-    /// Adds a command to the document; returns its numbers in the world and in the document.
+    /// Adds a command to the document. Returns its numbers in the world and in the document.
     pub(super) fn write(&mut self, given: Given) -> [usize; 2] {
         [given.number, self.document.push_command(given.table)]
     }
@@ -115,7 +115,7 @@ impl Session {
                 }
                 self.remember(past);
             }
-            // It begins when the pointer moves.
+            // A push begins when the pointer moves.
             Grip::Push => {}
             Grip::Pin => {
                 let past = self.past(Step::Pin);
@@ -124,7 +124,7 @@ impl Session {
                     self.remember(past);
                     return Ok(());
                 }
-                // A pinned point moves with the pointer and is pinned where it is released.
+                // A pinned point moves with the pointer, and is pinned again where the pointer is released.
                 self.take_over(body)?;
                 self.unpin(body, node)?;
                 let given = self.engine.pull(body, node, point)?;
@@ -136,7 +136,7 @@ impl Session {
         Ok(())
     }
 
-    /// The document after the release of everything that the pointer holds, which would otherwise be held for ever.
+    /// Returns the document as it would be after the pointer is released. Otherwise the node that it holds would be held for ever.
     pub(super) fn let_go_of_all(&self) -> Document {
         let mut document = self.document.clone();
         if let Some((grabbed, [_, written])) =
@@ -157,15 +157,15 @@ impl Session {
         Ok(())
     }
 
-    /// The pin that holds a node now.
+    /// The index of the pin that holds a node now, if the user has set one.
     fn pinned(&self, body: usize, node: u32) -> Option<usize> {
         let now = self.engine.frames();
         self.pins.iter().position(|pin| (pin.body, pin.node) == (body, node) && pin.holds(now))
     }
 
-    /// Releases a node that the user or the scene has pinned.
+    /// Unpins a node that the user or the scene has pinned.
     pub(super) fn let_go(&mut self, body: usize, node: u32) -> Result<(), Report> {
-        // The second press of a double click grabs the released node.
+        // The second press of a double click has grabbed the node, so it is released first.
         self.release();
         self.branch()?;
         let past = self.past(Step::Unpin);
@@ -186,7 +186,7 @@ impl Session {
         Ok(())
     }
 
-    /// Drops the pins of a future that is dropped; points that are pinned now stay pinned.
+    /// Drops the pins that belong to a future that is dropped. Points that are pinned now stay pinned.
     pub(super) fn cut_pins(&mut self) {
         let now = self.engine.frames();
         self.pins.retain(|pin| pin.at < now);
@@ -210,7 +210,7 @@ impl Session {
         }
     }
 
-    /// Before a frame: extends the path of a pull by a row, and updates the force of a push.
+    /// Prepares a frame: extends the path of a pull by a row, or updates the force of a push.
     pub(super) fn lead_grabbed(&mut self) {
         let Some(mut grabbed) = self.grabbed.take() else { return };
         match (grabbed.grip, grabbed.command) {
@@ -235,7 +235,7 @@ impl Session {
         self.grabbed = Some(grabbed);
     }
 
-    /// Updates the force of a push; the first push after the press can be undone.
+    /// Updates the force of a push. The first force after the press is a step that can be undone.
     fn begin_to_push(&mut self, grabbed: &mut Grabbed) {
         let first = (!grabbed.has_pushed && grabbed.force() != [0.0; 3]).then(|| self.past(Step::Push));
         if first.is_some()
@@ -250,7 +250,7 @@ impl Session {
         }
     }
 
-    /// Ends the drags of the scene itself on a body, permanently, because the user has grabbed it. A reset restores them.
+    /// Ends the drags that the scene itself applies to a body, because the user has grabbed the body. They do not resume, but a reset restores them.
     fn take_over(&mut self, body: usize) -> Result<(), Report> {
         let Some(name) = self.engine.name(body) else { return Ok(()) };
         let times = [self.engine.time(), self.time_of(self.engine.frames() + 1)];
@@ -281,7 +281,7 @@ impl Session {
         Ok(())
     }
 
-    /// Applies a push proportional to the displacement of the pointer; none if the pointer is back at the point of the press.
+    /// Begins a push with the present force. Returns the numbers of its command; none if the pointer is back at the point of the press.
     fn push_now(&mut self, grabbed: &Grabbed) -> Option<[usize; 2]> {
         let force = grabbed.force();
         if force == [0.0; 3] {
@@ -314,8 +314,8 @@ impl Session {
         }
     }
 
-    /// Displays the present action of the pointer, which the world receives only in its next frame: while time is stopped, a pull follows the
-    /// pointer, and a released pull is not shown. `position_of` returns the position of a node in the scene of these pulls.
+    /// Changes the displayed pulls to the present action of the pointer, which the world receives only in its next frame. While time is stopped, a
+    /// pull follows the pointer. A released pull is not shown. `position_of` returns the position of a node in the scene to which these pulls belong.
     pub(super) fn show_hand(
         &self,
         pulls: &mut Vec<[[f64; 3]; 3]>,
@@ -324,7 +324,7 @@ impl Session {
         let now = self.engine.frames();
         for over in self.released.iter().filter(|over| (over.at[0]..=over.at[1]).contains(&now)) {
             let position = position_of(over.body, over.node);
-            // If the same node was grabbed again, the new pull comes after the one that has ended.
+            // If the same node was grabbed again, its new pull is later in the list than the one that has ended.
             if let Some(first) = pulls.iter().position(|[node, ..]| Some(*node) == position) {
                 pulls.remove(first);
             }
@@ -342,7 +342,7 @@ impl Session {
         (*pointer, *force) = (grabbed.pointer, stretched.map(|f| share * f));
     }
 
-    /// The push of the pointer: its node, the end of its arrow, its force [m, m, N].
+    /// The push of the pointer: the position of its node, the end of its arrow, and its force [m, m, N].
     pub(super) fn push_shown(&self, position_of: &dyn Fn(usize, u32) -> Option<[f64; 3]>) -> Option<[[f64; 3]; 3]> {
         let grabbed =
             self.grabbed.as_ref().filter(|grabbed| grabbed.grip == Grip::Push && grabbed.pointer != grabbed.pressed)?;

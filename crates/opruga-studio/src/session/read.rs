@@ -6,7 +6,7 @@ use opruga::Registries;
 use opruga::io::Files;
 
 impl Session {
-    /// The scene with everything that was done so far; the command line ends at the present frame with the same hash.
+    /// The scene with everything that was done so far. On the command line, it ends at the present frame with the same hash.
     pub fn saved(&self) -> String {
         let mut document = self.let_go_of_all();
         document.set_seconds(self.engine.time().max(self.time_of(self.latest)));
@@ -18,7 +18,7 @@ impl Session {
         self.differences.as_deref()
     }
 
-    /// Whether anything was edited or recorded after it was opened or saved.
+    /// Whether anything was edited or recorded after the scene was opened or saved.
     pub fn is_edited(&self) -> bool {
         self.mark() != self.clean
     }
@@ -64,7 +64,7 @@ impl Session {
         &self.document.name
     }
 
-    /// The last frame of this run.
+    /// The last computed frame of this run.
     pub fn latest(&self) -> u64 {
         self.latest
     }
@@ -74,12 +74,12 @@ impl Session {
         self.messages
     }
 
-    /// Whether it is seeking another moment.
+    /// Whether the session is on the way to another moment.
     pub fn is_seeking(&self) -> bool {
         self.goal.is_some()
     }
 
-    /// Whether anything moves: time passes, or the session is seeking another moment.
+    /// Whether frames are being computed: time passes, or the session is on the way to another moment.
     pub fn is_moving(&self) -> bool {
         self.playing || self.goal.is_some()
     }

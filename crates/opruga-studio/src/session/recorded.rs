@@ -1,5 +1,4 @@
-//! A recorded run in the window. Its states are available, and the first action of the user starts a different run from the
-//! state shown.
+//! Shows a recorded run in the window. The first action of the user starts a different run from the displayed state.
 
 use super::{KEYFRAME_BYTES, Session};
 use crate::document::Document;
@@ -26,7 +25,7 @@ impl Session {
     /// computed.
     ///
     /// # Errors
-    /// Why it cannot be viewed: a run that a program controlled, a scene that this version does not read, damage.
+    /// The reason why it cannot be viewed: a program controlled the run, this version cannot read the scene, or the recording is damaged.
     pub fn view<R: Read + Seek>(mut recording: Recording<R>, setting: impl Into<Setting>) -> Result<Session, Report> {
         let header = recording.header().clone();
         if recording.inputs().next().is_some() {
@@ -51,7 +50,7 @@ impl Session {
         for frame in kept.into_iter().step_by(apart) {
             let state = recording.read(frame).map_err(damaged)?.to_vec();
             if frame == 0 {
-                // The scene inside and the states must agree at the start, otherwise another program recorded them.
+                // The scene in the recording must lead to the first recorded state. Otherwise, another program recorded the run.
                 let hash = session.hash();
                 session.engine.rewind(&state.into())?;
                 if session.hash() != hash {
@@ -70,7 +69,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Takes the next frame from the recording, if its state was recorded and the pointer holds nothing.
+    /// Takes the next frame from the recording, if the state of this frame was recorded and the pointer holds nothing.
     pub(super) fn recorded_frame(&mut self) -> Result<bool, WorldError> {
         let next = self.engine.frames() + 1;
         if self.recording.is_none() || self.grabbed.is_some() || next > self.latest {
@@ -92,7 +91,7 @@ impl Session {
         self.recording.is_some_and(|viewed| !viewed.left)
     }
 
-    /// Stops time at the end of a recording, because what follows was not recorded, and asks the user.
+    /// Stops time at the end of a recording, because the following frames were not recorded, and asks the user whether to continue.
     pub(super) fn stops_at_the_end(&mut self) -> bool {
         let stops = self.is_as_recorded() && self.engine.frames() >= self.latest && self.grabbed.is_none();
         if stops {

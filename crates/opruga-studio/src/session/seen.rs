@@ -1,4 +1,4 @@
-//! The picture of a session.
+//! Makes the data that the interface shows of a session.
 
 use super::Session;
 use super::titles::Titles;
@@ -9,7 +9,7 @@ use opruga::core::spec::Values;
 use std::sync::Arc;
 
 impl Session {
-    /// Everything that can be seen now.
+    /// Returns everything that the interface shows of the present moment.
     pub fn shown(&mut self) -> Shown {
         let mut shown = self.engine.shown(&self.show);
         self.ends.add(&mut shown);
@@ -65,17 +65,17 @@ impl Session {
 
     /// The names under which the user knows the existing bodies.
     fn titles(&self) -> Titles {
-        // In most sessions nothing was renamed; in a crowd, single bodies have no labels.
+        // The names are needed only if bodies were renamed. If there are many bodies, single ones have no labels, and no names are replaced.
         let present = if self.renamed.is_empty() { Vec::new() } else { self.engine.names() };
         if present.len() > 64 { Titles::default() } else { Titles::new(self.renamed.clone(), present) }
     }
 
-    /// A report with the names under which the user knows the bodies.
+    /// Replaces the names in a report by those under which the user knows the bodies.
     pub(super) fn titled(&self, report: Report) -> Report {
         self.titles().in_report(report)
     }
 
-    /// The shape of a body in the scene beside it, as far as its fields are plain values.
+    /// The shape of a body in the scene on the right, without fields that are not plain values.
     fn shape_beside(&self, name: &str, dimension: usize) -> Option<Values> {
         let mut values = self.document.shape(name, dimension)?;
         for difference in self.differences.iter().flatten() {
@@ -90,7 +90,7 @@ impl Session {
     }
 }
 
-/// Replaced bodies keep the name of the original body, also in messages about them.
+/// Gives bodies that replace others the names of the originals, also in messages.
 fn give_titles(shown: &mut Shown, titles: &Titles) {
     if titles.is_empty() {
         return;

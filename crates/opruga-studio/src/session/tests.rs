@@ -38,7 +38,7 @@ fn pass(session: &mut Session, frames: u32) {
     (0..frames).for_each(|_| ask(session, Request::Step));
 }
 
-/// Asserts that the saved text leads to the same bits.
+/// Asserts that a run of the saved text ends with the same bits.
 fn assert_replays(session: &Session) {
     let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
     let saved = session.saved();
@@ -61,7 +61,7 @@ fn what_is_undone_while_the_hand_holds_a_node_leaves_nothing_that_nobody_holds()
     ask(&mut session, Request::Release);
     pass(&mut session, 20);
     let (body, node, point) = session.shown().pins[0];
-    // Like a double click: two presses, the second of which is still held.
+    // This is like a double click: two presses, and the second one is still held.
     ask(&mut session, Request::Grab(Grip::Pull, body, point));
     ask(&mut session, Request::Release);
     ask(&mut session, Request::Grab(Grip::Pull, body, point));
@@ -102,7 +102,7 @@ fn a_point_that_was_pinned_or_taken_elsewhere_is_as_before_after_undo() {
     assert_eq!(session.shown().undo, Some(Step::Pin));
     pass(&mut session, 10);
     let pinned = session.shown().pins;
-    // It moves with the pointer.
+    // The pinned point moves with the pointer.
     ask(&mut session, Request::Grab(Grip::Pin, 0, pinned[0].2));
     for k in 0..10 {
         ask(&mut session, Request::Lead([0.05 * f64::from(k), 2.5, 0.0]));
@@ -135,7 +135,7 @@ fn a_push_follows_the_pointer_and_stays_the_same_while_that_stands_still() {
     ask(&mut session, Request::Lead(pressed));
     pass(&mut session, 3);
     assert_eq!(force(&mut session), None, "without a displacement there is no force");
-    // The first movement is a small one.
+    // The first movement of the pointer is small.
     ask(&mut session, Request::Lead([0.41, 2.0, 0.0]));
     assert!((newtons(force(&mut session).expect("a push")) - 0.2).abs() < 1e-9);
     ask(&mut session, Request::Lead([0.9, 2.5, 0.0]));
@@ -147,7 +147,7 @@ fn a_push_follows_the_pointer_and_stays_the_same_while_that_stands_still() {
     assert_ne!(session.shown().pushes[0][0], node);
     let pushes = |session: &Session| session.text().matches("do = \"push\"").count();
     assert_eq!(pushes(&session), 1, "one force is one command");
-    // When the pointer is back at the point of the press, it does not push, and neither does it after its release.
+    // The pointer does not push when it is back at the point of the press, nor after it is released.
     ask(&mut session, Request::Lead(pressed));
     pass(&mut session, 3);
     assert_eq!((force(&mut session), pushes(&session)), (None, 1));
@@ -172,9 +172,9 @@ fn while_time_stands_a_pull_follows_the_pointer_and_one_that_was_let_go_is_over(
         assert_eq!(pulls.len(), 1);
         let [node, pointer, force] = pulls[0];
         assert_eq!(pointer, [0.3, 2.9, 0.0]);
-        // It will pull towards the pointer.
+        // The displayed force already points towards the new position of the pointer.
         assert!(force[0] > 1.0 && force[1] > 1.0 && node[1] < 2.9, "{force:?}");
-        // However far the pointer moves, the force shown is not larger than that of the world.
+        // However far the pointer moves, the displayed force is not larger than the force in the world can be.
         ask(&mut session, Request::Lead([1e6, 2.9, 0.0]));
         let [stiffness, most] = session.engine.usual_pull(0).expect("a body");
         let far = newtons(session.shown().pulls[0][2]);
@@ -214,7 +214,7 @@ fn curves_are_the_same_after_going_back_and_forth_and_side_by_side_and_know_no_f
     assert!(both.iter().all(|sample| sample.beside.is_some_and(|beside| beside[0] == 0.0)));
     ask(&mut session, Request::Compare(false));
     assert_eq!(samples(&mut session), before);
-    // A different future.
+    // Another action at an earlier frame starts a different future.
     ask(&mut session, Request::Seek(25));
     let gravity = Value::Numbers(vec![0.0, 3.0]);
     ask(&mut session, Request::Set("world.gravity".into(), gravity));
@@ -227,7 +227,7 @@ fn curves_are_the_same_after_going_back_and_forth_and_side_by_side_and_know_no_f
     assert_eq!(samples(&mut session), before[..=25]);
 }
 
-/// A frame that takes half a minute is not offered, because nothing else could be done in the meantime.
+/// A number of substeps with which a frame takes half a minute is not offered, because nothing else could be done in the meantime.
 #[test]
 fn substeps_of_which_a_frame_would_take_long_are_refused_with_its_duration_and_a_coarser_body_is_offered_instead() {
     let mut session = quiet();
@@ -255,13 +255,13 @@ fn substeps_of_which_a_frame_would_take_long_are_refused_with_its_duration_and_a
     assert_eq!((shown.bodies.len(), shown.bodies[0].nodes as i64), (1, value));
     pass(&mut session, 2);
     assert_replays(&session);
-    // A number of substeps for which a frame has time is offered unchanged.
+    // If a frame with the needed number of substeps does not take long, this number is offered.
     let stiffness =
         |k| Request::Set(format!("body.{}.models.mass_spring.stiffness", shown.bodies[0].name), Value::Number(k));
     session.handle(stiffness(16_000.0));
     let message = session.shown().message.expect("a refusal");
     assert!(matches!(message.offer, Some(Offer::Substeps(n)) if n > shown.substeps), "{message:?}");
-    // A number that is too small is refused, and the present number is not offered.
+    // A number of substeps that is too small is refused, and no number is offered, because the present number is sufficient.
     session.handle(Request::Set("time.substeps".into(), Value::Integer(1)));
     let message = session.shown().message.expect("a refusal");
     assert!(message.severity == Severity::Refused && message.offer.is_none(), "{message:?}");
@@ -307,7 +307,7 @@ fn what_one_scene_differs_in_from_that_beside_it_is_to_be_saved_too() {
     assert!(session.is_edited());
 }
 
-/// Contact is switched on at the start, its parameters change while bodies move, and the command line repeats the scene.
+/// Contact is switched on at the start, and its parameters change while bodies move. The command line repeats the scene.
 #[test]
 fn bodies_that_land_on_each_other_touch_once_contact_is_switched_on() {
     let text = opruga::scenes::find("pressures").expect("it").replace("center = [1.7, 1.6]", "center = [0.2, 2.8]");
@@ -335,7 +335,7 @@ fn bodies_that_land_on_each_other_touch_once_contact_is_switched_on() {
     assert_replays(&session);
     let [lower, upper] = height(&mut session);
     assert!(upper - lower > 0.3 || (upper - lower).abs() < 0.2, "one lies on the other or beside it: {lower} {upper}");
-    // Not while they move.
+    // Contact cannot be switched off while bodies move.
     let hash = session.hash();
     session.handle(touch(false));
     let message = session.shown().message.expect("a refusal");

@@ -5,7 +5,7 @@ use crate::report::Report;
 use opruga::math::message::{IntoField, Replacing, Setting};
 use opruga::{Warning, WorldError};
 
-/// How bodies were renamed, and which ones exist.
+/// The names that bodies have had, and the names of the existing bodies.
 #[derive(Debug, Default)]
 pub(super) struct Titles {
     /// Old and new names, in the order in which they were given.
@@ -24,10 +24,10 @@ impl Titles {
         self.renamed.is_empty()
     }
 
-    /// The name of the original of this body, unless another body has that name.
+    /// The name of the body that this one has replaced, directly or through others, unless another existing body has that name.
     pub(super) fn of<'a>(&'a self, name: &'a str) -> &'a str {
         let mut title = name;
-        // From the last renamed to the first: after an undo, the names may form a cycle.
+        // The list is read from the latest name to the first, because the names may form a cycle after an undo.
         for (old, new) in self.renamed.iter().rev() {
             if new == title {
                 title = old;
@@ -36,7 +36,7 @@ impl Titles {
         if self.present.iter().any(|other| other == title) { name } else { title }
     }
 
-    /// A name, or a path such as `body.ball-2.models.0.damping`.
+    /// Replaces the name in a name, or in a path such as `body.ball-2.models.0.damping`.
     fn in_path(&self, path: &str) -> String {
         let Some(below) = path.strip_prefix("body.") else { return self.of(path).into() };
         let named = |(_, new): &&(String, String)| {

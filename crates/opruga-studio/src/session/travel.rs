@@ -1,4 +1,4 @@
-//! Travel in time: keyframes, different futures, undo and redo.
+//! Goes back and forth in time: keyframes, different futures, undo and redo.
 
 use super::pointer::Pinned;
 use super::{KEYFRAME_BYTES, Session};
@@ -14,14 +14,14 @@ use crate::shown::Severity;
 /// A moment to which the user can return.
 #[derive(Clone, Debug)]
 pub(super) struct Past {
-    /// The action after it.
+    /// The action that followed this moment.
     pub(super) label: Step,
     pub(super) document: Document,
     pub(super) own_commands: usize,
-    /// The scene at its start at that time.
+    /// The scene at its start, as it was at this moment ([`Session::start`]).
     pub(super) start: Document,
     pub(super) frame: u64,
-    /// The frame up to which the run that was left is identical to the present one.
+    /// The frame up to which the run of this moment is identical to the run that replaced it.
     pub(super) common: u64,
     pub(super) pins: Vec<Pinned>,
     pub(super) differences: Option<Vec<Difference>>,
@@ -30,7 +30,7 @@ pub(super) struct Past {
 }
 
 impl Session {
-    /// Goes to a frame: to the nearest keyframe before it, and from there frame by frame in the next ticks.
+    /// Goes to a frame. Returns to the nearest keyframe before it if necessary, and computes the remaining frames in the next ticks.
     pub(super) fn seek(&mut self, frame: u64) {
         let frame = frame.min(self.latest);
         let now = self.engine.frames();
@@ -44,7 +44,7 @@ impl Session {
         self.head_for(frame);
     }
 
-    /// Makes a frame the goal of the next ticks. If it has been reached already, arrives at once.
+    /// Makes a frame the goal of the next ticks. If this frame has been reached already, arrives at once.
     fn head_for(&mut self, frame: u64) {
         self.replaced += 1;
         self.goal = (frame > self.engine.frames()).then_some(frame);
@@ -55,8 +55,8 @@ impl Session {
         self.pacing.rest();
     }
 
-    /// Arrives at a moment. At the end of the computed run, the commands that were given while time was stopped take effect at once. At an earlier
-    /// moment they do not, because new actions replace everything that followed.
+    /// Arrives at a moment. At the end of the computed run, the commands that are due at this moment take effect at once. At an earlier moment they
+    /// do not, because new actions replace everything that followed it.
     pub(super) fn arrive(&mut self) {
         self.replaced += 1;
         self.goal = None;
@@ -98,7 +98,7 @@ impl Session {
         Ok(())
     }
 
-    /// The present moment, to return to later; the pointer then no longer holds what it holds now.
+    /// The present moment, to which the user can return. The pointer is then released.
     pub(super) fn past(&self, label: Step) -> Past {
         Past {
             label,
@@ -115,8 +115,8 @@ impl Session {
 
     /// Remembers the moment before an action.
     pub(super) fn remember(&mut self, past: Past) {
-        // A slider that is dragged is one edit, from the press to the release, however much time passes; two bodies that are added at the same moment
-        // are two edits.
+        // Dragging a slider is one edit from the press to the release, however much time passes in the scene. Adding two bodies at the same moment is
+        // two edits.
         let together = |last: &Past| match (last.press, past.press) {
             (Some(one), Some(other)) => one == other,
             _ => last.frame == past.frame,
@@ -131,20 +131,20 @@ impl Session {
         }
     }
 
-    /// Builds the world of a document, and that of the scene on its right.
+    /// Builds the world of a document and, if two scenes are side by side, that of the right scene.
     pub(super) fn build(&self, document: &Document) -> Result<Box<dyn Engine>, Report> {
         pair::build(document, self.differences.as_deref(), &self.files, &self.setting)
     }
 
-    /// Shows the scene twice, the second time with differences, or once (none). Both are computed from the start to the present moment again, because
-    /// the differences apply from the start.
+    /// Shows the scene twice, the second time with these differences, or only once (`None`). The run is computed again from the start to the present
+    /// moment, because the differences apply from the start.
     pub(super) fn compare(&mut self, differences: Option<Vec<Difference>>) -> Result<(), Report> {
         if differences == self.differences {
             return Ok(());
         }
         let newest = differences.as_ref().and_then(|list| list.last()).map(Difference::about);
         let past = self.past(newest.map_or(Step::Compare, Step::Differ));
-        // If both sides are still on the way to a moment, that moment remains the goal.
+        // If the session is still on the way to a moment, that moment remains the goal.
         let (latest, goal) = (self.latest, self.goal.unwrap_or(self.engine.frames()));
         self.with_differences(differences, |session| {
             session.take(session.document.clone(), session.own_commands, [latest; 2])?;
@@ -156,7 +156,7 @@ impl Session {
         Ok(())
     }
 
-    /// Changes the differences together with `act`; if that is refused, they stay as they were.
+    /// Changes the differences and calls `act`. If `act` is refused, the differences stay as they were.
     fn with_differences(
         &mut self,
         differences: Option<Vec<Difference>>,
@@ -165,7 +165,7 @@ impl Session {
         if differences == self.differences {
             return act(self);
         }
-        // The keyframes belong to other worlds.
+        // The keyframes are set aside, because they belong to worlds with other differences.
         let keyframes = std::mem::replace(&mut self.keyframes, Keyframes::new(KEYFRAME_BYTES));
         let before = std::mem::replace(&mut self.differences, differences);
         let outcome = act(self);
@@ -175,7 +175,7 @@ impl Session {
         outcome
     }
 
-    /// Builds the world of a document and goes to a frame; up to frame `shared` it is identical with the present run.
+    /// Builds the world of a document and goes to a frame. Up to the frame `common`, the run is identical to the present one.
     pub(super) fn take(
         &mut self,
         document: Document,
@@ -186,7 +186,7 @@ impl Session {
         let mut engine = self.build(&document)?;
         let shared = frame.min(common).min(self.engine.frames().max(self.latest));
         let state = self.keyframes.before(shared).map(|(_, state)| state.clone());
-        // If the start itself was changed, there is no common past, and everything is computed from the start.
+        // If the start itself was changed, the runs have no common past, and everything is computed from the start.
         let common = shared > 0 && state.is_some_and(|state| engine.rewind(&state).is_ok());
         (self.document, self.engine, self.own_commands) = (document, engine, own_commands);
         if common {
@@ -213,14 +213,14 @@ impl Session {
             self.open_before();
             return Ok(());
         };
-        // A redo leaves the run at the same point at which this one is left now.
+        // The two runs separate at the same frame, whether the user undoes or redoes the action.
         let present = Past { common: past.common, ..self.past(past.label.clone()) };
         self.with_differences(past.differences, |session| {
             session.take(past.document, past.own_commands, [past.frame, past.common])
         })?;
         (self.pins, self.start) = (past.pins, past.start);
         self.undo.pop();
-        // A redone action begins where it was done.
+        // The redo returns to the moment at which the undo was requested.
         self.redo.push(present);
         let time = self.time_of(past.frame);
         self.report(Severity::Done, Report::Undone(past.label, time), None);
@@ -252,11 +252,11 @@ impl Session {
             self.seek(0);
             return Ok(());
         }
-        // Actions after the reset start a new run.
+        // The run after the reset has nothing in common with the present one.
         let past = Past { common: 0, ..self.past(Step::Reset) };
         let start = self.start.clone();
         let own_commands = start.commands();
-        // A pull may have replaced a recorded drag without recording anything.
+        // A pull may have ended a drag of the scene without recording anything, so the texts are compared.
         let recorded = past.document.text() != start.text();
         self.take(start, own_commands, [0; 2])?;
         if recorded {

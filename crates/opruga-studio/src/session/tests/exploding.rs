@@ -1,4 +1,4 @@
-//! Bodies that grow beyond all proportions.
+//! Bodies that grow to many times their size.
 
 use super::{ask, pass, quiet};
 use crate::report::Report;
@@ -63,7 +63,7 @@ fn a_body_that_explodes_stops_time_while_it_can_still_be_seen_also_side_by_side(
                 Some("`ball` exploded: explicit euler is unstable at this step")
             );
         }
-        // It is reported again if the user insists, and if both sides are computed again.
+        // The explosion is reported again if the user starts time again, and if both sides are computed again.
         let (message_count, frames) = (message.number, session.frames());
         play(&mut session, 5);
         assert!(session.frames() <= frames + 1 && session.message_count() > message_count && !session.is_moving());

@@ -37,7 +37,7 @@ fn a_pull_and_a_push_are_undone_and_done_again() {
     assert_eq!(session.shown().undo, None);
 }
 
-/// The ball with a drag from the eighth frame to the sixteenth and another from the thirtieth on, and a second ball that is dragged all the time.
+/// A ball with a drag from frame 8 to frame 16 and another drag from frame 30 on, and a second ball with a drag from 0.1 s on.
 fn with_hands() -> Session {
     let text = opruga::scenes::find("ball").expect("it");
     let end = text.find("[[command]]").expect("its pull");
@@ -65,7 +65,7 @@ fn a_hand_that_is_in_the_scene_lets_go_of_a_body_that_a_person_takes_hold_of_and
         let begun = session.text();
         pass(&mut session, first);
         let (before, hash) = (pulls(&mut session), session.hash());
-        // The other ball is dragged and, during its drag, this one as well.
+        // The second ball is dragged after frame 6, and the first one between its frames 8 and 16.
         assert_eq!(before, usize::from((8..16).contains(&first)) + usize::from(first > 6), "{first}");
         ask(&mut session, Request::Grab(grip, 0, [0.0, 2.4, 0.0]));
         for k in 0..30 {
@@ -76,7 +76,7 @@ fn a_hand_that_is_in_the_scene_lets_go_of_a_body_that_a_person_takes_hold_of_and
             assert_eq!(pulls(&mut session), of_hand + others, "{grip:?} from {first}: frame {}", session.frames());
         }
         ask(&mut session, Request::Release);
-        // Nor does it resume when the user releases the ball.
+        // The drag does not resume when the user releases the ball.
         pass(&mut session, 10);
         assert_eq!(pulls(&mut session), 1);
         assert_replays(&session);
@@ -91,7 +91,7 @@ fn a_hand_that_is_in_the_scene_lets_go_of_a_body_that_a_person_takes_hold_of_and
         assert_eq!((session.text(), session.frames(), session.shown().recorded), (begun.clone(), 0, 0));
         pass(&mut session, 40);
         assert_eq!(session.hash(), untouched.hash(), "the hands are as they were");
-        // What was done is restored when the reset is undone.
+        // When the reset is undone, the actions of the user are restored.
         ask(&mut session, Request::Undo);
         pass(&mut session, 1);
         assert_ne!(session.text(), begun);

@@ -32,7 +32,7 @@ fn bodies_that_are_dropped_added_or_copied_come_to_the_pointer_or_beside_what_is
         ask(&mut session, Request::Edit(Edit::Drop(square(0.5), [2.0, 1.0, 0.0])));
         let [x, y] = middle(assert_apart(&mut session)[1]);
         assert!((x - 2.0).abs() < 0.01 && (y - 1.0).abs() < 0.01, "{x} {y}: where there is room, at the pointer");
-        // The bodies are dropped on the ball (several times), in the floor, and on one another.
+        // The bodies are dropped on the ball (two of them at the same point), into the floor, and on one another.
         for at in [[0.0, 2.0], [0.0, 2.0], [0.2, 1.9], [-3.0, -1.0], [2.0, 1.0]] {
             ask(&mut session, Request::Edit(Edit::Drop(square(0.4), [at[0], at[1], 0.0])));
             let [x, y] = middle(*assert_apart(&mut session).last().expect("a body"));
