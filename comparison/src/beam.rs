@@ -8,13 +8,14 @@ use crate::{FRAME, Settings, mujoco};
 
 const SCENE: &str = "cantilever-beam";
 
-/// The number of frames after which a run ends even if the body has not come to rest.
+/// The largest number of frames of a run in which the body should come to rest.
 const REST_FRAMES: usize = 3000;
 
-/// The damping of runs that must come to rest [s]: with ten times as much, steps of the real-time setting keep vibrating by 2e-4 of the displacement.
+/// The damping of runs that must come to rest [s]. With ten times this damping, runs with the real-time setting keep vibrating by 2e-4 of the
+/// displacement.
 const DAMPING: f64 = 0.01;
 
-/// The sag at rest according to quadratic elements of other programs, converged in space [m], for a Young's modulus.
+/// The sag at rest for a Young's modulus [m], according to quadratic elements of other programs, converged in space; none for other moduli.
 fn at_rest(modulus: f64) -> Option<f64> {
     [(1e8, 0.014686), (1e6, 0.747)].into_iter().find(|known| known.0 == modulus).map(|known| known.1)
 }
@@ -26,8 +27,8 @@ fn values(cells: [u32; 3], modulus: f64) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Runs all programs on the beam. The first oscillation is compared with that of a fine mesh of quadratic tetrahedra, by backward Euler with one step
-/// per frame, solved to the last digits.
+/// Runs all programs on the beam. The first oscillation is compared with that of a fine mesh of quadratic tetrahedra. The integrator of this
+/// reference is backward Euler with one step per frame, solved to the last digits.
 pub fn compare(modulus: f64, settings: &Settings) -> Result<Table, String> {
     let rest = at_rest(modulus).ok_or_else(|| format!("{modulus:e} Pa: known are 1e8 and 1e6"))?;
     let fine = Held::new(SCENE, &values([24, 2, 2], modulus), EXACT, 1)?

@@ -10,10 +10,10 @@ use rapier3d::prelude::SoftBodySolver;
 
 const SCENE: &str = "cantilever-cube";
 
-/// The number of frames after which a run ends even if the body has not come to rest.
+/// The largest number of frames of a run in which the body should come to rest.
 const REST_FRAMES: usize = 600;
 
-/// The number of timed frames of exact steps, which take long and whose motion is that of the reference.
+/// The number of timed frames of exact steps. It is small, because exact steps take long and their motion is that of the reference anyway.
 const EXACT_FRAMES: usize = 20;
 
 fn values(n: usize, modulus: f64, material: &str) -> Vec<(&'static str, String)> {
@@ -42,7 +42,7 @@ pub fn compare(n: usize, modulus: f64, settings: &Settings) -> Result<Table, Str
     let (shape, nodes) = (world.shape(), world.nodes());
     let solvers = [SoftBodySolver::Fem, SoftBodySolver::Constraints];
 
-    // Alternately, so that other load on the machine affects all of them equally.
+    // The programs run in turn, so that other load on the machine affects all of them equally.
     let mut swinging: [Run; 5] = Default::default();
     for _ in 0..settings.repeats {
         for (part, solver) in swinging[..2].iter_mut().zip(solvers) {
@@ -90,7 +90,7 @@ pub fn compare(n: usize, modulus: f64, settings: &Settings) -> Result<Table, Str
     Ok(Table { title, base: 0, rows })
 }
 
-/// Adds the times of a repetition; the motion is that of the first one.
+/// Adds the times of a repetition. The motion is kept from the first run.
 fn gather(to: &mut Run, run: Run) {
     to.milliseconds.extend(&run.milliseconds);
     if to.heights.is_empty() {

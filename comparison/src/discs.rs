@@ -18,7 +18,7 @@ const BOX: [f32; 2] = [57.8, 40.0];
 const RADIUS: f64 = 0.5;
 const FRICTION: f32 = 0.3;
 
-/// The numbers of substeps of Opruga per frame: near its limit of stability, and those of the scene.
+/// The numbers of substeps of Opruga per frame. The first is near its limit of stability, and the last is that of the scene.
 const SUBSTEPS: [u32; 3] = [8, 16, 32];
 
 /// The timed frames: from 0.5 to 1 s.
@@ -38,7 +38,7 @@ fn of_rapier(own: &World<2>) -> Result<Row, String> {
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::new(0.0, -9.81);
     world.integration_parameters.num_solver_iterations = rapier::SUBSTEPS as usize;
-    // Thick walls: the inner size is that of Opruga's box.
+    // The walls are thick. Their inner size is that of Opruga's box.
     let [width, height] = BOX;
     for (center, half) in [
         ([0.5 * width, -5.0], [width, 5.0]),

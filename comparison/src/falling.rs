@@ -1,4 +1,4 @@
-//! Falling bodies: the same frames for every program, and a table of their times.
+//! Runs falling bodies in every program for the same frames, and makes a table of the times.
 
 use crate::processor_time;
 use opruga::World;
@@ -12,11 +12,11 @@ pub struct Row {
     milliseconds: Vec<f64>,
     /// The mean height of all nodes at the end [m].
     height: f64,
-    /// The numbers of further columns.
+    /// The numbers in further columns.
     pub more: Vec<f64>,
 }
 
-/// All programs on the same bodies.
+/// The results of all programs on the same bodies.
 pub struct Table {
     pub title: String,
     /// The names of further columns.
@@ -60,10 +60,10 @@ pub fn run<W, const D: usize>(
 /// The depth of a point [m] inside a body with nodes at these positions; 0 outside.
 pub type DepthOf<'a, const D: usize> = dyn Fn(&[f64; D], &[[f64; D]]) -> f64 + 'a;
 
-/// The measurement of how deep nodes of one body are inside another one.
+/// Measures how deep nodes of one body are inside another one.
 pub struct Depth<'a, const D: usize> {
     pub of: &'a DepthOf<'a, D>,
-    /// The length relative to which it is given in per cent [m].
+    /// The depth is given in per cent of this length [m].
     pub unit: f64,
 }
 
@@ -90,7 +90,7 @@ impl<const D: usize> Depth<'_, D> {
     }
 }
 
-/// The same as [`run`], with the largest depth in the timed frames as an additional column.
+/// Does the same as [`run`], with the largest depth in the timed frames as an additional column.
 pub fn run_and_measure<W, const D: usize>(
     name: &str,
     timed: Range<usize>,

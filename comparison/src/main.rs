@@ -1,7 +1,8 @@
 //! Compares Opruga with similar engines, on the same bodies in one run (docs/comparison.md).
 //!
-//! Everything runs on one thread, measured by its processor time. Errors are given next to times: at rest against the static solution; for the first
-//! oscillation (depth, and time until the return) against backward Euler with the same step, solved to the last digits.
+//! Everything runs on one thread, and its processor time is measured. Errors are given next to times. The displacement at rest is compared with the
+//! static solution. The first oscillation (its depth, and the time until the return) is compared with that of backward Euler with the same step,
+//! solved to the last digits.
 
 mod beam;
 mod cube;

@@ -1,6 +1,6 @@
-//! The properties of an oscillation: the depth of its first minimum, and its duration.
+//! Measures an oscillation: the depth of its first minimum, and its duration.
 
-/// The first oscillation of something that is released and falls.
+/// The first oscillation of a body that is released and falls.
 #[derive(Clone, Copy, Debug)]
 pub struct Swing {
     /// Depth of the first lowest point below the start [m].
@@ -21,7 +21,7 @@ pub struct Run {
 /// The free end counts as at rest if it moves by less than this fraction of its sag.
 const STILL: f64 = 1e-4;
 
-/// The number of frames at the end of a run for which this must hold.
+/// The number of frames at the end of a run in which the free end must be at rest.
 const STILL_FRAMES: usize = 60;
 
 impl Run {
@@ -59,8 +59,8 @@ impl Run {
     }
 }
 
-/// The first turning point among the samples from `from` on: its index, and its time in samples and height from the parabola through it and its
-/// neighbours.
+/// Finds the first turning point among the samples from `from` on. Returns its index, and the time (in samples) and the height of the extremum of the
+/// parabola through this sample and its neighbours.
 fn turn(heights: &[f64], from: usize, is_turn: fn(f64, f64, f64) -> bool) -> Option<(usize, f64, f64)> {
     (from..heights.len().saturating_sub(1)).find_map(|k| {
         let (before, here, after) = (heights[k - 1], heights[k], heights[k + 1]);

@@ -1,4 +1,4 @@
-//! MuJoCo, called through a Python program that answers in JSON.
+//! Calls MuJoCo through a Python program that answers in JSON.
 
 use crate::motion::Run;
 use crate::ours::Shape;
@@ -19,7 +19,7 @@ pub struct Answer {
     pub version: String,
     pub nodes: usize,
     pub swinging: Run,
-    /// The sag at rest of a run that came to rest.
+    /// The sag at rest; none if the run did not come to rest.
     pub resting: Option<f64>,
 }
 

@@ -6,9 +6,9 @@ use opruga::blueprint::AnyBlueprint;
 use opruga::io::scene;
 use opruga::{Options, World, catalogue, scenes};
 
-/// Steps that are solved to the last digits.
+/// The integrator whose steps are solved to the last digits.
 pub const EXACT: &str = "{ kind = \"backward_euler\", accuracy = \"exact\" }";
-/// Steps with a fixed budget.
+/// The integrator whose steps have a fixed budget of iterations.
 pub const REAL_TIME: &str = "{ kind = \"backward_euler\", accuracy = \"real_time\" }";
 
 /// The damping of runs that must come to rest [s].

@@ -13,10 +13,10 @@ const SCENE: &str = include_str!("../../benches/scenes/falling-cubes.toml");
 /// Edge of a cube [m].
 const EDGE: f64 = 0.8;
 
-/// The numbers of substeps per frame of explicit steps: near their limit of stability, and those of the scene.
+/// The numbers of substeps per frame for explicit steps. The first is near their limit of stability, and the last is that of the scene.
 const EXPLICIT: [u32; 3] = [8, 12, 20];
 
-/// The same for implicit steps in real time.
+/// The numbers of substeps per frame for implicit steps in real time.
 const IMPLICIT: [u32; 2] = [1, 2];
 
 /// The timed frames: from 1.5 to 2.5 s.
@@ -30,7 +30,7 @@ struct Cubes {
     facets: Vec<[u32; 3]>,
 }
 
-/// The scene with this number of cubes along every axis and of substeps, and with further settings.
+/// The scene with `along` cubes along every axis, this number of substeps, and further settings.
 fn world(along: usize, substeps: u32, more: &[(&str, &str)]) -> Result<World<3>, String> {
     let count = format!("[{along}, {along}, {along}]");
     let settings = [("body.cube.copies.count", count.as_str()), ("time.substeps", &substeps.to_string())];
@@ -61,7 +61,7 @@ fn of_rapier(cubes: &Cubes, along: usize, name: &str, solver: SoftBodySolver) ->
     world.integration_parameters.num_solver_iterations = rapier::SUBSTEPS as usize;
     let far = along as f32 + 0.5;
     let middle = 0.5 * (far - 0.5);
-    // Thick walls: the inner size is that of Opruga's box.
+    // The walls are thick. Their inner size is that of Opruga's box.
     for (center, half) in [
         ([middle, -2.0, middle], [far + 4.0, 2.0, far + 4.0]),
         ([-2.5, 20.0, middle], [2.0, 30.0, far + 4.0]),
@@ -153,7 +153,7 @@ fn is_within(p: &Point, corners: [&Point; 4]) -> bool {
     [volume(p, b, c, d), volume(a, p, c, d), volume(a, b, p, d), volume(a, b, c, p)].iter().all(|v| v * whole >= 0.0)
 }
 
-/// The distance of a point from a triangle, by its plane, its sides and its corners.
+/// The distance of a point from a triangle: from its plane, its sides or its corners.
 fn distance(p: &Point, corners: [&Point; 3]) -> f64 {
     let mut least = f64::INFINITY;
     for k in 0..3 {

@@ -5,7 +5,7 @@ use crate::ours::Shape;
 use crate::processor_time;
 use rapier3d::prelude::*;
 
-/// Its version.
+/// The version of Rapier.
 pub const VERSION: &str = "0.36";
 
 /// The default number of steps of its solver per frame.

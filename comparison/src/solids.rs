@@ -101,7 +101,7 @@ pub fn compare(times_only: bool) -> Result<Table, String> {
     let own = world(3)?;
     let cells: usize = own.blueprint().bodies.iter().map(|body| body.mesh.cells.tetrahedra.len()).sum();
     let mut rows = vec![of_rapier(&own, "Rapier, constraints, 4 steps", SoftBodySolver::Constraints)?];
-    // Exact steps do not converge if cells of this material are inverted; finer steps take their place.
+    // Exact steps do not converge if cells of this material are inverted, so finer steps are the reference instead.
     for substeps in if times_only { vec![1, 3] } else { vec![1, 3, 12] } {
         let mut own = world(substeps)?;
         let step = |world: &mut World<3>| world.frame().map(|_| ()).map_err(|e| e.to_string());

@@ -30,13 +30,14 @@ pub struct Row {
 #[derive(Clone, Debug)]
 pub struct Table {
     pub title: String,
-    /// The index of the row whose time is the unit.
+    /// The index of the row to whose time the others are compared.
     pub base: usize,
     pub rows: Vec<Row>,
 }
 
 impl Row {
-    /// Compares an oscillating run with its reference, and likewise the sag of a run that came to rest; none if it did not.
+    /// Compares an oscillating run with its reference. `resting` is the sag of a run that came to rest, which is also compared; none if it did not
+    /// come to rest.
     pub fn new(name: &str, nodes: usize, swinging: &Run, resting: Option<f64>, reference: &Reference) -> Row {
         let swings = swinging.swing(reference.frame).zip(reference.swing);
         let relative = |value: f64, expected: f64| value / expected - 1.0;
@@ -52,7 +53,7 @@ impl Row {
 }
 
 fn percent(error: Option<f64>) -> String {
-    // Zero has no sign.
+    // An error that is rounded to zero is written without a sign.
     let text = |error: f64| format!("{:+.2} %", 100.0 * error).replace("-0.00", "0.00").replace("+0.00", "0.00");
     error.map_or("–".into(), text)
 }

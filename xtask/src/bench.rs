@@ -1,9 +1,9 @@
-//! Compares the thesis's algorithm, as a student would write it in C++, with Opruga, in one run on one machine: all figures that Opruga promises for
-//! its explicit integrators, with their targets.
+//! Compares Opruga with the algorithm of the thesis, as a student would write it in C++, in one run on one machine. Prints all figures that Opruga
+//! promises for its explicit integrators, with their targets.
 //!
-//! The two programs run alternately, some tenths of a second each; all rows are run once, and then all rows again. The result is the median of the
-//! ratios of consecutive runs, so that other load of the machine affects both programs. Load that lasts a minute affects all rows, and not just one
-//! of them.
+//! The two programs run alternately, each for some tenths of a second. All rows are run once before any row is run again. The result of a row is the
+//! median of the ratios of consecutive runs, so that other load on the machine affects both programs. Load that lasts a minute affects all rows, and
+//! not just one of them.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ const ROUNDS: usize = 7;
 const SECONDS: f64 = 0.3;
 /// The rings and vertices of the rows that are compared with the baseline.
 const ROWS: [(usize, usize); 7] = [(1, 36), (1, 1_024), (1, 16_384), (1, 100_000), (1, 1_048_576), (1_000, 36), MANY];
-/// A million vertices.
+/// The rings and vertices of the row with a million vertices.
 const MANY: (usize, usize) = (27_778, 36);
 /// The pressurised sphere of the second table.
 const SPHERE: &str = "benches/scenes/icosphere.toml";
@@ -133,7 +133,7 @@ pub(crate) fn compare() -> Result<(), String> {
     Ok(())
 }
 
-/// The target of the factor by which rings are faster than the baseline; `best` means with the best instructions of this machine.
+/// The target for the factor by which Opruga is faster than the baseline on rings. `best` means the best instructions of this machine.
 fn target(bodies: usize, vertices: usize, simd: &str, best: bool) -> Option<f64> {
     match (bodies, vertices) {
         (1, 1_024 | 16_384 | 100_000) => match simd {
@@ -148,7 +148,7 @@ fn target(bodies: usize, vertices: usize, simd: &str, best: bool) -> Option<f64>
     }
 }
 
-/// The verdict on a figure that reaches this fraction of its target.
+/// The word for a figure that reaches this fraction of its target.
 fn verdict(share: f64) -> String {
     if share >= 1.0 { "met".into() } else { format!("{:.0} % short", 100.0 * (1.0 - share)) }
 }
@@ -250,7 +250,7 @@ impl Programs {
         Ok(number(&row, "milliseconds_per_frame")? * 1e6 / (nodes * steps))
     }
 
-    /// Checks whether the equilibrium volume of the sphere depends on its triangles.
+    /// Prints how the equilibrium volume of the sphere depends on its triangles.
     fn balances(&self) -> Result<(), String> {
         let scene = self.root.join(SPHERE);
         let mut ratios = Vec::new();
@@ -280,7 +280,7 @@ impl Programs {
         Ok(())
     }
 
-    /// Times how a surface as written by scanners becomes a body.
+    /// Times how long a surface from a scanner takes to become a body.
     fn triangles(&self) -> Result<(), String> {
         let mut call = Command::new(&self.opruga);
         let row = first_row(call.args(["bench", "load", "--json"]))?;
@@ -291,7 +291,7 @@ impl Programs {
         Ok(())
     }
 
-    /// The volume of the sphere once drag has brought it to rest, divided by that of its polyhedron at the start.
+    /// The volume of the sphere after drag has brought it to rest, divided by the volume of its polyhedron at the start.
     fn balance(&self, scene: &Path, subdivisions: u32) -> Result<f64, String> {
         let folder = scratch("balance");
         let set = [
@@ -317,7 +317,7 @@ impl Programs {
         ratio.ok_or_else(|| format!("{} has no volume", table.display()))
     }
 
-    /// The time of the program until a body of 100,000 vertices is ready for its first step [s].
+    /// The time that the program takes until a body of 100,000 vertices is ready for its first step [s].
     fn start_time(&self) -> Result<f64, String> {
         let folder = scratch("start");
         let mut best = f64::INFINITY;

@@ -1,4 +1,4 @@
-//! Import cycles: groups of files of one crate that all import each other, directly or through other files of the group.
+//! Finds import cycles: groups of files of one crate that all import each other, directly or through other files of the group.
 //!
 //! An import is a `use`, or a path in code that begins with `crate::` or `super::`. Tests are ignored, and so are imports between a module and the
 //! modules that contain it.
@@ -7,7 +7,7 @@ use crate::workspace;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// The largest number of cycles, and the largest number of files in one of them. Lower these numbers when a cycle is removed.
+/// The allowed number of cycles, and the allowed number of files in one of them. Lower these numbers when a cycle is removed.
 const ALLOWED: [usize; 2] = [1, 3];
 
 /// The path of a module in its crate; empty for the crate's root.
@@ -62,7 +62,7 @@ fn circles(modules: &BTreeMap<Module, String>) -> Vec<Vec<&Module>> {
     for module in modules.keys() {
         let mutual = |other: &&Module| reached[module].contains(other) && reached[other].contains(module);
         let circle: Vec<&Module> = modules.keys().filter(mutual).collect();
-        // A module cannot reach itself without others: no module imports itself.
+        // A module that reaches itself does so through other modules, because no module imports itself.
         if circle.first() == Some(&module) {
             out.push(circle);
         }
@@ -90,7 +90,7 @@ fn imported<'m>(
     paths.into_iter().filter_map(|path| resolve(module, &path, modules)).collect::<Vec<_>>().into_iter()
 }
 
-/// The module that a path names, or that contains what it names.
+/// The module that a path names, or the module that contains the item that it names.
 fn resolve<'m>(module: &Module, path: &str, modules: &'m BTreeMap<Module, String>) -> Option<&'m Module> {
     let mut parts = path.split("::").map(str::trim).peekable();
     let mut full = match *parts.peek()? {
@@ -148,7 +148,7 @@ fn next_word(text: &str, from: usize) -> Option<(usize, usize)> {
     Some((begin, text[begin..].find(|letter| !is_word(letter)).map_or(text.len(), |length| begin + length)))
 }
 
-/// The paths of all `use`.
+/// The paths in all `use` declarations.
 fn used(text: &str) -> Vec<String> {
     let (mut out, mut at) = (Vec::new(), 0);
     while let Some((begin, end)) = next_word(text, at) {

@@ -11,7 +11,7 @@ struct Made {
     file: &'static str,
     /// The arguments of the program.
     call: &'static [&'static str],
-    /// The one of its output files to use.
+    /// The output file of the program that becomes the picture.
     from: &'static str,
 }
 
@@ -42,7 +42,7 @@ const OTHERS: [Made; 5] = [
         ],
         from: "plots.svg",
     },
-    // The sweep in the first lines of its scene, but only over the number of vertices and without speeds, which depend on the machine.
+    // This is the sweep in the first lines of the scene, but only over the number of vertices and without speeds, which depend on the machine.
     Made {
         file: "sweep-vertices.svg",
         call: &[
@@ -63,7 +63,7 @@ const OTHERS: [Made; 5] = [
     },
 ];
 
-/// Pictures that are not drawn here, and how they are made: windows on a screen, speeds of a machine, a report that takes minutes.
+/// Pictures that are not drawn here, and how they are made. They show windows on a screen, speeds of a machine, or a report that takes minutes.
 const ELSEWHERE: [(&str, &str); 3] = [
     ("studio", ".ci/studio and cargo xtask web-trial"),
     ("speed.svg", "opruga bench vertices --plot"),
@@ -170,7 +170,7 @@ fn tasks(pictures: &BTreeSet<String>, scenes: &BTreeSet<String>) -> Result<Vec<T
     Ok(tasks)
 }
 
-/// Builds the program; returns its path.
+/// Builds the program, and returns its path.
 fn program(root: &Path) -> Result<PathBuf, String> {
     let built =
         Command::new(env!("CARGO")).args(["build", "--workspace", "--bin", "opruga"]).current_dir(root).status();
@@ -181,7 +181,7 @@ fn program(root: &Path) -> Result<PathBuf, String> {
     Ok(target.join("debug/opruga"))
 }
 
-/// Draws a picture, with paths relative to the root; returns its path.
+/// Draws a picture, with paths relative to the root. Returns the path of the picture.
 fn draw(root: &Path, opruga: &Path, task: &Task, folder: &Path) -> Result<PathBuf, String> {
     let out = folder.join(&task.file);
     let mut call = Command::new(opruga);
@@ -220,7 +220,7 @@ fn pixels(bytes: &[u8], path: &Path) -> Result<Pixels, String> {
     Ok(([info.width, info.height], found))
 }
 
-/// The difference of two pictures.
+/// Describes the difference of two pictures; none if they are equal.
 fn difference((size, before): &Pixels, (other, after): &Pixels) -> Option<String> {
     if size != other {
         return Some(format!("{} x {} pixels instead of {} x {}", other[0], other[1], size[0], size[1]));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// Runs the test that compares the hashes so that it writes them instead; reports which ones have changed.
+/// Runs the test that compares the hashes in a mode in which it writes them. Reports which hashes have changed.
 pub(crate) fn write() -> Result<(), String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("the workspace has no folder")?;
     let file = root.join("scenes/golden.txt");
@@ -37,7 +37,7 @@ pub(crate) fn write() -> Result<(), String> {
     Ok(())
 }
 
-/// Scene → frames and hash.
+/// Reads the frames and the hash of every scene.
 fn hashes(text: &str) -> BTreeMap<String, String> {
     let lines = text.lines().filter(|l| !l.starts_with('#'));
     lines.filter_map(|l| l.trim().split_once(' ')).map(|(name, rest)| (name.into(), rest.into())).collect()

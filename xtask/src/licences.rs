@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::process::Command;
 
-/// Permitted licences; of alternatives (`OR`) one is sufficient, of conjunctions (`AND`) all are required.
+/// The permitted licences. One of several alternatives (`OR`) is sufficient, but all parts of a conjunction (`AND`) are required.
 const ALLOWED: [&str; 15] = [
     "MIT",
     "MIT-0",
@@ -19,7 +19,7 @@ const ALLOWED: [&str; 15] = [
     "0BSD",
     "BSL-1.0",
     "OFL-1.1",
-    // A font of the window's toolkit, which may be redistributed like the fonts under OFL-1.1.
+    // This is the licence of a font of the window's toolkit. It permits redistribution, as OFL-1.1 does.
     "Ubuntu-font-1.0",
 ];
 

@@ -1,4 +1,4 @@
-//! Maintenance tasks of the workspace: licences, results, sizes, pictures, speeds, the web page of the studio; `cargo xtask --help` lists them.
+//! Maintenance tasks of the workspace: licences, results, sizes, pictures, speeds, and the web page of the studio. `cargo xtask --help` lists them.
 #![allow(clippy::disallowed_methods)] // no physics here
 
 mod bench;

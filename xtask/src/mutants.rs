@@ -1,7 +1,7 @@
-//! Ten plausible faults, one for each part of the engine and its surroundings: do the tests detect them?
+//! Checks whether the tests detect ten plausible faults, one in each part of the engine and its surroundings.
 //!
-//! Each fault is put separately into a work tree of the last commit below `target/mutants`, and the tests that must fail are run there, before and
-//! after. To be run by hand; it takes minutes, because each fault compiles its crate again.
+//! Each fault is put separately into a work tree of the last commit below `target/mutants`. The tests that must fail are run there without and with
+//! the fault. This task is run by hand and takes minutes, because the crate of each fault is compiled again.
 
 use crate::workspace;
 use std::path::Path;
@@ -11,7 +11,7 @@ use std::process::{Command, Output};
 struct Mutant {
     name: &'static str,
     file: &'static str,
-    /// It occurs exactly once in the file.
+    /// The original text, which occurs exactly once in the file.
     text: &'static str,
     instead: &'static str,
     /// The tests that must fail, as arguments of `cargo test`.
@@ -51,7 +51,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "let keep = S::select(pace.less_or_equal(most), S::one(), S::one() - most / pace);",
         tests: &["--package", "opruga-collide", "--test", "all", "friction::"],
     },
-    // The iteration along a curve of equilibria uses the load of the previous point for the next one.
+    // The iteration along a curve of equilibria uses the load of the previous point for the next point.
     Mutant {
         name: "statics",
         file: "crates/opruga-integrators/src/equilibrium/arc.rs",
@@ -75,7 +75,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "found.node(number + 1, position, offset);",
         tests: &["--package", "opruga-io", "--test", "all", "mesh_round_trips::"],
     },
-    // The differences between states lose their signs.
+    // The differences between states in a recording lose their signs.
     Mutant {
         name: "recording",
         file: "crates/opruga-io/src/recording/codec.rs",
@@ -91,7 +91,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "k as f64 / count as f64",
         tests: &["--package", "opruga", "--lib", "ranges_reach_both_ends"],
     },
-    // Going back in the studio keeps the future that should be dropped.
+    // When the user goes back in time and acts, the studio keeps the future that it should drop.
     Mutant {
         name: "studio",
         file: "crates/opruga-studio/src/keyframes.rs",
@@ -141,7 +141,7 @@ fn attempt(mutant: &Mutant, tree: &Path) -> Result<Verdict, String> {
         return Err("without it the tests fail, or there are none".into());
     }
     write(&faulty)?;
-    // A compilation error is not a failing test.
+    // The tests are compiled first, because a compilation error does not count as a failing test.
     let built = test(tree, mutant.tests, true);
     let after = test(tree, mutant.tests, false);
     write(&sound)?;
@@ -151,7 +151,7 @@ fn attempt(mutant: &Mutant, tree: &Path) -> Result<Verdict, String> {
     verdict(after?.status.code())
 }
 
-/// The verdict for the exit code of the tests. Cargo exits with 101 if a test fails; the exit of a killed process has no meaning.
+/// The verdict for the exit code of the tests. Cargo exits with 101 if a test fails. A killed process gives no verdict.
 fn verdict(code: Option<i32>) -> Result<Verdict, String> {
     match code {
         Some(0) => Ok(Verdict::Missed),
@@ -168,7 +168,7 @@ fn mutated(mutant: &Mutant, text: &str) -> Result<String, String> {
     }
 }
 
-/// Compiles tests, and also runs them unless `only_built`.
+/// Compiles tests, and also runs them unless `only_built` is set.
 fn test(tree: &Path, tests: &[&str], only_built: bool) -> Result<Output, String> {
     let mut cargo = Command::new(env!("CARGO"));
     let target = workspace::target()?.join("mutants/build");

@@ -1,8 +1,8 @@
 //! Finds words that the glossary replaces, in names of items, fields and locals.
 //!
-//! A name is an identifier after `fn`, `struct`, `enum`, `trait`, `type`, `const`, `static`, `mod` or `let`, one before a single colon (a field, an
-//! argument), or an argument of a closure. The words of a name are its parts between underscores and capitals. Tests are ignored, because their names
-//! are sentences.
+//! A name is an identifier after `fn`, `struct`, `enum`, `trait`, `type`, `const`, `static`, `mod` or `let`, an identifier before a single colon (a
+//! field or an argument), or an argument of a closure. Underscores and capital letters separate the words of a name. Tests are ignored, because their
+//! names are sentences.
 
 use crate::{tokens, workspace};
 use std::collections::BTreeMap;
@@ -55,7 +55,7 @@ fn replaced(glossary: &str) -> Vec<String> {
     out
 }
 
-/// The names that some code defines, each as often as it is defined.
+/// The names that the code defines, each as often as it is defined.
 fn defined(code: &str) -> Vec<String> {
     const WORDS: [&str; 9] = ["fn", "struct", "enum", "trait", "type", "const", "static", "mod", "let"];
     let mut out = Vec::new();
@@ -76,7 +76,7 @@ fn defined(code: &str) -> Vec<String> {
         }
         let is_name = first == '_' || first.is_alphabetic();
         if first == '|' {
-            // A closure begins where an expression may begin; `a | b` and `a || b` follow a name or a bracket.
+            // A closure begins where an expression may begin. In `a | b` and `a || b`, however, the bar follows a name or a bracket.
             let begins = matches!(before.as_str(), "(" | "," | "=" | "{" | ";" | "move" | ">" | "&");
             in_closure = !in_closure && begins && !rest.starts_with('|');
         }

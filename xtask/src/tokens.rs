@@ -8,7 +8,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// The number of lines from which a function counts as long: its head and the lines of its body, without the last brace.
+/// A function with at least this number of lines counts as long. The lines of its head and its body count, without that of the last brace.
 const LONG: usize = 60;
 
 /// The size of a crate, or of all.
@@ -44,7 +44,7 @@ pub(crate) fn report(arguments: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// A row for every crate, and one for all; next to the figures, their change since a commit.
+/// Makes a table with a row for every crate and one for all. The changes since a commit are next to the figures.
 fn table(now: &BTreeMap<String, Size>, before: Option<&BTreeMap<String, Size>>) -> String {
     let with_sum = |sizes: &BTreeMap<String, Size>| {
         let mut sum = Size::default();
@@ -53,7 +53,7 @@ fn table(now: &BTreeMap<String, Size>, before: Option<&BTreeMap<String, Size>>) 
     };
     let before: Option<BTreeMap<String, Size>> = before.map(|before| with_sum(before).into_iter().collect());
     let mut rows = with_sum(now);
-    // Removed crates come before the sum.
+    // The rows of removed crates come before the sum.
     let gone = before.iter().flat_map(BTreeMap::keys).filter(|name| *name != "all" && !now.contains_key(*name));
     let gone: Vec<_> = gone.map(|name| (name.clone(), Size::default())).collect();
     rows.splice(now.len()..now.len(), gone);
@@ -120,7 +120,7 @@ fn of_commit(commit: &str) -> Result<Vec<(String, String)>, String> {
         .map_err(failed)?;
     let input = git.stdin.take();
     let asked: String = paths.iter().map(|path| format!("{commit}:{path}\n")).collect();
-    // Git answers while it receives requests: without a second thread, both sides would wait for each other.
+    // Git answers while it receives requests. Without a second thread, both sides would wait for each other.
     let asking = std::thread::spawn(move || input.map_or(Ok(()), |mut input| input.write_all(asked.as_bytes())));
     let answer = git.wait_with_output().map_err(failed)?.stdout;
     asking.join().map_err(|_| "git cat-file was not asked")?.map_err(failed)?;
@@ -134,7 +134,7 @@ fn of_commit(commit: &str) -> Result<Vec<(String, String)>, String> {
     Ok(out)
 }
 
-/// One answer of `git cat-file --batch`, `HASH blob BYTES`, the bytes and a line end; and what follows it.
+/// Splits off one answer of `git cat-file --batch`: the line `HASH blob BYTES`, the bytes and a line end. Returns the bytes and the remaining text.
 fn answered(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
     let head = std::str::from_utf8(&bytes[..end]).ok()?;
@@ -160,7 +160,7 @@ fn size(text: &str) -> Size {
     Size { tokens, long: long_functions(&body) }
 }
 
-/// The text without comments. In a line with quotes, `//` may be part of a text, so only lines that begin with it are removed.
+/// The text without comments. In a line with quotes, `//` may be part of a text, so such a line is removed only if it begins with `//`.
 fn without_comments(text: &str) -> String {
     let (mut out, mut rest) = (String::with_capacity(text.len()), text);
     while let Some((before, inside)) = rest.split_once("/*") {
@@ -262,7 +262,7 @@ fn token(text: &str) -> usize {
     }
 }
 
-/// The length of `r"…"`, also with hashes.
+/// The length of a raw text at the beginning: `r"…"`, also with hashes.
 fn raw_text(text: &str) -> Option<usize> {
     let behind = text.strip_prefix('r')?;
     let inside = behind.trim_start_matches('#');
@@ -271,7 +271,7 @@ fn raw_text(text: &str) -> Option<usize> {
     Some(text.len() - inside.len() + inside.find(&end)? + end.len())
 }
 
-/// The length of `"…"` or `b"…"`.
+/// The length of a text at the beginning: `"…"` or `b"…"`.
 fn quoted(text: &str) -> Option<usize> {
     let inside = text.strip_prefix('b').unwrap_or(text).strip_prefix('"')?;
     let mut letters = inside.char_indices();
@@ -285,7 +285,7 @@ fn quoted(text: &str) -> Option<usize> {
     None
 }
 
-/// The length of `'x'`, `b'x'` or `'\n'`.
+/// The length of a character at the beginning: `'x'`, `b'x'` or `'\n'`.
 fn letter(text: &str) -> Option<usize> {
     let inside = text.strip_prefix('b').unwrap_or(text).strip_prefix('\'')?;
     let mut letters = inside.chars();
@@ -297,7 +297,7 @@ fn letter(text: &str) -> Option<usize> {
     letters.as_str().strip_prefix('\'').map(|rest| text.len() - rest.len())
 }
 
-/// Names and lines of the long functions. The text is formatted, so a body ends at the brace below its beginning.
+/// Names and lines of the long functions. The text is formatted, so the body of a function ends at the first brace with the indentation of its head.
 fn long_functions(text: &str) -> Vec<(String, usize)> {
     let lines: Vec<&str> = text.split('\n').collect();
     let mut out = Vec::new();

@@ -1,4 +1,4 @@
-//! Bodies at rest with sides along circles, ellipses and spheres, and the quantities measured on them.
+//! Makes bodies at rest whose sides follow circles, ellipses and spheres, and measures quantities on them.
 
 use crate::lab::Trouble;
 use opruga::World;
@@ -36,7 +36,8 @@ impl Cells {
     }
 }
 
-/// Equal cells of the unit square or cube, transformed by a map; nodes at midpoints of edges are transformed too, so that sides are curved.
+/// Divides the unit square or cube into equal cells, and transforms them by a map. Nodes at midpoints of edges are transformed, too, so that sides
+/// become curved.
 pub(crate) fn mapped<const D: usize>(
     counts: [u32; D],
     cells: Cells,
@@ -65,14 +66,14 @@ pub(crate) fn octant<const D: usize>(
     outer: f64,
     cells: Cells,
 ) -> Result<Mesh<D>, Trouble> {
-    // Directions of equal angles on the faces of the square or cube.
+    // Equal steps along the faces of the square or cube give directions at equal angles.
     let direction = |s: &[f64; D]| -> [f64; D] {
         let t = s.map(|c| (std::f64::consts::FRAC_PI_4 * c).tan());
         let length = t.iter().map(|c| c * c).sum::<f64>().sqrt();
         t.map(|c| c / length)
     };
     let core = |s: &[f64; D]| -> [f64; D] {
-        // The shape is halfway between a cube and a ball, so that no angle becomes flat.
+        // The shape of the core is between a cube and a ball, so that no cell has an angle near 180°.
         let most = s.iter().copied().fold(0.0, f64::max);
         let round = if most > 0.0 { direction(&s.map(|c| c / most)) } else { [0.0; D] };
         core::array::from_fn(|d| 0.5 * outer * (0.6 * s[d] / (D as f64).sqrt() * 1.4 + 0.4 * most * round[d]))
@@ -81,7 +82,7 @@ pub(crate) fn octant<const D: usize>(
     let mut known: BTreeMap<[i64; D], u32> = BTreeMap::new();
     let first = usize::from(inner.is_some());
     for block in first..=D {
-        // Block 0 is the core; block 1 + a is beyond its face across axis a.
+        // Block 0 is the core. Block 1 + a is beyond the face of the core that is perpendicular to the axis a.
         let mut counts = [n; D];
         if block > 0 {
             counts[block - 1] = layers;
@@ -145,17 +146,17 @@ fn middles<const D: usize>(mesh: &Mesh<D>) -> Vec<[usize; 3]> {
     out.into_values().collect()
 }
 
-/// Numbers of the nodes whose rest position satisfies a condition.
+/// The indices of the nodes whose rest positions satisfy a condition.
 pub(crate) fn nodes<const D: usize>(mesh: &Mesh<D>, which: impl Fn(&[f64; D]) -> bool) -> Vec<u32> {
     (0..mesh.positions.len() as u32).filter(|node| which(&mesh.positions[*node as usize])).collect()
 }
 
-/// Numbers of the nodes at a given distance from the origin.
+/// The indices of the nodes at a given distance from the origin.
 pub(crate) fn at_radius<const D: usize>(mesh: &Mesh<D>, radius: f64) -> Vec<u32> {
     nodes(mesh, |x| (x.iter().map(|c| c * c).sum::<f64>().sqrt() - radius).abs() < 1e-6 * radius)
 }
 
-/// Numbers of the nodes of the boundary.
+/// The indices of the nodes of the boundary.
 pub(crate) fn boundary<const D: usize>(mesh: &Mesh<D>) -> Vec<u32> {
     let mut out: Vec<u32> = mesh.facets.iter().flatten().copied().collect();
     out.sort_unstable();
@@ -195,8 +196,8 @@ pub(crate) fn outward<const D: usize>(world: &World<D>, which: &[u32]) -> f64 {
     which.iter().map(of).sum::<f64>() / which.len() as f64
 }
 
-/// A component of the Cauchy stress of body 0 at a rest position: the mean stresses of the nearby cells, extrapolated by the quadratic polynomial
-/// that fits them best (patch recovery: Zienkiewicz and Zhu 1992).
+/// A component of the Cauchy stress of body 0 at a rest position. It is the value there of the quadratic polynomial that best fits the mean stresses
+/// of the nearby cells (patch recovery: Zienkiewicz and Zhu 1992).
 pub(crate) fn stress_at<const D: usize>(world: &World<D>, at: [f64; D], [i, j]: [usize; 2]) -> Result<f64, Trouble> {
     let samples = cell_stresses(world).into_iter().map(|(middle, stress)| {
         let away: Vec<f64> = (0..D).map(|d| middle[d] - at[d]).collect();
@@ -205,8 +206,8 @@ pub(crate) fn stress_at<const D: usize>(world: &World<D>, at: [f64; D], [i, j]: 
     continued(samples.collect(), 3 * (D + 1) * (D + 2) / 2)
 }
 
-/// The hoop stress at a radius, for a body in space whose stress depends only on the distance from the origin: half of the non-radial part of the
-/// mean stresses of the nearest `count` cells, extrapolated by the quadratic polynomial in the radius.
+/// The hoop stress at a radius, for a body in space whose stress depends only on the distance from the origin. In each of the nearest `count` cells,
+/// it is half of the trace of the mean stress without the radial part. These values are extrapolated to the radius by the best quadratic polynomial.
 pub(crate) fn hoop_stress_at(world: &World<3>, radius: f64, count: usize) -> Result<f64, Trouble> {
     let states = cell_stresses(world);
     let samples = states.into_iter().map(|(middle, stress)| {
@@ -238,8 +239,8 @@ fn cell_stresses<const D: usize>(world: &World<D>) -> Vec<([f64; D], [[f64; 3]; 
     mesh.cells.iter().zip(world.cell_states(0)).map(|((_, _, nodes), state)| (middle_of(nodes), state.stress)).collect()
 }
 
-/// The value at a point of the quadratic polynomial that fits the nearest `count` samples best. Each sample contains its distance, its displacement
-/// from the point, and its value.
+/// Fits a quadratic polynomial to the `count` samples that are nearest to a point, and returns its value at this point. Each sample contains its
+/// distance, its displacement from the point, and its value.
 fn continued(mut samples: Vec<(f64, Vec<f64>, f64)>, count: usize) -> Result<f64, Trouble> {
     samples.sort_by(|a, b| a.0.total_cmp(&b.0));
     samples.truncate(count);
@@ -264,7 +265,7 @@ fn continued(mut samples: Vec<(f64, Vec<f64>, f64)>, count: usize) -> Result<f64
     solve(matrix).map(|solution| solution[0])
 }
 
-/// Gaussian elimination with pivoting.
+/// Solves a system of linear equations by Gaussian elimination with pivoting.
 fn solve(mut matrix: Vec<Vec<f64>>) -> Result<Vec<f64>, Trouble> {
     let n = matrix.len();
     for k in 0..n {

@@ -2,7 +2,7 @@
 
 use crate::lab::{Lab, Trouble};
 
-/// The largest amount by which the observed order may be below the theoretical one.
+/// The amount by which the observed order may be below the theoretical one.
 pub(crate) const ORDER_MARGIN: f64 = 0.2;
 
 /// The area of mechanics to which a case belongs.
@@ -42,16 +42,16 @@ impl Family {
 /// The meaning of the successive levels of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Over {
-    /// Cells along a side; their size is proportional to one over the number.
+    /// The number of cells along a side. The size of the cells is inversely proportional to it.
     Cells(&'static str),
     /// A step [s], or another size that decreases.
     Step(&'static str),
-    /// A parameter of the problem; every value has its own reference.
+    /// A parameter of the problem. Every value has its own expected result.
     Parameter(&'static str),
 }
 
 impl Over {
-    /// The size that converges to zero.
+    /// The size of cells or the step at a level, which converges to zero.
     pub(crate) fn size(self, level: f64) -> f64 {
         match self {
             Over::Cells(_) => 1.0 / level,
@@ -72,9 +72,11 @@ pub enum Scale {
 /// The criterion by which a case passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Check {
-    /// The error at the finest level is within the tolerance, decreases from level to level, and falls at this order (minus 0.2) over all levels.
+    /// The error at the finest level is within the tolerance. It also decreases from level to level, and over all levels it falls at least at this
+    /// order minus 0.2.
     Order(f64),
-    /// The error at the finest level is within the tolerance. The reference has too few digits for an order, or belongs to a slightly different body.
+    /// The error at the finest level is within the tolerance. This is used if the reference has too few digits for an order, or belongs to a slightly
+    /// different body.
     Finest,
     /// The errors at all levels are within the tolerance.
     Everywhere,
@@ -103,9 +105,9 @@ pub struct Case {
     pub scale: Scale,
     /// The largest allowed error.
     pub tolerance: f64,
-    /// The levels to which the tolerance applies, and the order.
+    /// The levels to which the tolerance applies, and the expected order.
     pub check: Check,
-    /// Whether it takes only a moment, so that the tests of the program run it.
+    /// Whether the case takes so little time that the tests of the program run it.
     pub quick: bool,
     /// Runs a scene at a level and measures the quantity.
     pub measure: fn(&Lab, f64) -> Result<f64, Trouble>,
@@ -131,7 +133,7 @@ pub struct Row {
     pub case: &'static Case,
     /// The results, level by level.
     pub points: Vec<Point>,
-    /// The slope of the error over the size of the level, by a least-squares fit of the logarithms; only if an order is expected.
+    /// The slope of the logarithm of the error over that of the size, by a least-squares fit; none if no order is expected.
     pub observed_order: Option<f64>,
     /// Whether the case passes.
     pub pass: bool,
@@ -201,7 +203,7 @@ impl Case {
 }
 
 impl Row {
-    /// The point that decides: the finest one, or the one with the largest error if all count.
+    /// The point that decides whether the case passes: the finest one or, if all points must be within the tolerance, the one with the largest error.
     pub fn decisive(&self) -> Option<&Point> {
         match self.case.check {
             Check::Everywhere => {

@@ -45,7 +45,8 @@ impl Scene {
         Scene { text, files: Vec::new() }
     }
 
-    /// Statics: every frame of 1 s ends in the equilibrium at that time. The tolerance is relative to the extent of the body.
+    /// A scene of statics: every frame lasts 1 s and ends in the equilibrium for the loads and pins at that time. The tolerance is relative to the
+    /// extent of the body.
     pub(crate) fn statics(dimension: usize, tolerance: f64) -> Scene {
         Scene::new(dimension, 1.0, 1, &format!("equilibrium\ntolerance = {tolerance:?}"))
     }
@@ -81,7 +82,7 @@ impl Scene {
     }
 }
 
-/// A pin for every node of a list, with its displacement after the first second.
+/// Writes a pin for every node of a list, with the displacement that the node has after one second.
 pub(crate) fn moved_pins<const D: usize>(moves: impl IntoIterator<Item = (u32, [f64; D])>) -> String {
     let rows: Vec<String> = moves
         .into_iter()
@@ -128,7 +129,7 @@ impl Lab {
     }
 }
 
-/// Multiplies μ of solids, keeping λ, and the stiffness of springs and hinges.
+/// Multiplies the shear modulus μ of solids, without changing λ, and the stiffness of springs and hinges.
 fn stiffen<const D: usize>(blueprint: &mut Blueprint<D>, factor: f64) -> Result<(), Trouble> {
     for values in blueprint.bodies.iter_mut().flat_map(|body| &mut body.models) {
         let spec = values.spec();
@@ -141,7 +142,7 @@ fn stiffen<const D: usize>(blueprint: &mut Blueprint<D>, factor: f64) -> Result<
                 changed.push(("youngs_modulus", mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu)));
                 changed.push(("poissons_ratio", lambda / (2.0 * (lambda + mu))));
             }
-            // The published program is compared with its own numbers.
+            // The model of the published program is not changed, because it is compared with the numbers of that program.
             None if values.spec().has_role(Role::Published) => {}
             None => {
                 let known = |name: &'static str| values.number(name).map(|value| (name, factor * value));

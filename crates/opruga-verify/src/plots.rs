@@ -21,7 +21,7 @@ pub fn plot(row: &Row) -> Result<String, DrawError> {
     }
 }
 
-/// Several rows in one panel.
+/// Plots several rows in each panel.
 pub(crate) fn together(panels: &[(&str, Vec<&Row>)]) -> Result<String, DrawError> {
     let panels = panels
         .iter()
@@ -103,7 +103,7 @@ fn over_parameter(row: &Row) -> Result<String, DrawError> {
             },
             Line {
                 name: "measured".into(),
-                // There is a gap after each point, because the line shows the expected values.
+                // The measured points are not connected, because only the expected values form a line.
                 points: of(|p| p.computed).into_iter().flat_map(|point| [point, [f64::NAN; 2]]).collect(),
                 marker: Some(Marker::Circle),
                 ..Line::default()

@@ -85,7 +85,7 @@ pub fn table(rows: &[Row]) -> String {
     text
 }
 
-/// `rows` as JSON, with the measured and expected values at the finest or worst level, and all levels.
+/// The rows as JSON, each with the measured and the expected value at the finest or the worst level, and with the results at all levels.
 pub fn to_json(rows: &[Row]) -> Value {
     let row = |row: &Row| {
         let (case, point) = (row.case, row.decisive());
@@ -121,7 +121,7 @@ pub fn to_json(rows: &[Row]) -> Value {
     })
 }
 
-/// The figure beside the table: errors of several kinds of cells together.
+/// The figure beside the table, which shows the errors of several kinds of cells together.
 pub fn overview(rows: &[Row]) -> Option<String> {
     let named = |names: &[&str]| -> Vec<&Row> {
         names
@@ -167,8 +167,8 @@ fn escaped(text: &str) -> String {
     text.replace('|', "\\|")
 }
 
-/// The report as Markdown: a table for every family, the failures, and the omitted cases. `plots` is the location of the plots; without it none are
-/// referenced.
+/// The report as Markdown: a table for every family, the failures, and the omitted cases. `plots` is the location of the plots. Without a location,
+/// the report contains no plots.
 pub fn markdown(rows: &[Row], plots: Option<&str>) -> String {
     let mut text = String::new();
     for family in Family::ALL {
@@ -262,7 +262,7 @@ pub fn html(rows: &[Row]) -> String {
                 let _ = writeln!(text, "<pre>{}</pre>", plain(trouble));
             }
             if let Ok(svg) = plot(row) {
-                // Makes names unique within one page.
+                // The names in the plot are made unique within the page.
                 text.push_str(&svg.replace("panel-", &format!("{name}-panel-")));
             }
             text.push_str("</section>\n");

@@ -5,7 +5,7 @@
 pub(crate) struct Bits {
     /// The complete bytes.
     bytes: Vec<u8>,
-    /// The bits that do not fill a byte yet, with the latest one lowest.
+    /// The bits that do not fill a byte yet. The latest bit is the lowest one.
     rest: u64,
     /// The number of these bits, below 8 between two calls.
     count: u32,
@@ -44,7 +44,7 @@ impl Bits {
         self.ue(if value > 0 { doubled - 1 } else { doubled });
     }
 
-    /// Ends the unit with a one and zeros up to the next byte boundary.
+    /// Ends the unit with a one, followed by zeros up to the next byte boundary.
     pub(crate) fn finish(mut self) -> Vec<u8> {
         self.flag(true);
         if self.count > 0 {

@@ -1,5 +1,5 @@
-//! Encodes images as the pictures of a stream. The encoder also reconstructs the pictures that a decoder shows, so that errors
-//! do not accumulate.
+//! Encodes images as the pictures of a stream. The encoder also reconstructs the pictures as a decoder shows them, and predicts from these, so that
+//! errors do not accumulate.
 
 use super::bits::{Bits, Unit, pack, se_bits};
 use super::frame::{BLOCK, Frame};
@@ -9,7 +9,7 @@ use super::residual::{Counts, Quantisers, Residual};
 use super::tables::PATTERNS;
 use crate::image::Image;
 
-/// The largest motion that is searched, in pixels; every level allows it.
+/// The largest motion that is searched [pixels]. All levels of the format allow it.
 const FURTHEST: i32 = 56;
 
 /// The maximum number of steps of a search.
@@ -20,7 +20,7 @@ const STEPS: usize = 24;
 pub(crate) struct Coded {
     /// Its unit, without a start code.
     pub(crate) unit: Vec<u8>,
-    /// Whether it does not depend on others.
+    /// Whether it does not depend on other pictures.
     pub(crate) refresh: bool,
 }
 
@@ -39,7 +39,7 @@ pub(crate) struct Encoder {
     counts: Counts,
     /// The motion of each macroblock; none if it was not predicted from the previous frame.
     motion: Vec<Option<Motion>>,
-    /// The cost of a bit, in sums of differences.
+    /// The cost of a bit, in the unit of the sums of absolute differences that measure predictions.
     bit_cost: u32,
     /// The number of pictures from one independent picture to the next.
     period: u32,
@@ -117,7 +117,7 @@ impl Encoder {
         Coded { unit: pack(if refresh { Unit::Refresh } else { Unit::Slice }, &bits.finish()), refresh }
     }
 
-    /// Copies the changed macroblocks of an image; returns which have changed.
+    /// Copies the changed macroblocks of an image, and returns which macroblocks have changed.
     fn take(&mut self, image: Image<'_>) -> Vec<bool> {
         let pixels = image.pixels();
         let row_bytes = 4 * image.width() as usize;
@@ -156,11 +156,11 @@ impl Encoder {
         bits.put(self.number, NUMBER_BITS);
         if refresh {
             bits.ue(self.refreshes % 2);
-            // No earlier picture is kept.
+            // These flags mean that no earlier picture is kept.
             bits.flag(false);
             bits.flag(false);
         } else {
-            // There is one earlier picture, in default order, and the oldest one is dropped.
+            // These flags mean that one earlier picture is used, in the default order, and that the oldest picture is dropped.
             bits.flag(false);
             bits.flag(false);
             bits.flag(false);
@@ -170,7 +170,7 @@ impl Encoder {
         bits.ue(1);
     }
 
-    /// The predicted motion of a macroblock, its motion if it is skipped, and the motions of neighbours.
+    /// The predicted motion of a macroblock, its motion if it is skipped, and the motions of its neighbours.
     fn neighbours(&self, [x, y]: [usize; 2]) -> ([Motion; 2], [Neighbour; 3]) {
         let wide = self.blocks[0];
         let at = |x: usize, y: usize| self.motion[y * wide + x];
@@ -211,7 +211,7 @@ impl Encoder {
     fn renew(&mut self, bits: &mut Bits, macroblock: [usize; 2], skipped: &mut u32) {
         let ([expected, left_out], neighbours) = self.neighbours(macroblock);
         let (motion, pixels, cost) = self.search(macroblock, expected, left_out, neighbours);
-        // Macroblocks that a body has left are drawn again if they are empty, so that no traces remain.
+        // An empty macroblock that a body has just left is predicted from its neighbours, so that no traces of the body remain.
         let empty = cost > 0 && self.source.is_empty(macroblock);
         if cost > 256 || empty {
             let alone = self.alone(macroblock);
@@ -243,7 +243,7 @@ impl Encoder {
         residual.write(bits, &mut self.counts, macroblock);
     }
 
-    /// Searches for a macroblock in the previous frame, starting with the motions of the neighbours.
+    /// Searches the previous frame for the content of a macroblock, beginning with the motions of its neighbours.
     fn search(
         &self,
         macroblock: [usize; 2],

@@ -3,10 +3,10 @@
 use super::bits::Bits;
 use super::tables::{COUNTS, RUNS, SUM_COUNTS, SUM_ZEROS, ZEROS};
 
-/// The code for the number of levels.
+/// The choice of the code for the number of levels of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Context {
-    /// The code for a block whose neighbours have this mean number of levels.
+    /// The code for a block whose neighbours have this number of levels on average.
     Near(u8),
     /// The code for the chroma DC levels.
     Sums,

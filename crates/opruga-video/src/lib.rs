@@ -34,7 +34,7 @@ const QUANTISER: u8 = 20;
 /// The time from one independent frame to the next [s], which determines how precisely a player can seek.
 const PERIOD: f64 = 2.0;
 
-/// Writes a film frame by frame; only the coded frames stay in memory until [`Mp4Writer::finish`].
+/// Writes a film frame by frame. Only the coded frames stay in memory until [`Mp4Writer::finish`].
 pub struct Mp4Writer<W: Write> {
     out: W,
     size: [u32; 2],
@@ -78,10 +78,10 @@ impl<W: Write> Mp4Writer<W> {
         })
     }
 
-    /// Adds a frame: four bytes per pixel, red, green, blue and an opacity that is ignored, row by row from the top.
+    /// Adds a frame, row by row from the top. Every pixel has four bytes: red, green, blue and an opacity, which is ignored.
     ///
     /// # Errors
-    /// [`VideoError::FrameSize`] if it has another size; the film can continue without it.
+    /// [`VideoError::FrameSize`] if the frame has another size; the film can continue without it.
     pub fn push(&mut self, size: [u32; 2], pixels: &[u8]) -> Result<(), VideoError> {
         let image = Image { size, pixels };
         if size != self.size || pixels.len() as u64 != 4 * u64::from(size[0]) * u64::from(size[1]) {

@@ -1,4 +1,4 @@
-//! The boxes of an MP4 file with one film in it (ISO/IEC 14496-12 and 14496-15), with the data that a player needs first.
+//! Writes the boxes of an MP4 file with one film (ISO/IEC 14496-12 and 14496-15). The data that a player needs come first.
 
 use super::parameters::{Parameters, Rate};
 use std::io::{Result, Write};
@@ -8,7 +8,7 @@ use std::io::{Result, Write};
 pub(crate) struct Sample {
     /// Its length in bytes.
     pub(crate) size: u32,
-    /// Whether it does not depend on others.
+    /// Whether it does not depend on other pictures.
     pub(crate) refresh: bool,
 }
 
@@ -35,7 +35,7 @@ fn boxed(name: &[u8; 4], parts: &[&[u8]]) -> Vec<u8> {
     out
 }
 
-/// Bytes from integers of different sizes.
+/// Converts integers of different sizes to bytes.
 macro_rules! bytes {
     ($($number:expr),* $(,)?) => {{
         let mut out: Vec<u8> = Vec::new();
@@ -90,7 +90,7 @@ impl Film<'_> {
         let track = boxed(
             b"tkhd",
             &[
-                // Enabled, and part of the film.
+                // The flags mean that the track is enabled and part of the film.
                 &bytes![LONG | 3, 0_u64, 0_u64, 1_u32, 0_u32, duration],
                 &[0; 16],
                 &unit_matrix(),
@@ -134,7 +134,8 @@ impl Film<'_> {
         let configuration = boxed(
             b"avcC",
             &[
-                // The profile and the level are the first bytes of the parameters; lengths have four bytes.
+                // The profile and the level are copied from the parameters. The last two bytes mean that lengths have four bytes, and that there is
+                // one parameter set.
                 &[1, sequence[1], sequence[2], sequence[3], 0xFF, 0xE1],
                 &bytes![sequence.len() as u16],
                 sequence,

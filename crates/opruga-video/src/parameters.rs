@@ -7,7 +7,7 @@ use crate::error::VideoError;
 /// The number of bits of a picture number.
 pub(crate) const NUMBER_BITS: u32 = 16;
 
-/// Levels: ten times the level number, the maximum number of macroblocks per second, and per frame.
+/// The levels of the format: ten times the level number, and the largest numbers of macroblocks per second and per frame.
 const LEVELS: [(u8, u64, u64); 18] = [
     (10, 1_485, 99),
     (11, 3_000, 396),
@@ -39,7 +39,7 @@ pub(crate) struct Rate {
 }
 
 impl Rate {
-    /// The fraction for a number of frames per second; exact for numbers such as 20, 12.5 and 30000/1001.
+    /// Finds the fraction for a number of frames per second. It is exact for numbers such as 20, 12.5 and 30000/1001.
     pub(crate) fn new(frames_per_second: f64) -> Result<Rate, VideoError> {
         if !(1e-4..=1e4).contains(&frames_per_second) {
             return Err(VideoError::Rate { rate: frames_per_second });
@@ -81,7 +81,8 @@ impl Parameters {
         let fits = |most: u64| size <= most && blocks.iter().all(|side| side * side <= 8 * most);
         let speed = (size as f64 * rate.frames_per_second()).ceil() as u64;
         let level = LEVELS.iter().find(|level| fits(level.2) && speed <= level.1);
-        // A film with too many frames per second is played more slowly, but a film whose frames are too large is not played at all.
+        // If no level allows so many frames per second, the highest level is chosen if it allows the size of the frames. A player plays such a film
+        // more slowly. A film whose frames are too large is not played at all.
         let level = level.or(LEVELS.last().filter(|level| fits(level.2)));
         let level = level.ok_or(VideoError::Size { width, height })?.0;
         Ok(Parameters {
@@ -108,7 +109,7 @@ fn sequence(size: [u32; 2], blocks: [u32; 2], rate: Rate, level: u8) -> Vec<u8> 
     bits.ue(blocks[1] - 1);
     bits.flag(true);
     bits.flag(true);
-    // The part of macroblocks beyond the picture is cropped, in pairs of pixels.
+    // The part of the macroblocks beyond the picture is cropped. Its size is given in pairs of pixels.
     let extra: [u32; 2] = std::array::from_fn(|axis| (blocks[axis] * BLOCK as u32 - size[axis]) / 2);
     bits.flag(extra != [0, 0]);
     if extra != [0, 0] {

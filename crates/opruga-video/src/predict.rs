@@ -14,7 +14,7 @@ pub(crate) enum Direction {
 }
 
 impl Direction {
-    /// Whether the neighbours that it needs exist.
+    /// Whether the neighbours that this prediction needs exist.
     pub(crate) fn is_possible(self, [x, y]: [usize; 2]) -> bool {
         match self {
             Direction::Down => y > 0,
@@ -74,7 +74,7 @@ pub(crate) fn from_neighbours(frame: &Frame, plane: usize, macroblock: [usize; 2
             out.fill(mean as u8);
         }
         Direction::Mean => {
-            // Each quarter has its own mean; those off the diagonal use only one side if it exists.
+            // Each quarter has its own mean. The two quarters off the diagonal use only one side, if it exists.
             for (right, lower) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
                 let above = || sum(4 * right..4 * right + 4, true);
                 let left = || sum(4 * lower..4 * lower + 4, false);
@@ -134,7 +134,7 @@ pub(crate) fn from_before(before: &Frame, plane: usize, [x, y]: [usize; 2], moti
     out
 }
 
-/// The sum of the absolute differences between a macroblock of a frame and its prediction. The summation stops as soon as it exceeds a limit.
+/// The sum of the absolute differences between a macroblock of a frame and its prediction. The summation stops as soon as the sum exceeds a limit.
 pub(crate) fn difference(frame: &Frame, plane: usize, macroblock: [usize; 2], expected: &Pixels, limit: u32) -> u32 {
     let (side, stride, start) = (Frame::side(plane), frame.stride(plane), frame.start(plane, macroblock));
     let mut sum = 0;

@@ -1,4 +1,4 @@
-//! The residual of a macroblock after prediction: levels, and the pixels restored from them.
+//! The residual of a macroblock after prediction: its levels, and the pixels that are restored from them.
 
 use super::bits::Bits;
 use super::entropy::{Context, write_levels};
@@ -26,7 +26,7 @@ impl Quantisers {
 /// The levels of a macroblock.
 #[derive(Clone, Debug)]
 pub(crate) struct Residual {
-    /// Whether the luma DC values are encoded separately.
+    /// Whether the luma DC values are encoded separately, as in predictions from neighbours.
     alone: bool,
     /// The sixteen luma DC values, if they are separate.
     sums: Block,
@@ -36,9 +36,9 @@ pub(crate) struct Residual {
     colour_sums: [[i32; 4]; 2],
     /// The chroma.
     colour: [[Block; 4]; 2],
-    /// The quarters of the luma that have levels, one bit each.
+    /// The quarters of the luma that have nonzero levels, one bit each.
     pub(crate) luma_coded: u32,
-    /// 0 without chroma, 1 with only its DC values, 2 with all of it.
+    /// 0 if no chroma is encoded, 1 if only its DC values are, 2 if all of it is.
     pub(crate) colour_coded: u32,
 }
 
@@ -105,7 +105,7 @@ fn differences(source: &Frame, plane: usize, start: usize, expected: &Pixels, [x
 }
 
 impl Residual {
-    /// Finds the levels of a macroblock of `source`, and draws what a decoder restores from them in `drawn`.
+    /// Finds the levels of a macroblock of `source`, and draws into `drawn` what a decoder restores from them.
     pub(crate) fn new(
         source: &Frame,
         drawn: &mut Frame,

@@ -14,7 +14,7 @@ const fn join<const N: usize>(lengths: [u8; N], values: [u8; N]) -> [Code; N] {
     codes
 }
 
-/// Codes of the number of levels, by the number of trailing ones, for neighbours with few, some and many levels.
+/// Codes of the number of levels, by the number of trailing ones. The three tables are for neighbours with few, some and many levels.
 pub(crate) const COUNTS: [[[Code; 17]; 4]; 3] = [
     [
         join(
@@ -80,7 +80,7 @@ pub(crate) const SUM_COUNTS: [[Code; 5]; 4] = [
     join([0, 0, 0, 6, 7], [0, 0, 0, 5, 0]),
 ];
 
-/// The number of zeros before the last level, by the number of levels.
+/// Codes of the number of zeros before the last level, by the number of levels.
 pub(crate) const ZEROS: [&[Code]; 15] = [
     &join([1, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8, 9, 9, 9], [1, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 1]),
     &join([3, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 6, 6, 6, 6], [7, 6, 5, 4, 3, 5, 4, 3, 2, 3, 2, 3, 2, 1, 0]),
@@ -99,11 +99,11 @@ pub(crate) const ZEROS: [&[Code]; 15] = [
     &join([1, 1], [0, 1]),
 ];
 
-/// The number of zeros before the last chroma DC level, by the number of levels.
+/// Codes of the number of zeros before the last chroma DC level, by the number of levels.
 pub(crate) const SUM_ZEROS: [&[Code]; 3] =
     [&join([1, 2, 3, 3], [1, 1, 1, 0]), &join([1, 2, 2], [1, 1, 0]), &join([1, 1], [1, 0])];
 
-/// The number of zeros before a level, by the number of remaining zeros.
+/// Codes of the number of zeros before a level, by the number of remaining zeros.
 pub(crate) const RUNS: [&[Code]; 7] = [
     &join([1, 1], [1, 0]),
     &join([1, 2, 2], [1, 1, 0]),

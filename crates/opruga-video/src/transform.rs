@@ -3,13 +3,13 @@
 /// Four by four numbers, row by row.
 pub(crate) type Block = [i32; 16];
 
-/// The order in which the numbers of a block are coded.
+/// The indices of the numbers of a block, in the order in which they are coded.
 pub(crate) const ZIGZAG: [usize; 16] = [0, 1, 4, 8, 5, 2, 3, 6, 9, 12, 13, 10, 7, 11, 14, 15];
 
 /// The largest level. Larger levels have no code in this profile.
 const LARGEST: i32 = 2063;
 
-/// Multipliers of the quantiser: if row and column are both even, if both are odd, and if one is even and one is odd.
+/// The multipliers of the quantiser for numbers whose row and column are both even, both odd, and one even and one odd.
 const SCALES: [[i32; 3]; 6] = [
     [13107, 5243, 8066],
     [11916, 4660, 7490],
@@ -19,7 +19,7 @@ const SCALES: [[i32; 3]; 6] = [
     [7282, 2893, 4559],
 ];
 
-/// Multipliers of the inverse, in the same order.
+/// The multipliers of the inverse, in the same order.
 const STEPS: [[i32; 3]; 6] = [[10, 16, 13], [11, 18, 14], [13, 20, 16], [14, 23, 18], [16, 25, 20], [18, 29, 23]];
 
 /// The chroma quantiser that belongs to a luma quantiser.
@@ -56,7 +56,7 @@ impl Quantiser {
         }
     }
 
-    /// Replaces numbers by levels, starting at the index `first`; returns whether any is nonzero.
+    /// Replaces numbers by levels, starting at the index `first`. Returns whether any level is nonzero.
     pub(crate) fn quantise(&self, block: &mut Block, first: usize) -> bool {
         let mut any = 0;
         for index in first..16 {
@@ -68,7 +68,7 @@ impl Quantiser {
         any != 0
     }
 
-    /// Replaces DC values by levels; returns whether any is nonzero.
+    /// Replaces DC values by levels. Returns whether any level is nonzero.
     pub(crate) fn quantise_sums(&self, sums: &mut [i32]) -> bool {
         let mut any = 0;
         for sum in sums {
@@ -105,7 +105,7 @@ impl Quantiser {
     }
 }
 
-/// Transforms differences to frequencies.
+/// Transforms differences of pixels to coefficients of frequencies.
 pub(crate) fn forward(block: &mut Block) {
     for (start, step) in [(4, 1), (1, 4)] {
         for line in 0..4 {
@@ -121,7 +121,7 @@ pub(crate) fn forward(block: &mut Block) {
     }
 }
 
-/// Transforms restored frequencies to differences and adds them to pixels.
+/// Transforms restored coefficients to differences, and adds these to pixels.
 pub(crate) fn add_inverse(block: &Block, pixels: &mut [u8], stride: usize) {
     let mut work = *block;
     for (start, step) in [(4, 1), (1, 4)] {
@@ -143,7 +143,7 @@ pub(crate) fn add_inverse(block: &Block, pixels: &mut [u8], stride: usize) {
     }
 }
 
-/// Sums and differences of sixteen numbers.
+/// Replaces sixteen numbers by sums and differences of them (the Hadamard transform).
 pub(crate) fn hadamard(block: &mut Block) {
     for (start, step) in [(4, 1), (1, 4)] {
         for line in 0..4 {
@@ -157,7 +157,7 @@ pub(crate) fn hadamard(block: &mut Block) {
     }
 }
 
-/// Sums and differences of four numbers.
+/// Replaces four numbers by sums and differences of them (the Hadamard transform).
 pub(crate) fn hadamard_four([a, b, c, d]: &mut [i32; 4]) {
     [*a, *b, *c, *d] = [*a + *b + *c + *d, *a - *b + *c - *d, *a + *b - *c - *d, *a - *b - *c + *d];
 }
@@ -182,7 +182,7 @@ mod tests {
                 rule.restore(&mut block, 0);
                 let mut pixels = [128; 16];
                 add_inverse(&block, &mut pixels, 4);
-                // A step of the quantiser is 0.625 at 0 and doubles every six.
+                // The step of quantiser 0 is 0.625. The step doubles whenever the number of the quantiser grows by six.
                 let step = 0.625 * (f64::from(quantiser) / 6.0).exp2();
                 let square: f64 = (0..16).map(|p| f64::from(i32::from(pixels[p]) - 128 - wanted[p]).powi(2)).sum();
                 assert!((square / 16.0).sqrt() < 0.5 * step + 0.5, "{quantiser}: {square}");

@@ -1,4 +1,4 @@
-//! Gaps in a translation, for tests.
+//! Finds gaps in a translation, for tests.
 
 use crate::{Translation, entry_name};
 use fluent_syntax::ast::{Expression, InlineExpression, Pattern, PatternElement};
@@ -6,7 +6,7 @@ use opruga_math::message::Variant;
 use std::collections::BTreeSet;
 
 impl Translation {
-    /// Entries, attributes and fields that are missing or superfluous for these variants.
+    /// Lists the entries, attributes and fields that are missing or superfluous for these variants.
     pub fn gaps<'v>(&self, variants: impl Iterator<Item = &'v Variant>) -> Vec<String> {
         let (mut problems, mut names) = (Vec::new(), BTreeSet::new());
         for variant in variants {
@@ -41,10 +41,10 @@ impl Translation {
     }
 }
 
-/// Whether the source of a text contains a field: within braces, or outside quotes.
+/// Whether the source of a text uses a field, within braces or outside quotes.
 fn names_field(source: &str, field: &str) -> bool {
     let word = |text: &str| text.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == field);
-    // Every other piece is in quotes; escaped quotes do not matter in texts without braces around them.
+    // Of the pieces between quotes, every second one is quoted. Escaped quotes do not matter in texts without braces around them.
     let plain = source.replace("\\\"", "");
     plain.split('"').enumerate().any(|(index, piece)| match index % 2 {
         1 => piece.split('{').skip(1).any(|gap| word(gap.split('}').next().unwrap_or_default())),

@@ -1,12 +1,12 @@
 //! Errors, warnings and names of kinds in other languages: translations in Fluent syntax, looked up by code, variant and fields of a message, and by
 //! the path of a name.
 //!
-//! An entry is named after the code and the variant, with `-` instead of the point: `msh-version-Unknown`. Its attributes `.allowed` and `.hint` are
-//! the texts of the same name. A field is a variable; if it is a message itself, its own entry is used. A selector matches a count by numbers and by
-//! plural categories of the language, a text by the text itself, a message by its variant, and a missing field by `none`. `NUMBER` supports
-//! `maximumSignificantDigits`, which is 6 by default. The first argument of `ALLOWED` and `HINT` is a field that is a message: `ALLOWED` gives what
-//! is allowed according to this message, and `HINT` what would help. If the message gives nothing, the text of the next argument is used. `ABOUT` is
-//! the line about the parameter whose path is in a field. An entry that becomes empty is not a translation, and English is used instead.
+//! The name of an entry consists of the code, in which `-` replaces the point, and the variant: `msh-version-Unknown`. Its attributes `.allowed` and
+//! `.hint` are the texts of the same name. A field is a variable; if it is a message itself, its own entry is used. The cases of a selector match a
+//! count by numbers and by plural categories of the language, a text by the text itself, a message by its variant, and a missing field by `none`.
+//! `NUMBER` supports `maximumSignificantDigits`, which is 6 by default. The first argument of `ALLOWED` and `HINT` is a field that is a message:
+//! `ALLOWED` inserts the allowed values of this message, and `HINT` its hint. If the message has none, the text of the next argument is used. `ABOUT`
+//! inserts the description of the parameter whose path is in a field. If the text of an entry is empty, the English text is used instead.
 //!
 //! # Source
 //! Project Fluent, "Fluent Syntax Guide", <https://projectfluent.org/fluent/guide/>; Unicode CLDR, "Language Plural Rules".
@@ -26,7 +26,7 @@ pub use names::Named;
 
 static CROATIAN: LazyLock<Translation> = LazyLock::new(|| {
     let translation = Translation::new(&CROATIAN_FILES).0;
-    // A test checks for problems.
+    // A test checks that there are no problems.
     let _ = translation.add_names(CROATIAN_NAMES);
     translation
 });
@@ -34,7 +34,7 @@ static CROATIAN: LazyLock<Translation> = LazyLock::new(|| {
 /// The Croatian names of kinds and parameters.
 const CROATIAN_NAMES: &str = include_str!("../hr/kinds.ftl");
 
-/// The Croatian texts, by their origin.
+/// The Croatian texts, in files by their origin.
 const CROATIAN_FILES: [&str; 11] = [
     include_str!("../hr/problems.ftl"),
     include_str!("../hr/limits.ftl"),
@@ -87,22 +87,22 @@ impl Translation {
         Some(self.resolved(pattern, &message.fields())).filter(|text| !text.is_empty())
     }
 
-    /// The text of a message, in English if the translation does not contain it.
+    /// The text of a message; in English if the translation does not contain it.
     pub fn text_or_english(&self, message: &dyn Message) -> String {
         self.text(message).unwrap_or_else(|| message.to_string())
     }
 
-    /// What a message says is allowed.
+    /// The allowed values of a message; none if it has none.
     pub fn allowed(&self, message: &dyn Message) -> Option<String> {
         self.beside(message, "allowed").or_else(|| message.allowed())
     }
 
-    /// What a message says would help.
+    /// The hint of a message; none if it has none.
     pub fn hint(&self, message: &dyn Message) -> Option<String> {
         self.beside(message, "hint").or_else(|| message.hint())
     }
 
-    /// The text of a message, with what is allowed and what would help, corresponding to [`Message::in_full`] in English.
+    /// The text of a message with its allowed values and its hint, as [`Message::in_full`] in English.
     pub fn in_full(&self, message: &dyn Message) -> Option<String> {
         let beside = [("dopušteno", self.allowed(message)), ("savjet", self.hint(message))];
         let beside = beside.into_iter().filter_map(|(label, text)| text.map(|text| format!("; {label}: {text}")));
@@ -114,8 +114,8 @@ impl Translation {
         Some(self.resolved(&pattern.value, &message.fields())).filter(|text| !text.is_empty())
     }
 
-    /// What is allowed (`ALLOWED`) or would help (`HINT`) according to the first argument, or the text of the first of the other arguments that has
-    /// one.
+    /// The allowed values (`ALLOWED`) or the hint (`HINT`) of the message in the first argument. If the message has none, the text of the first of
+    /// the other arguments that has one.
     fn beside_of(
         &self,
         name: &str,
@@ -137,7 +137,7 @@ impl Translation {
         texts.flatten().next().unwrap_or_default()
     }
 
-    /// The line about the parameter whose path is in a field; empty if the language has none.
+    /// The description of the parameter whose path is in a field; empty if the language has none.
     fn about(&self, arguments: &CallArguments<&'static str>, fields: &[(&'static str, Field)]) -> String {
         let Some(InlineExpression::VariableReference { id }) = arguments.positional.first() else {
             return String::new();

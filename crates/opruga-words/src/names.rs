@@ -1,7 +1,7 @@
-//! Names of kinds, of their parameters and of the values of these.
+//! The names of kinds, of their parameters, and of the values of these parameters.
 //!
-//! An entry is named after its subject: `model-fem` is a kind, `model-fem-plane` is a parameter of it, `model-every-plane` is this parameter of all
-//! kinds without their own line. Its attribute `.about` is a description.
+//! An entry is named after its subject: `model-fem` is a kind, `model-fem-plane` is a parameter of this kind, and `model-every-plane` is this
+//! parameter of all kinds without an entry of their own. Its attribute `.about` is a description.
 
 use crate::Translation;
 use fluent_syntax::ast::{Entry, Pattern, PatternElement};
@@ -22,7 +22,7 @@ pub struct Named {
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     lines: HashMap<&'static str, Named>,
-    /// The first line for every parameter, whatever its kind.
+    /// For every parameter, the first entry with its name, whatever the kind.
     parameters: HashMap<&'static str, Named>,
 }
 
@@ -72,7 +72,7 @@ impl Translation {
         names.lines.get(&*path.join("-")).copied()
     }
 
-    /// The name of a parameter of a kind: from its own line, or from that of all kinds with a parameter of this name.
+    /// The name of a parameter of a kind, from its own entry or from the common entry of all kinds.
     pub fn named_parameter(&self, part: &str, kind: &str, parameter: &str) -> Option<Named> {
         self.named(&[part, kind, parameter]).or_else(|| self.named(&[part, "every", parameter]))
     }
@@ -83,7 +83,7 @@ impl Translation {
         names.parameters.get(parameter).copied()
     }
 
-    /// Adds the names of kinds that a program registers, in Fluent syntax.
+    /// Adds the names of kinds that a program registers, given in Fluent syntax.
     ///
     /// # Errors
     /// The errors of the text: its syntax, existing names, names with variables. All other entries are added.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// Figures of a case of `verify`, by name.
+/// The figures of a case of `verify`, by name.
 pub(super) type Row = BTreeMap<String, String>;
 
 /// The largest number of figures that are reported for a scene or a case.
@@ -31,7 +31,7 @@ pub(super) struct Difference {
 }
 
 impl Outcome {
-    /// How two runs ended, if both ended in the same way and too early.
+    /// Returns how two runs ended, if both ended in the same way and too early.
     pub(super) fn early(&self, other: &Outcome) -> Option<String> {
         let same = self.ending == other.ending && self.ending != "exit code 0";
         same.then(|| format!("{} after {} frames", self.ending, self.rows.len().saturating_sub(1)))
@@ -75,13 +75,13 @@ impl Difference {
         Difference { subject: subject.into(), frame, figure: figure.into(), values: values.map(shown) }
     }
 
-    /// A scene, a case or a figure that only one side has.
+    /// Makes the difference for a scene, a case or a figure that only one side has.
     pub(super) fn unknown(subject: &str, known: [bool; 2]) -> Difference {
         Difference::new(subject, None, "", known.map(|known| if known { "known" } else { "unknown" }))
     }
 }
 
-/// The differences between two runs of a scene: how they ended, their figures, and the values of the first frame that differs.
+/// The differences between two runs of a scene: how they ended, which figures differ, and the values in the first frame that differs.
 pub(super) fn of_scene(scene: &str, base: &Outcome, present: &Outcome) -> Vec<Difference> {
     let mut out = Vec::new();
     if base.ending != present.ending {
@@ -140,7 +140,7 @@ fn union<'a, T>(base: &'a BTreeMap<String, T>, present: &'a BTreeMap<String, T>)
     base.keys().chain(others).collect()
 }
 
-/// The first of the figures that differ, and the number of the others.
+/// Lists the first of the figures that differ, and the number of the others.
 fn told<'a>(
     subject: &str,
     frame: Option<usize>,
@@ -208,7 +208,7 @@ mod tests {
     fn a_changed_bit_is_named_with_its_frame() {
         assert_eq!(found("0a\n0b\n0d\n", TABLE), [difference(2, "hash of the state", ["0c", "0d"])]);
         let [then, now] = ["1.2500000000000000e0", "1.2500000000000002e0"];
-        // The columns may have another order.
+        // The columns may be in another order.
         let other = TABLE.replace(then, now);
         assert_eq!(found(HASHES, &other), [difference(1, "energy", [then, now])]);
         // For runs that diverge from each other, only the first differing frame is reported.

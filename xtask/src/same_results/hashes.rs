@@ -1,8 +1,8 @@
-//! Reads the hashes of the frames of a recording. Only the heads of the file's chunks are read, so that xtask needs no part of the engine.
+//! Reads the hashes of the frames of a recording. Only the heads of the chunks of the file are read, so that xtask needs no part of the engine.
 
 use std::collections::BTreeMap;
 
-/// Bytes before the header, and bytes of the head of a chunk.
+/// The number of bytes before the header. `CHUNK` is the number of bytes of the head of a chunk.
 const HEAD: usize = 24;
 const CHUNK: usize = 48;
 /// The versions whose chunks are supported.
@@ -27,9 +27,9 @@ pub(super) fn hashes(bytes: &[u8]) -> Result<BTreeMap<u64, u64>, String> {
         match (&head[..4], head[4]) {
             (b"FRAM", kind) => {
                 let frame = number(at + 8).ok_or_else(cut)?;
-                // The state of the last frame may follow the hash of that frame: both have the same hash.
+                // The state of the last frame may follow the hash of that frame. Both chunks contain the same hash.
                 out.insert(frame, number(at + 32).ok_or_else(cut)?);
-                // Frames without a state share a chunk: the payload has the hashes of all but the first.
+                // Several frames without a state may share a chunk. Its payload contains the hashes of all of them except the first.
                 if kind == 4 {
                     let others = payload.as_chunks().0.iter().map(|hash| u64::from_le_bytes(*hash));
                     out.extend((frame + 1..).zip(others));
@@ -59,7 +59,7 @@ mod tests {
         let every = of("every-state");
         assert_eq!(every.keys().copied().collect::<Vec<_>>(), (0..8).collect::<Vec<_>>());
         assert_eq!([every[&0], every[&3]], [0xf8ad_f087_caa5_47bb, 0xfe6e_7f36_499f_621b]);
-        // Frames without states, several in a chunk, and the state of the last frame after its hash.
+        // This recording contains frames without states, several in a chunk, and the state of the last frame after its hash.
         assert_eq!(of("one-in-three"), every);
         let killed = of("killed");
         assert!(killed.len() == 6 && killed.iter().all(|(frame, hash)| every[frame] == *hash));

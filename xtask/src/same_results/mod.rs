@@ -1,8 +1,8 @@
-//! Compares two commits on one machine: does the present tree compute the same bits as another commit?
+//! Checks whether the present tree computes the same bits as another commit on the same machine.
 //!
-//! Both are built, and both run every scene that is a file: those that come with the program, those of the benchmarks and of the sweeps, and those of
+//! Both are built, and both run every scene that is a file: the scenes that come with the program, and those of the benchmarks, of the sweeps and of
 //! the fuzz corpus. The hash of every frame, every figure of `diagnostics.csv`, the end of the run, and every row of `opruga verify` are compared.
-//! The results of a commit are kept below `target/same-results`.
+//! The results of a commit are kept below `target/same-results` and used again.
 //!
 //! Scenes that exist only in the code of tests, such as those of `crates/opruga/tests/torture`, are not run; `--also FOLDER` runs the scene files of
 //! any folder.
@@ -32,7 +32,7 @@ const QUICK_FAMILY: &str = "materials";
 #[derive(Debug, PartialEq)]
 struct Question {
     base: String,
-    /// Only these scenes, and no rows of `verify`.
+    /// If scenes are named, only these are run, and no cases of `verify`.
     scenes: Vec<String>,
     frames: u64,
     quick: bool,
@@ -127,7 +127,8 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), String> {
     Err(format!("{scenes} of {} scenes differ, and {cases} of {rows} verify rows", names.len()))
 }
 
-/// The scenes of a tree: their names, and the argument that names each for the program. A scene that comes with the program is called by its name.
+/// The scenes of a tree: the name of each, and the argument by which the program finds it. For a scene that comes with the program, the argument is
+/// its name.
 fn scenes_of(root: &Path, also: &[PathBuf]) -> Result<BTreeMap<String, String>, String> {
     let mut out = BTreeMap::new();
     let mut folders = vec![root.join("scenes")];
@@ -150,7 +151,7 @@ fn scenes_of(root: &Path, also: &[PathBuf]) -> Result<BTreeMap<String, String>, 
     Ok(out)
 }
 
-/// Runs scenes in parallel, one on each processor; returns the results by side and scene.
+/// Runs scenes in parallel, one on each processor. Returns the results by side and scene.
 fn run_scenes<'a>(
     jobs: &[(&'a Side, &'a String, &'a String)],
     frames: u64,

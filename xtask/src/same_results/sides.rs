@@ -1,4 +1,4 @@
-//! The two programs and the results of their runs. Both are called only through their command line, because a commit may be old.
+//! The two programs and the results of their runs. The programs are called only through their command lines, because the commit may be old.
 
 use super::comparison::{Outcome, Row};
 use super::hashes::hashes;
@@ -19,14 +19,14 @@ pub(super) struct Side {
     program: PathBuf,
     /// The folder of its results.
     folder: PathBuf,
-    /// Whether existing results are those that the program would compute.
+    /// Whether stored results can be used, because the program would compute the same.
     keeps: bool,
 }
 
 impl Side {
-    /// A commit. Its sources are in a separate work tree, which is shared by all commits, so that only what differs from the previously compiled
-    /// commit is compiled. Cargo's build folder for it is separate from that of the present tree: cargo considers a crate built if the same path in
-    /// another work tree was built after the file was changed, whatever the file contains.
+    /// Makes the side of a commit. Its sources are in a separate work tree. All commits share this work tree, so that cargo compiles only what
+    /// differs from the commit that was compiled before. The build folder of the work tree is separate from that of the present tree. Otherwise cargo
+    /// could consider a crate as built because the same path in the other tree was built after the file was changed, whatever the file contains.
     pub(super) fn of_commit(folder: &Path, commit: &str) -> Result<Side, String> {
         let root = folder.join("base");
         workspace::check_out(&root, commit)?;
@@ -38,7 +38,7 @@ impl Side {
         Ok(side)
     }
 
-    /// The present tree as it is.
+    /// Makes the side of the present tree as it is.
     pub(super) fn present(folder: &Path) -> Result<Side, String> {
         let (own, name) = (folder.join("present"), "present".to_string());
         let side = Side { program: program(&own), root: workspace::root()?, folder: own, name, keeps: false };
@@ -66,7 +66,7 @@ impl Side {
     /// Calls the program in a folder in which no file has the name of a scene.
     fn call(&self, arguments: &[&str]) -> Result<Output, String> {
         let mut call = Command::new(&self.program);
-        // The kept results were computed with the best instructions of this machine.
+        // The variable is removed, because stored results were computed with the best instructions of this machine.
         call.args(arguments).current_dir(&self.folder).env_remove("OPRUGA_SIMD");
         call.output().map_err(|e| format!("{}: {e}", self.program.display()))
     }
@@ -76,10 +76,10 @@ impl Side {
         let folder = self.folder.join(format!("{frames}-frames")).join(name.replace('/', "-"));
         let file = |name: &str| folder.join(name).display().to_string();
         let [ending, table, hashes] = ["ending", "diagnostics.csv", "hashes"].map(|name| folder.join(name));
-        // A file elsewhere may have changed.
+        // Results of a scene outside the tree are not used again, because its file may have changed.
         let own = !Path::new(call).is_absolute()
             || self.root.canonicalize().is_ok_and(|root| Path::new(call).starts_with(root));
-        // The ending is written last: if it exists, the others are complete.
+        // The file with the ending is written last. If it exists, the other files are complete.
         if !(self.keeps && own && ending.is_file()) {
             let _ = std::fs::remove_dir_all(&folder);
             std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
@@ -96,7 +96,7 @@ impl Side {
     fn compute(&self, call: &str, frames: u64, file: &dyn Fn(&str) -> String) -> Result<Found, String> {
         let [probe, recording, output] = ["probe", "recording", "output"].map(file);
         let common = ["run", call, "--no-pictures", "--json", "--allow-outside", "--force"];
-        // The length of a frame is read from the program.
+        // The program itself reports the length of a frame.
         let begun = self.call(&[&common[..], &["--seconds", "0", "--out", &probe]].concat())?;
         let length = serde_json::from_slice::<Value>(&begun.stdout).ok().and_then(|summary| summary["frame"].as_f64());
         let Some(length) = length else {
@@ -113,13 +113,13 @@ impl Side {
             hashes: lines.values().map(|hash| format!("{hash:016x}\n")).collect(),
             table: workspace::read(&Path::new(&output).join("diagnostics.csv"))?,
         };
-        // The compared data are kept, the rest may be large.
+        // Only the compared data are kept, because the recording may be large.
         let _ = std::fs::remove_file(&recording);
         [probe, output].iter().for_each(|folder| drop(std::fs::remove_dir_all(folder)));
         Ok(found)
     }
 
-    /// The rows of `opruga verify`, all or those of a family, or the earlier result.
+    /// Runs all cases of `opruga verify` or those of a family, or reads the earlier result. Returns the rows.
     pub(super) fn verify(&self, family: Option<&str>) -> Result<BTreeMap<String, Row>, String> {
         let path = self.folder.join(format!("verify-{}.json", family.unwrap_or("all")));
         if !(self.keeps && path.is_file()) {
@@ -148,7 +148,7 @@ fn program(folder: &Path) -> PathBuf {
     folder.join(format!("opruga{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// How a call ended: its exit code, and the codes of its errors.
+/// Describes how a call ended: its exit code, and the codes of its errors.
 fn ending(output: &Output) -> String {
     let said: Value = serde_json::from_slice(&output.stderr).unwrap_or_default();
     let mut codes: Vec<&str> =

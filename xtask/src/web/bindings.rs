@@ -1,4 +1,4 @@
-//! The layer between the program and the browser: JavaScript through which they call each other.
+//! Makes the layer between the program and the browser: the JavaScript through which they call each other.
 
 use std::path::{Path, PathBuf};
 use wasm_bindgen_cli_support::Bindgen;
@@ -12,7 +12,7 @@ pub(super) struct Made {
 /// Makes the program of the page and its JavaScript from a compiled program.
 ///
 /// # Errors
-/// What cannot be read or translated.
+/// The file that cannot be read or translated.
 pub(super) fn make(compiled: &Path) -> Result<Made, String> {
     let folder: PathBuf = compiled.with_extension("bindings");
     let mut bindgen = Bindgen::new();

@@ -1,4 +1,4 @@
-//! Headless Chromium, controlled by its DevTools protocol through two pipes: JSON messages, each ended by a zero byte.
+//! Controls headless Chromium by its DevTools protocol. Two pipes carry JSON messages, each ended by a zero byte.
 
 use serde_json::{Value, json};
 use std::io::{BufRead as _, BufReader, Write as _};
@@ -45,7 +45,7 @@ fn program() -> Option<&'static str> {
 }
 
 impl Browser {
-    /// Starts it with an empty page, with WebGL and, if requested, WebGPU; its data and downloads go to a folder.
+    /// Starts the browser with an empty page, with WebGL and, if requested, WebGPU. Its data and downloads go to a folder.
     ///
     /// # Errors
     /// There is no browser, or it does not answer.
@@ -92,7 +92,7 @@ impl Browser {
     /// Sends a command and waits for the answer.
     ///
     /// # Errors
-    /// Those of the browser.
+    /// The errors of the browser.
     pub(super) fn call(&mut self, method: &str, parameters: Value) -> Result<Value, String> {
         self.number += 1;
         let number = self.number;
@@ -135,7 +135,7 @@ impl Browser {
         }
     }
 
-    /// The value of an expression on the page.
+    /// Evaluates an expression on the page.
     ///
     /// # Errors
     /// Exceptions of the page.

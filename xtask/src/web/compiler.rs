@@ -1,4 +1,4 @@
-//! The compiler for browsers: that of rustup with the target installed, or that of Debian, which also builds the standard library.
+//! The compiler for browsers. It is that of rustup if the target is installed, otherwise that of Debian, which also builds the standard library.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -9,7 +9,7 @@ const DEBIAN: &str = "/usr/bin";
 const HINT: &str = "`rustup target add wasm32-unknown-unknown` installs one; on Debian `apt-get install rustc-web cargo-web \
                     rust-web-src rust-web-llvm lld-22` does too";
 
-/// Compiles the library of a package for browsers; returns the file of the program.
+/// Compiles the library of a package for browsers. Returns the file of the program.
 ///
 /// # Errors
 /// There is no compiler, or the errors of the compiler.
@@ -36,7 +36,7 @@ fn rustup_has_target() -> bool {
     installed.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).lines().any(|line| line == TARGET))
 }
 
-/// Debian's cargo with Debian's compiler, isolated from the cargo that runs this.
+/// Debian's cargo with Debian's compiler, isolated from the cargo that runs this task.
 fn debian() -> Command {
     let mut cargo = Command::new(format!("{DEBIAN}/cargo"));
     for (name, _) in std::env::vars_os() {

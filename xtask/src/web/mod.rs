@@ -1,4 +1,4 @@
-//! The studio as a web page: compiles it for browsers and writes the files of the page to a folder for any static server.
+//! Makes the web page of the studio: compiles the studio for browsers, and writes the files of the page to a folder for any static server.
 
 #[cfg(feature = "web")]
 mod bindings;
@@ -35,7 +35,7 @@ pub(crate) fn build(arguments: &[String]) -> Result<(), String> {
 }
 
 /// `cargo xtask web-trial [PROFILE] [--built]`: tests the page in Chromium, together with the native program that was built with this profile. With
-/// `--built`, it is the page that was built last.
+/// `--built`, the page is not built again.
 pub(crate) fn trial(arguments: &[String]) -> Result<(), String> {
     let (options, rest): (Vec<_>, Vec<_>) = arguments.iter().partition(|argument| argument.starts_with("--"));
     let profile = rest.first().map_or("debug", |profile| profile.as_str());
@@ -57,7 +57,7 @@ pub(crate) fn measure(arguments: &[String]) -> Result<(), String> {
     trial::measure(&page()?, pictures)
 }
 
-/// Builds the page; returns its folder. The translator between the languages of the page is built only for this, and is not part of the other tasks.
+/// Builds the page, and returns its folder. Only this task needs the translator between the languages of the page, so xtask is built again with it.
 #[cfg(not(feature = "web"))]
 fn page() -> Result<PathBuf, String> {
     let mut cargo = std::process::Command::new(env!("CARGO"));
@@ -66,7 +66,7 @@ fn page() -> Result<PathBuf, String> {
     if status.success() { Ok(folder()?) } else { Err("the page was not built".into()) }
 }
 
-/// Builds the page; returns its folder.
+/// Builds the page, and returns its folder.
 #[cfg(feature = "web")]
 fn page() -> Result<PathBuf, String> {
     let root = root()?;

@@ -8,17 +8,19 @@ use std::path::{Path, PathBuf};
 
 /// The largest transfer size of the page [bytes].
 const MOST_BYTES: usize = 4_000_000;
-/// The distance over which repetitions are found [bytes]: the whole program. The browser needs the same amount of memory to unpack it.
+/// The distance over which the compressor finds repetitions [bytes]. It covers the whole program. The browser needs the same amount of memory to
+/// unpack the program.
 const DICTIONARY: u32 = 16 << 20;
 
-/// Writes the page to a folder: the packed program, the module that unpacks it, their JavaScript, and the handwritten files with the names filled in.
+/// Writes the page to a folder: the packed program, the module that unpacks it, the JavaScript of both, and the handwritten files, into which the
+/// names of the others are filled in.
 ///
 /// # Errors
 /// Files that cannot be written, and a page that is too large.
 pub(super) fn lay_out(root: &Path, studio: &Made, unpacker: &Made, folder: &Path) -> Result<(), String> {
     let sources = root.join("crates/opruga-studio/web");
     let packed = packed(&studio.program).map_err(|e| format!("the program cannot be packed: {e}"))?;
-    // The files of one version have the version in their names, so that no browser mixes versions.
+    // The names of the files contain a fingerprint of the version, so that no browser mixes files of different versions.
     let version = format!("{:016x}", fingerprint(&[&packed, &studio.script, &unpacker.program, &unpacker.script]));
     let [program, glue, unpack_program, unpack] = ["studio.wasm.lzma", "studio.js", "unpack.wasm", "unpack.js"]
         .map(|name| name.replacen('.', &format!("-{version}."), 1));
@@ -31,7 +33,8 @@ pub(super) fn lay_out(root: &Path, studio: &Made, unpacker: &Made, folder: &Path
     let page = page.replace("{{unpack}}", &unpack).replace("{{unpack_program}}", &unpack_program);
     let page = page.replace("{{packed_bytes}}", &packed.len().to_string());
     let credits = credits(&[root.join("scenes/shapes"), root.join("crates/opruga-studio/font")])?;
-    // Credits are not among them: some servers convert such texts to pages, and a missing file would prevent the others from being kept.
+    // The credits are not among the files that the browser keeps. Some servers convert such texts to pages, and if one file is missing, the browser
+    // keeps none.
     let kept = ["./", "icon.svg", "manifest.webmanifest", &program, &glue, &unpack_program, &unpack];
     let version = format!("{:016x}", fingerprint(&[version.as_bytes(), page.as_bytes()]));
     let worker = source("worker.js")?.replace("{{version}}", &version);
@@ -70,10 +73,10 @@ pub(super) fn lay_out(root: &Path, studio: &Made, unpacker: &Made, folder: &Path
     Ok(())
 }
 
-/// The origins of the shapes of the scenes and of the fonts, and the licences of their authors: name and text of every such file.
+/// The credits: the names and texts of the files with the origins of the shapes and fonts, and with the licences of their authors.
 ///
 /// # Errors
-/// What cannot be read.
+/// The file that cannot be read.
 fn credits(folders: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, String> {
     let mut found = Vec::new();
     for folder in folders {
@@ -92,7 +95,7 @@ fn credits(folders: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, String> {
 
 fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
     let mut options = LzmaOptions::with_preset(9);
-    // Instructions of WebAssembly are not aligned, and depend on more of the preceding data than the characters of a text.
+    // The options are set for WebAssembly, whose instructions are not aligned and depend on more of the preceding data than the characters of a text.
     (options.lc, options.lp, options.pb) = (4, 0, 0);
     options.dict_size = DICTIONARY;
     options.nice_len = 273;

@@ -1,4 +1,4 @@
-//! A minimal static server: the page needs no more.
+//! A minimal static server, which is sufficient for the page.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::net::{TcpListener, TcpStream};
@@ -13,11 +13,11 @@ pub(super) struct Server {
     folder: Arc<PathBuf>,
     /// Its address.
     pub(super) address: String,
-    /// Whether it answers: without answers, it shows how the page works offline.
+    /// Whether it answers. Tests switch the answers off to see how the page works offline.
     pub(super) answers: Arc<AtomicBool>,
 }
 
-/// Serves a folder at a port of this machine; at any free one if the port is 0.
+/// Serves a folder at a port of this machine. If the port is 0, any free port is used.
 ///
 /// # Errors
 /// A port that is in use.
@@ -63,7 +63,7 @@ fn answer(mut stream: TcpStream, folder: &Path) -> std::io::Result<()> {
     while lines.next().transpose()?.is_some_and(|line| !line.is_empty()) {}
     let asked = first.split(' ').nth(1).unwrap_or("/").split(['?', '#']).next().unwrap_or("/");
     let name = if asked == "/" { "index.html" } else { asked.trim_start_matches('/') };
-    // The folder has no subfolders: a name with a path leads elsewhere.
+    // The folder has no subfolders, so a name that contains a path is refused.
     let bytes =
         if name.contains(['/', '\\']) || name.contains("..") { None } else { std::fs::read(folder.join(name)).ok() };
     let Some(bytes) = bytes else {

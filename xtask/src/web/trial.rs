@@ -1,5 +1,5 @@
-//! Tests the page as a user works with it: it is loaded, the ball is dragged, its model changed, a body drawn, the scene saved and opened again from
-//! its link, on a screen and on a phone; and it reaches the same bits as the native program.
+//! Tests the page as a user works with it, on a screen and on a phone. The page is loaded, the ball is dragged, its model is changed, a body is
+//! drawn, and the scene is saved and opened again from its link. The page must reach the same bits as the native program.
 
 mod devices;
 
@@ -15,13 +15,13 @@ use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// The longest time for anything on a slow machine that draws on the processor.
+/// The longest time that a single action may take on a slow machine that draws on the processor.
 const PATIENCE: Duration = Duration::from_secs(240);
-/// The longest time until a press is seen to hold the ball; after that it is repeated.
+/// The longest time until a press must hold the ball. After this time the press is repeated.
 const HOLD: Duration = Duration::from_secs(20);
-/// How often the ball is pressed; it may have moved on before the press arrives.
+/// How often the ball is pressed. A press may miss, because the ball may have moved on before the press arrives.
 const PRESSES: u32 = 4;
-/// After this simulated time nothing more happens [s].
+/// After this simulated time, nothing more happens in the scene, so the page is no longer given time [s].
 const LATEST: f64 = 60.0;
 /// Scenes that take too long if they are not compiled for this machine.
 const LARGE: [&str; 3] = ["million-vertices", "thousand-balls", "giant-ring"];
@@ -135,7 +135,7 @@ impl Trial {
         holds(compared >= 10, || format!("only {compared} scenes were compared"))
     }
 
-    /// The ball is pulled with the mouse, and by nothing else.
+    /// Only the mouse pulls the ball.
     fn drags(&mut self) -> Outcome {
         self.quiet_ball()?;
         self.hold("mouse", |trial, top| {
@@ -150,7 +150,8 @@ impl Trial {
         self.until("the ball is let go", |state| state["pulls"] == 0).map(|_| ())
     }
 
-    /// The ball without the pull of its scene, once it lies on the floor: it waits there for the pointer, however slow that is.
+    /// Opens the ball without the pull of its scene, and waits until it lies on the floor. There it waits for the pointer, however slow the machine
+    /// is.
     fn quiet_ball(&mut self) -> Outcome {
         let root = super::root()?;
         let ball = std::fs::read_to_string(root.join("scenes/ball.toml")).map_err(|e| e.to_string())?;
@@ -160,7 +161,7 @@ impl Trial {
             .map(|_| ())
     }
 
-    /// Grabs the ball near its highest node by a press, which is repeated if it missed.
+    /// Grabs the ball near its highest node. A press that misses is repeated.
     fn hold(&mut self, what: &str, press: impl Fn(&mut Trial, [f64; 2]) -> Outcome) -> Outcome {
         for _ in 0..PRESSES {
             let top = self.top()?;
@@ -221,7 +222,7 @@ impl Trial {
         Ok(saved)
     }
 
-    /// The link is opened again, and after ten seconds the bits are those of the native program.
+    /// The link is opened again, and after ten seconds of simulated time the bits are those of the native program.
     fn link_holds_the_scene(&mut self, saved: &str) -> Outcome {
         self.click("Export")?;
         self.click("Copy a link with the whole scene")?;
@@ -298,7 +299,7 @@ impl Trial {
         holds(self.browser.value("scrollX + scrollY")? == 0, || "the page was scrolled".into())
     }
 
-    /// No memory is shared with workers, and a scene that needs too much memory for a page leaves the present one unchanged.
+    /// No memory is shared with workers. A scene that needs too much memory for a page is refused, and the present scene does not change.
     fn refuses_what_no_memory_holds(&mut self) -> Outcome {
         holds(self.browser.value("crossOriginIsolated")? == false, || "the page has memory to share".into())?;
         let before = self.state()?["name"].clone();
@@ -335,12 +336,12 @@ impl Trial {
         let mut begin = Instant::now();
         let mut last = Value::Null;
         loop {
-            // Between two pages nothing answers.
+            // While one page replaces another, no page answers.
             let state = self.state().unwrap_or(Value::Null);
             if is(&state) {
                 return Ok(state);
             }
-            // A slow machine is given time as long as the simulation advances.
+            // A slow machine is given more time as long as its simulation advances.
             if state["frames"].as_u64() > last["frames"].as_u64() && state["time"].as_f64() < Some(LATEST) {
                 begin = Instant::now();
             }
@@ -352,7 +353,7 @@ impl Trial {
         }
     }
 
-    /// The position of the highest node of the first body.
+    /// The position of the highest node of the first body on the page.
     fn top(&mut self) -> Result<[f64; 2], String> {
         let spot = self.browser.value("Array.from(opruga.top_of(0))")?;
         match numbers(&spot)[..] {
@@ -374,7 +375,7 @@ impl Trial {
         Err(format!("nothing is called `{name}`"))
     }
 
-    /// Presses a control of this name; if it is below the window, the wheel scrolls it into view.
+    /// Presses a control of this name. If the control is below the window, the wheel scrolls it into view.
     fn click(&mut self, name: &str) -> Outcome {
         let height = self.browser.value("innerHeight")?.as_f64().unwrap_or(0.0);
         let begin = Instant::now();
@@ -395,7 +396,7 @@ impl Trial {
                 self.browser.mouse("mouseMoved", above, false)?;
                 self.browser.wheel(above, 200.0)?;
             }
-            // It is pressed when it no longer moves.
+            // The control is pressed when it no longer moves.
             last = middle;
             if begin.elapsed() > PATIENCE {
                 return Err(format!("`{name}` does not come to rest in the window"));
@@ -433,7 +434,7 @@ impl Trial {
         told["state_hash"].as_str().map(String::from).ok_or_else(|| format!("no hash in {told}"))
     }
 
-    /// Saves a picture of the page, if pictures are requested.
+    /// Saves a picture of the page, if `PICTURES` names a folder.
     fn keep_picture(&mut self, name: &str) -> Outcome {
         let Some(folder) = std::env::var_os("PICTURES") else { return Ok(()) };
         let letters = self.browser.picture()?;

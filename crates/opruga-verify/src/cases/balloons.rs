@@ -35,8 +35,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "thick-tube-quadratic-triangles",
-        // Changed after its first run, which started at 4 cells and had ν = 0.49999. This compressibility displaced the wall by 6e-6, which was most
-        // of the error.
+        // Changed after its first run, which started at 4 cells and had ν = 0.49999. With this ν, the compressibility displaced the wall by 6e-6,
+        // which was most of the error.
         quantity: "increase of the inner radius of a thick rubber tube, A = 1 m, B = 2 m, at p = 0.275712 μ; neo-Hookean, plane strain, ν = \
 0.4999999",
         levels: &[8.0, 16.0, 32.0],
@@ -67,8 +67,8 @@ neo-Hookean, plane strain, ν = 0.49999",
     },
     Case {
         name: "thin-balloon-quadratic-tetrahedra",
-        // Changed after its first run, which had one cell through the wall and ν = 0.49999. The error of one cell does not fall with finer sides, and
-        // the compressibility displaced the wall by 1e-4.
+        // Changed after its first run, which had one cell through the wall and ν = 0.49999. With one cell through the wall, the error does not fall
+        // when the cells get smaller along the wall. The compressibility displaced the wall by 1e-4.
         quantity: "increase of the inner radius of a rubber sphere, A = 1 m, B = 1.1 m, two cells through the wall, at p = 0.1 μ; neo-Hookean, ν = \
 0.499999",
         source: "incompressible: p/μ = f(λ_B) − f(λ_A), f = 2/λ + 1/2λ⁴ (A. E. Green, W. Zerna, Theoretical Elasticity, art. 3.10; confirmed by \
@@ -92,7 +92,7 @@ quadrature), λ_A = 1.195255",
     },
 ];
 
-/// The lines of a body of rubber with μ = 1 Pa.
+/// The lines of the scene for a body of rubber with μ = 1 Pa.
 fn rubber(pins: &str, poisson: f64) -> String {
     format!(
         "density = 1.0\nmodels = [{{ kind = \"fem\", material = \"neo_hookean\", youngs_modulus = {:?}, poissons_ratio = {poisson:?} }}]\n{pins}",

@@ -57,8 +57,8 @@ Venant–Kirchhoff",
         quantity: "deflection of the tip of a clamped strip of thickness L/50 under a transverse force, divided by its length, PL²/EI = 2, St. \
 Venant–Kirchhoff",
         over: Over::Cells("cells along the strip"),
-        // Changed after its first run, which had half as many cells along the strip: the spurious part of the shear depends only on the ratio of the
-        // length of a cell to the thickness.
+        // Changed after its first run, which had half as many cells along the strip: the spurious shear depends only on the ratio of the length of a
+        // cell to the thickness.
         levels: &[100.0, 200.0, 400.0],
         measure: |lab, n| strip(lab, n, Cells::Boxes, 4.0),
         ..ELASTICA
@@ -88,7 +88,7 @@ Venant–Kirchhoff",
     Case {
         name: "heavy-beam-hexahedra",
         quantity: "deflection of the end of a beam of 1 × 0.1 × 0.1 m under its weight, E = 1e8 Pa, ν = 0.3, ρ = 1000 kg/m³, neo-Hookean",
-        // Changed after its first run, which had half as many cells along the beam, for the same reason as the strip.
+        // Changed after its first run, which had half as many cells along the beam, for the same reason as for the strip.
         levels: &[20.0, 40.0, 80.0],
         expected: &[0.014686],
         measure: |lab, n| heavy(lab, n, Cells::Boxes, 1e8, 20.0),
@@ -125,7 +125,7 @@ fn chain(lab: &Lab, n: f64, load: f64) -> Result<f64, Trouble> {
     Ok(-displacement(&world, [1.0, 0.0])[1])
 }
 
-/// A strip in plane stress with EI = 1 N m², with n cells along it and `across` cells across it.
+/// A strip in plane stress with EI = 1 N m². It has n cells along its length and `across` cells across its thickness.
 fn strip(lab: &Lab, n: f64, cells: Cells, across: f64) -> Result<f64, Trouble> {
     let thickness: f64 = 0.02;
     let scene = Scene::statics(2, 1e-8).add(&format!(
@@ -144,7 +144,7 @@ fn strip(lab: &Lab, n: f64, cells: Cells, across: f64) -> Result<f64, Trouble> {
     Ok(-displacement(&world, [1.0, 0.0])[1])
 }
 
-/// A chain whose last two nodes are moved until it is a closed polygon with equal angles, and the moment that moves them.
+/// Moves the last two nodes of a chain until it is a closed polygon with equal angles, and returns the moment on these nodes.
 fn roll_up(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let l = 1.0 / (n - 1.0);
     let models = format!(
@@ -155,7 +155,7 @@ fn roll_up(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     roll_up_by(lab, n, &models)
 }
 
-/// Rolls up a chain with other models of EI = 1 N m² that hardly stretch.
+/// Rolls up a chain with the given models, which must have EI = 1 N m² and hardly stretch.
 pub(super) fn roll_up_by(lab: &Lab, n: f64, models: &str) -> Result<f64, Trouble> {
     let (count, l) = (n as usize, 1.0 / (n - 1.0));
     let position_at = |angle: f64, node: usize| {
@@ -189,7 +189,7 @@ pub(super) fn roll_up_by(lab: &Lab, n: f64, models: &str) -> Result<f64, Trouble
     Ok(moment[0] + moment[1])
 }
 
-/// A beam clamped at one end, n cells long and `n / slender` thick, under its weight.
+/// A beam that is clamped at one end and sags under its weight. It has n cells along its length and `n / slender` cells across its thickness.
 fn heavy(lab: &Lab, n: f64, cells: Cells, young: f64, slender: f64) -> Result<f64, Trouble> {
     let across = (n / slender) as u32;
     let mesh = mapped([n as u32, across, across], cells, |x| [x[0], 0.1 * x[1] - 0.05, 0.1 * x[2] - 0.05])?;
@@ -203,7 +203,7 @@ fn heavy(lab: &Lab, n: f64, cells: Cells, young: f64, slender: f64) -> Result<f6
         ))?;
     let mut world = lab.space(scene)?;
     world.frame()?;
-    // The mean over the nodes at the end.
+    // The result is the mean over the nodes at the free end.
     let end = nodes(&mesh, |x| x[0] == 1.0);
     Ok(-end.iter().map(|k| world.position(0, *k)[1] - mesh.positions[*k as usize][1]).sum::<f64>() / end.len() as f64)
 }

@@ -35,11 +35,11 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// A belt over half a turn of a round body, pulled slowly at one end and held back by 10 N at the other; returns the ratio of the tension at the
-/// pulled end to 10 N.
+/// A belt touches a round body over half a turn. It is pulled slowly at one end and held back by 10 N at the other. Returns the ratio of the tension
+/// at the pulled end to 10 N.
 fn belt(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let (thickness, tail, held_back, stiffness, speed) = (1e-3, 0.5, 10.0, 1e4, 0.0025);
-    // The belt is light, so that waves along it have little effect: ρ c v is 0.08 N.
+    // The belt is light, so that waves along it have little effect. Their force ρ c v is 0.08 N.
     let density = 0.1;
     let (angle, count) = (PI / n, n as usize);
     let radius = (1.0 + thickness) / (0.5 * angle).cos();
@@ -89,7 +89,7 @@ fn belt(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(tension / frames / held_back)
 }
 
-/// The height of the highest node of a block, 0.2 s after it hit another one at 1 m/s [m].
+/// The height of the highest node of a block, 0.2 s after it begins to fall onto another block at 1 m/s [m].
 fn height_after_fall(lab: &Lab, h: f64, rule: &str) -> Result<f64, Trouble> {
     let frame = 1.0 / 60.0;
     let scene = Scene::new(2, frame, (frame / h).round() as u32, rule).add(

@@ -39,8 +39,8 @@ const BALL: Case = Case {
     ..BASE
 };
 
-// Changed after its first run, which had balls with equal numbers of vertices: 2 × 642 vertices left errors of 1.3 % and 2.0 %, mostly at the inner
-// wall, whose edges are now a quarter as long as those of the outer one. The limits were not changed.
+// Changed after its first run, in which both balls had the same number of vertices. With 2 × 642 vertices, the errors were 1.3 % and 2.0 %, mostly
+// due to the inner wall. The edges of the inner wall are now a quarter as long as those of the outer one. The limits were not changed.
 const SHELL: Case = Case {
     quantity: "displacement of the inner wall of a thick sphere under inner pressure, times E/p; a = 1 m, b = 2 m, ν = 0.3",
     source: "G. Lamé 1852: u(a) = p a³/(b³ − a³) · ((1 − 2ν) a + (1 + ν) b³/2a²)/E",
@@ -178,7 +178,7 @@ fn subdivisions(edges: f64) -> f64 {
     edges.log2().round()
 }
 
-/// Forces on nodes.
+/// Writes a load for each node: its force.
 fn forces<const D: usize>(forces: &[[f64; D]]) -> String {
     let mut out = String::new();
     for (node, force) in forces.iter().enumerate() {
@@ -241,7 +241,7 @@ fn tube(lab: &Lab, vertices: f64, stress: bool) -> Result<f64, Trouble> {
     if !stress {
         return Ok(outward(&world, count..2 * count) / SMALL);
     }
-    // σθθ = E ε/(1 − ν²) + ν/(1 − ν) σrr in plane strain, with ε from the growth of the circumference.
+    // In plane strain, σθθ = E ε/(1 − ν²) + ν/(1 − ν) σrr. The strain ε is the relative growth of the circumference.
     let length = |now: bool| -> f64 {
         let rest = &world.blueprint().bodies[0].mesh.positions;
         let at = |node: u32| if now { world.position(0, node) } else { rest[node as usize] };
@@ -257,13 +257,13 @@ fn tube(lab: &Lab, vertices: f64, stress: bool) -> Result<f64, Trouble> {
 }
 
 /// The stress concentration of a hole under tension along y, at the node on the x axis. It follows from the mean strain of the two edges at this
-/// node, which is that of a chord.
+/// node, which are chords of the circle.
 fn hole(lab: &Lab, vertices: f64) -> Result<f64, Trouble> {
     let mesh = Mesh::ring(1.0, vertices as u32, [0.0, 0.0], 0.0)?;
     let mut pulls = vec![[0.0; 2]; mesh.positions.len()];
     for [a, b] in &mesh.facets {
         let (p, q) = (mesh.positions[*a as usize], mesh.positions[*b as usize]);
-        // σ n of the tension, half of it for each end; n = (Δy, −Δx)/ℓ points into the medium.
+        // Each end of an edge gets half of its force, which is σ n times its length. The normal n = (Δy, −Δx)/ℓ points into the medium.
         [*a, *b].iter().for_each(|node| pulls[*node as usize][1] += 0.5 * SMALL * (p[0] - q[0]));
     }
     let scene = Scene::statics(2, 1e-13)
@@ -280,15 +280,15 @@ fn hole(lab: &Lab, vertices: f64) -> Result<f64, Trouble> {
     Ok(1.0 + 0.5 * (strain(0, 1) + strain(last, 0)) / SMALL)
 }
 
-/// The result for a cavity under tension along x, at its pole on the z axis: from the mean strain of the triangles around the pole, weighted by their
-/// areas.
+/// The stress concentration of a cavity under tension along x, at its pole on the z axis. It follows from the mean strain of the triangles around the
+/// pole, weighted by their areas.
 fn cavity(lab: &Lab, edges: f64, poisson: f64) -> Result<f64, Trouble> {
     let mesh = Mesh::icosphere(1.0, subdivisions(edges) as u32)?;
     let mut pulls = vec![[0.0; 3]; mesh.positions.len()];
     for facet in &mesh.facets {
         let [a, b, c] = facet.map(|node| mesh.positions[node as usize]);
         let (p, q): ([f64; 3], [f64; 3]) = (std::array::from_fn(|d| b[d] - a[d]), std::array::from_fn(|d| c[d] - a[d]));
-        // σ n times a third of the area.
+        // Each node of a triangle gets a third of its force, which is σ n times its area.
         facet.iter().for_each(|node| pulls[*node as usize][0] += SMALL * (p[1] * q[2] - p[2] * q[1]) / 6.0);
     }
     let scene = Scene::statics(3, 1e-13)
@@ -296,7 +296,8 @@ fn cavity(lab: &Lab, edges: f64, poisson: f64) -> Result<f64, Trouble> {
         .add(&forces(&pulls));
     let mut world = lab.space(scene)?;
     world.frame()?;
-    // ∂u/∂x of each triangle, projected onto the horizontal plane, because those at the pole are nearly horizontal.
+    // The strains of each triangle along x and y are computed from its projection onto the horizontal plane, because the triangles at the pole are
+    // nearly horizontal.
     let (mut strain, mut all) = ([0.0; 2], 0.0);
     for facet in mesh.facets.iter().filter(|facet| facet.contains(&0)) {
         let x = facet.map(|node| mesh.positions[node as usize]);
@@ -352,7 +353,7 @@ enum Kept {
     Energy,
 }
 
-/// A box that is thrown with a rotation and stretched along one axis.
+/// The largest relative change of a conserved quantity of a box that is thrown with a rotation and a velocity gradient.
 fn flight(lab: &Lab, h: f64, kept: Kept) -> Result<f64, Trouble> {
     let scene = Scene::new(3, 1.0 / 60.0, (1.0 / 60.0 / h).round() as u32, "verlet").add(
         "[[body]]\nname = \"body\"\nmass = 1.0\nshape = { kind = \"box\", size = [1.0, 0.6, 0.4], cells = [3, 2, 1], corner = [-0.5, -0.3, -0.2] }\n\

@@ -5,7 +5,7 @@ use opruga::World;
 /// A pressure or stress so small that the change of shape of the body does not matter, in units of E.
 pub(super) const SMALL: f64 = 1e-6;
 
-/// A solid of E = 1 Pa, with further fields of its model.
+/// The lines of the scene for a solid of E = 1 Pa, with further fields of its model.
 pub(super) fn solid(poisson: f64, fields: &str) -> String {
     format!(
         "mass = 1.0\nmodels = [{{ kind = \"boundary_element\", youngs_modulus = 1.0, poissons_ratio = {poisson:?}{fields} }}]\n"
@@ -24,8 +24,8 @@ pub(super) fn radius<const D: usize>(x: &[f64; D]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Pins that hold a ball or a ring of `count` nodes as a whole, without reaction forces if the loads balance. In space they are at the two poles and
-/// beside the equator, in the plane at both ends of a diameter.
+/// Pins that prevent rigid motions of a ball or a ring of `count` nodes. They have no reaction forces if the loads balance. In space, they are at the
+/// two poles and near the equator; in the plane, they are at both ends of a diameter.
 pub(super) fn pinned(dimension: usize, count: u32) -> String {
     let pin = |node: u32, axes: &str| format!("{{ select = {{ node = {node} }}, axes = \"{axes}\" }}");
     let pins = if dimension == 2 {

@@ -7,7 +7,7 @@ use opruga::mesh::Mesh;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// A ball: the faces of an icosahedron, divided into n² triangles each; the first and the last node are poles.
+/// Makes a ball from an icosahedron, each of whose faces is divided into n² triangles. The first and the last node are poles.
 fn ball(radius_of: f64, n: u32) -> Result<Mesh<3>, Trouble> {
     let coarse = Mesh::icosphere(1.0, 0)?;
     let mut known: BTreeMap<[i64; 3], u32> = BTreeMap::new();
@@ -35,7 +35,7 @@ fn ball(radius_of: f64, n: u32) -> Result<Mesh<3>, Trouble> {
         }
         mesh.facets.extend(facets);
     }
-    // Poles come first and last, as for an icosphere.
+    // As in an icosphere, the poles are the first and the last node.
     let last = mesh.positions.len() as u32 - 1;
     let lowest = mesh.positions.iter().position(|x| x[2] < -0.999_999 * radius_of).ok_or("no pole")? as u32;
     mesh.positions.swap(lowest as usize, last as usize);
@@ -83,12 +83,12 @@ pub(super) fn shell(lab: &Lab, edges: f64, stress: bool) -> Result<f64, Trouble>
     if !stress {
         return Ok(moved);
     }
-    // σθθ = E ε/(1 − ν) + ν/(1 − ν) σrr with the same strain in both directions, from the growth of the area of the wall.
+    // σθθ = E ε/(1 − ν) + ν/(1 − ν) σrr. The strain ε is the same in both directions of the wall and follows from the growth of its area.
     let strain = 0.5 * (area(&world, count, true) / area(&world, count, false) - 1.0) / SMALL;
     Ok((strain - 0.3) / 0.7)
 }
 
-/// The area of the triangles of the first nodes, now or at rest [m²].
+/// The area of the triangles between the first `count` nodes, now or at rest [m²].
 fn area(world: &World<3>, count: u32, now: bool) -> f64 {
     let mesh = &world.blueprint().bodies[0].mesh;
     let at = |node: u32| if now { world.position(0, node) } else { mesh.positions[node as usize] };

@@ -51,7 +51,8 @@ pub(super) const CASES: &[Case] = &[
         measure: stop,
         ..SLOPE
     },
-    // Changed after its first run, which assumed order 1: a chain of masses spreads a front over the cube root of its number of springs.
+    // Changed after its first run, which assumed order 1. In a chain of masses, a wave front spreads over a number of springs that grows as the cube
+    // root of the number of all springs.
     Case {
         name: "bar-hits-wall-half-time",
         check: Check::Everywhere,
@@ -78,7 +79,7 @@ fn mean_position(world: &World<2>) -> [f64; 2] {
     out
 }
 
-/// Displacement and speed after 150 frames.
+/// The displacement and the speed of a chain that slides down a slope, after 150 frames.
 fn slide_down(lab: &Lab, h: f64) -> Result<[f64; 2], Trouble> {
     let frame = 1.0 / 60.0;
     let scene = Scene::new(2, frame, (frame / h).round() as u32, "symplectic_euler").add(
@@ -112,8 +113,8 @@ fn stop(lab: &Lab, h: f64) -> Result<f64, Trouble> {
     Ok(mean_position(&world)[0] - start)
 }
 
-/// A bar of n equal springs with c = 1 m/s and 1 kg/m that hits the wall at 1 cm/s: the time at which its momentum is zero, and the fraction of its
-/// speed at the end.
+/// A bar of n equal springs with c = 1 m/s and 1 kg/m hits a wall at 1 cm/s. Returns the time at which its momentum is zero, and its speed at the
+/// end, divided by the initial speed.
 fn impact(lab: &Lab, n: f64) -> Result<[f64; 2], Trouble> {
     let (speed, frame) = (0.01, 0.25 / n);
     let scene = Scene::new(2, frame, 4, "verlet").add(&format!(

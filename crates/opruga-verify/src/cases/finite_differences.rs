@@ -206,7 +206,7 @@ pub(super) const DYNAMICS: &[Case] = &[
     },
 ];
 
-/// The thickness of a rod that hardly stretches, and E of a rod with EI = 1 N m² per metre of depth.
+/// The thickness of a rod that hardly stretches. In `stiff`, E is chosen so that EI = 1 N m² per metre of depth.
 const THIN: f64 = 1e-3;
 fn stiff() -> String {
     format!(
@@ -235,7 +235,7 @@ fn elastica(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(-displacement(&world, [1.0, 0.0])[1])
 }
 
-/// The load at which the square of the lowest frequency is zero, by linear extrapolation from two loads.
+/// The load at which the square of the lowest frequency is zero, found by linear extrapolation from two loads.
 fn critical(loads: [f64; 2], square: impl Fn(f64) -> Result<f64, Trouble>) -> Result<f64, Trouble> {
     let [low, high] = [square(loads[0])?, square(loads[1])?];
     Ok(loads[0] + (loads[1] - loads[0]) * low / (low - high))
@@ -275,7 +275,8 @@ fn ring_buckles(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     })
 }
 
-/// Pins along the circle at its four points on the axes. The ring cannot rotate, and its oval motion has no tangential component at these points.
+/// Pins the ring in the tangential direction at its four points on the axes. The ring then cannot rotate. Its oval motion is free, because it has no
+/// tangential component at these points.
 fn tangential_pins(n: f64) -> String {
     let count = n as u32;
     format!(
@@ -286,12 +287,13 @@ fn tangential_pins(n: f64) -> String {
     )
 }
 
-/// Half of a pressure on each of two edges of length 2 sin π/n, along their normals.
+/// The force of a pressure on a node: half of the forces on its two edges, which have the length 2 sin π/n. The force on an edge is along its normal.
 fn node_force(n: f64, pressure: f64) -> f64 {
     pressure * (TAU / n).sin()
 }
 
-/// Forces on the nodes with constant direction, equal to those of a pressure on the round ring.
+/// The pressure at which a ring buckles if its nodes carry the forces of this pressure on the round ring and the directions of these forces do not
+/// change.
 fn ring_buckles_under_dead_load(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     ring_loses_its_roundness(lab, n, &tangential_pins(n), |pressure| {
         let force = -node_force(n, pressure);
@@ -320,7 +322,7 @@ fn still(dimension: usize) -> Scene {
 }
 
 fn beam(lab: &Lab, n: f64, number: usize) -> Result<f64, Trouble> {
-    // The mass is 1 kg for a length of 1 m, which is half a segment shorter than the rod.
+    // The part of the rod beyond the clamp is 1 m long and half a segment shorter than the whole rod. Its mass is 1 kg.
     let world = lab.plane(still(2).add(&rod(n, n / (n - 0.5))))?;
     Ok(world.modes(0, number + 1)?.get(number).ok_or("too few modes")?.omega())
 }
@@ -340,7 +342,7 @@ fn plate(lab: &Lab, [n, across]: [f64; 2], square: bool) -> Result<f64, Trouble>
     let sides = if square { &["left", "right", "bottom", "top"][..] } else { &["left", "right"] };
     let mut pins: Vec<String> =
         sides.iter().map(|side| format!("{{ select = {{ group = \"{side}\" }}, axes = \"z\" }}")).collect();
-    // In the plane of the plate, only rigid motions are pinned.
+    // In the plane of the plate, the pins prevent only rigid motions.
     pins.push("{ select = { node = 0 }, axes = \"xy\" }".into());
     pins.push(format!("{{ select = {{ node = {n} }}, axes = \"y\" }}"));
     let scene = Scene::statics(3, 1e-11).add(&format!(

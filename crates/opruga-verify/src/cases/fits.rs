@@ -1,4 +1,4 @@
-//! Bodies that start closer to one another than the distance of their surfaces: a shrink fit.
+//! A shrink fit: bodies that start closer to one another than the distance that contact keeps between their surfaces.
 
 use super::BASE;
 use crate::bodies::{Cells, mapped, symmetric};
@@ -20,7 +20,7 @@ pub(super) const CASES: &[Case] = &[Case {
     ..BASE
 }];
 
-/// A quarter of a tube whose sides have these mean radii [m].
+/// A quarter of a tube. The mean radii of its polygonal sides are `inner` and `outer` [m].
 fn tube(sides: u32, layers: u32, inner: f64, outer: f64) -> Result<Mesh<2>, Trouble> {
     let half = 0.5 * FRAC_PI_2 / f64::from(sides);
     // The mean radius of a side between two points on the unit circle.
@@ -32,11 +32,12 @@ fn tube(sides: u32, layers: u32, inner: f64, outer: f64) -> Result<Mesh<2>, Trou
     })
 }
 
-/// The first steps of two light tubes, which backward Euler brings to rest at once. Their surfaces keep a distance of 2 mm and start at 1 mm.
+/// The pressure between two light tubes after their first steps, in which backward Euler brings them to rest. Contact keeps their surfaces 2 mm
+/// apart, and they start 1 mm apart.
 fn shrink_fit(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let (apart, interference) = (1e-3, 1e-3);
     let sides = n as u32;
-    // Their meshes do not match.
+    // The nodes of the two meshes do not coincide.
     let inner = tube(sides * 7 / 8, sides / 16, 1.0, 1.5 - 0.5 * apart)?;
     let outer = tube(sides, sides / 16, 1.5 + 0.5 * apart, 2.0)?;
     let body = |mesh: &Mesh<2>| {
@@ -53,7 +54,7 @@ fn shrink_fit(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     for _ in 0..4 {
         world.frame()?;
     }
-    // p cos φ over a quarter of the circle is p r.
+    // The integral of p cos φ along a quarter of the circle is p r.
     let force: f64 = world.contact_forces(1).iter().map(|[x, y]| 0.5 * (x + y)).sum();
     Ok(force / 1.5)
 }

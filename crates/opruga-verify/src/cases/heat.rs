@@ -1,11 +1,11 @@
-//! Heat, forces per volume, and starts with a velocity field.
+//! Heat, forces per volume, and a start with a velocity field.
 
 use super::BASE;
 use crate::bodies::{Cells, displacement, mapped, nodes};
 use crate::case::{Case, Check, Family, Over};
 use crate::lab::{Lab, Scene, Trouble};
 
-/// αΔT of all cases.
+/// The thermal strain αΔT of all cases.
 const STRAIN: f64 = 0.01;
 
 const HEATED_BAR: Case = Case {
@@ -74,7 +74,7 @@ pub(super) const START: Case = Case {
     ..HEATED_BAR
 };
 
-/// A solid of E = 1 Pa that has expanded by the factor 1 + αΔT, with further fields of its model and its pins.
+/// The lines of the scene for a solid of E = 1 Pa that heat expands by the factor 1 + αΔT, with further fields of its model and its pins.
 fn warm(poisson: f64, more: &str, pins: &str) -> String {
     format!(
         "density = 1.0\nmodels = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 1.0, poissons_ratio = {poisson:?}, \
@@ -95,7 +95,7 @@ fn bar(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     let mut world = lab.plane(scene)?;
     world.frame()?;
     let states = world.cell_states(0);
-    // With a modulus other than 1 Pa the stress is different.
+    // The stress is proportional to the modulus, so a modulus other than 1 Pa would be detected.
     Ok(states.iter().map(|state| state.stress[0][0]).sum::<f64>() / states.len() as f64)
 }
 

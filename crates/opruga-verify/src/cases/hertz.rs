@@ -48,7 +48,7 @@ Hertz's value at the same force, plane strain, by `equilibrium`",
     },
 ];
 
-/// The distance at which surfaces touch [m].
+/// The distance between two meshes at which their surfaces touch [m].
 const THICKNESS: f64 = 1e-3;
 const POISSON: f64 = 0.3;
 
@@ -72,10 +72,10 @@ struct Press {
 }
 
 impl Round {
-    /// The mesh of half of this body (in space, of a quarter of it), with the centre at the origin and the pole up or down. Cells near the pole are
-    /// small.
+    /// The mesh of half of this body or, in space, of a quarter of it. The centre is at the origin, and the pole is at the top or at the bottom.
+    /// Cells near the pole are small.
     fn mesh<const D: usize>(self, up: bool) -> Result<Mesh<D>, Trouble> {
-        // Bodies touch at half of the thickness outside their meshes.
+        // The surface of a body is half of the thickness outside its mesh.
         let radius = self.radius - 0.5 * THICKNESS;
         // Cells grow by a factor of 27 from the pole to the rim.
         let graded = |s: f64| (4.0 * s).sinh() / 4f64.sinh();
@@ -85,7 +85,7 @@ impl Round {
                 1 => 1.0 - graded(s[1]),
                 _ => graded(s[d]),
             });
-            // From a cube at the centre to a ball at the surface, such that equal lengths on the cube's sides have equal angles.
+            // The cells change from a cube at the centre to a ball at the surface. Equal lengths on the sides of the cube become equal angles.
             let most = cube.iter().copied().fold(0.0, f64::max);
             let ray = cube.map(|c| if most > 0.0 { (FRAC_PI_4 * c / most).tan() } else { 1.0 });
             let length = ray.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -96,7 +96,8 @@ impl Round {
         })
     }
 
-    /// The lines of the scene for this body. The centre is at the given height, and the plane through the centre is displaced by `by`.
+    /// The lines of the scene for this body. Its centre is at the given height, and the horizontal plane through the centre is displaced vertically
+    /// by `by`.
     fn text<const D: usize>(self, mesh: &Mesh<D>, height: f64, by: f64) -> String {
         let upward =
             |y: f64| (0..D).map(|d| if d == 1 { format!("{y:?}") } else { "0".into() }).collect::<Vec<_>>().join(", ");
@@ -108,7 +109,7 @@ impl Round {
             })
             .collect();
         let base = nodes(mesh, |x| x[1].abs() < 1e-9);
-        // Hertz's theory is linear: forces refer to rest positions.
+        // As in Hertz's theory, the material is linear, and forces refer to rest positions.
         format!(
             "density = 1.0\nposition = [{}]\n\
              models = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = {:?}, poissons_ratio = {POISSON:?} }}]\n\
@@ -122,7 +123,8 @@ impl Round {
     }
 }
 
-/// Two bodies whose central planes approach by `approach` [m]. The force is that on whole bodies, of which the scene contains a half or a quarter.
+/// Presses two bodies together by moving their central planes towards each other by `approach` [m]. The returned force is that between whole bodies,
+/// although the scene contains only a half or a quarter of each.
 fn press<const D: usize>(lab: &Lab, lower: Round, upper: Round, approach: f64) -> Result<Press, Trouble>
 where
     Lab: Worlds<D>,
@@ -134,7 +136,7 @@ where
         .named("upper", &meshes[1], &upper.text(&meshes[1], upper.radius, -approach))?;
     let mut world = lab.world(scene)?;
     world.frame()?;
-    // Both bodies have the same pressure, at their own nodes.
+    // The mean over both bodies is used. They carry the same pressure, but at different nodes.
     let (mut force, mut moment) = (0.0, 0.0);
     for (body, (mesh, half)) in meshes.iter().zip([-0.5, 0.5]).enumerate() {
         for (x, push) in mesh.positions.iter().zip(world.contact_forces(body)) {
@@ -146,7 +148,7 @@ where
 }
 
 fn line(lab: &Lab, n: f64) -> Result<f64, Trouble> {
-    // Their meshes do not match.
+    // The nodes of the two meshes do not coincide.
     let upper = Round { radius: 1.0, young: 1e6, cells: n as u32 };
     let lower = Round { radius: 2.0, young: 2e6, cells: n as u32 * 7 / 8 };
     let press = press::<2>(lab, lower, upper, 0.02)?;

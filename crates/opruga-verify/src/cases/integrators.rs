@@ -144,7 +144,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// A mass of 1 kg on a spring of 4 N/m that moves along x, with `substeps` steps per frame.
+/// A mass of 1 kg that moves along x on a spring of 4 N/m. The scene has `substeps` steps per frame.
 fn oscillator(rule: &str, h: f64, substeps: u32, damping: f64) -> Scene {
     Scene::new(2, h * f64::from(substeps), substeps, rule).add(&format!(
         "[[body]]\nname = \"weight\"\nnode_mass = 1.0\nshape = {{ kind = \"line\", from = [0, 0], to = [1, 0], segments = 1 }}\n\
@@ -168,14 +168,14 @@ fn amplitude(lab: &Lab, step: f64) -> Result<f64, Trouble> {
     Ok(x.hypot(0.5 * v) / 0.5)
 }
 
-/// The stable limit by bisection: a step is unstable if an oscillation of 1 mm grows a hundredfold within 2000 steps.
+/// Finds the stable limit of ωh by bisection. A step is unstable if an oscillation of 1 mm grows a hundredfold within 2000 steps.
 fn limit(lab: &Lab, rule: &str) -> Result<f64, Trouble> {
     let (mut stable, mut unstable) = (1.0, 4.0);
     for _ in 0..16 {
         let middle = 0.5 * (stable + unstable);
         let mut world = lab.plane(oscillator(rule, 0.5 * middle, 20, 0.0))?;
         world.set_node(0, 1, [1.001, 0.0], [0.0; 2])?;
-        // A run that ends with NaN has grown too.
+        // A run that fails because of NaN counts as growing, too.
         let grows = (0..100).any(|_| world.frame().is_err() || (world.position(0, 1)[0] - 1.0).abs() > 0.1);
         if grows { unstable = middle } else { stable = middle }
     }

@@ -31,10 +31,10 @@ const SIDE: Case =
 pub(super) const PULLED_STRAIGHT: &[f64] = &[-50_000.0, -20_000.0, 20_000.0, 50_000.0, 100_000.0, 200_000.0];
 const NARROWED_STRAIGHT: &[f64] = &[1.225, 1.09, 0.91, 0.775, 0.55, 0.1];
 
-/// The stretches include that of the largest compressive stress of the law, 1/√3.
+/// These stretches include 1/√3, at which the compressive stress of the law is largest.
 pub(super) const KIRCHHOFF: &[f64] = &[0.577_350_269_189_625_8, 0.6, 0.8, 1.2, 1.5];
 
-/// The values of the laws in the quantity of [`STRESS`]; finite volumes are compared with the same numbers.
+/// The stresses of the laws, as in [`STRESS`]. Finite volumes are compared with the same numbers.
 pub(super) const PULLED_KIRCHHOFF: &[f64] = &[-19_245.008_972_987_5, -19_200.0, -14_400.0, 26_400.0, 93_750.0];
 pub(super) const FIXED_COROTATED: &[f64] = &[
     -95_785.440_613_027,
@@ -218,7 +218,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// e^(−a) (cos ωd + a/ωd sin ωd) with a = τω²/2 = 0.246740…, ωd = 1.551296….
+/// The displacement after 1 s divided by that at the start: e^(−a) (cos ωd + a/ωd sin ωd) with a = τω²/2 = 0.246740…, ωd = 1.551296….
 const DAMPED: f64 = 0.139_487_533_964_552_74;
 
 /// A hexahedron between frictionless plates that are pulled apart.
@@ -226,7 +226,7 @@ fn pull(lab: &Lab, material: &str, stretch: f64, of: Of) -> Result<f64, Trouble>
     pull_of(lab, material, Cells::Boxes, stretch, of)
 }
 
-/// A cube of the given cells, one per side, between frictionless plates that are pulled apart in twenty steps.
+/// A cube between frictionless plates that are pulled apart in twenty steps. It consists of one box, which is cut into the given cells.
 fn pull_of(lab: &Lab, material: &str, cells: Cells, stretch: f64, of: Of) -> Result<f64, Trouble> {
     let scene = Scene::new(3, 0.05, 1, "equilibrium\ntolerance = 1e-11").add(&format!(
         "[[body]]\nname = \"cube\"\ndensity = 1.0\nshape = {{ kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1] }}\n{}\n\
@@ -261,7 +261,7 @@ fn shear(lab: &Lab, angle: f64) -> Result<f64, Trouble> {
     let mut world = lab.space(scene)?;
     world.frame()?;
     // Forces on nodes at the top that also belong to the sides include the stress of the sides. The work of an additional shear gives each force its
-    // correct weight: Σ fₓ y over the volume.
+    // correct weight: the stress is Σ fₓ y divided by the volume.
     let forces: Vec<(f64, f64)> =
         outside.iter().map(|k| (world.reaction(0, &[*k])[0], mesh.positions[*k as usize][1])).collect();
     Ok(forces.iter().map(|(force, y)| force * y).sum())

@@ -192,16 +192,16 @@ pub(super) const LEDGERS: &[Case] = &[
 struct Impact {
     /// The speed of the second bar divided by the speed of the first before the impact.
     gained: f64,
-    /// The time until half of the momentum is transferred [s].
+    /// The time at which half of the momentum has been transferred [s].
     half: f64,
-    /// The compressive strain at the middle of the second bar, divided by v/(2c), with the approach speed v.
+    /// The compressive strain at the middle of the second bar, divided by v/(2c), where v is the speed of approach and c the speed of waves.
     stress: f64,
     /// The speed of separation divided by the speed of approach.
     apart: f64,
 }
 
-/// Bars of equal springs with c = 1 m/s and 1 kg/m: one of 1 m with n springs moves at 1 cm/s and hits another one, which moves at `times` that
-/// speed.
+/// Two bars of equal springs with c = 1 m/s and 1 kg/m collide. The first one is 1 m long, has n springs and moves at 1 cm/s. The second one moves at
+/// `times` that speed.
 fn impact(lab: &Lab, n: f64, length: f64, times: f64) -> Result<Impact, Trouble> {
     let (speed, frame, gap) = (0.01, 0.25 / n, 1e-4);
     let bar = |name: &str, from: f64, to: f64, v: f64| {
@@ -247,7 +247,8 @@ fn momentum(world: &World<2>, body: usize) -> f64 {
     (0..world.node_count(body) as u32).map(|n| world.node_mass(body, n) * world.velocity(body, n)[0]).sum()
 }
 
-/// Two rods that collide flat at 4 m/s: their speed of separation divided by this, and the loss divided by ½ m v² with m = ⅔ kg.
+/// Two parallel rods collide at a relative speed v = 4 m/s. Returns their speed of separation divided by v, and the loss divided by ½ m v² with the
+/// reduced mass m = ⅔ kg.
 fn bounce(lab: &Lab, restitution: f64, rule: &str) -> Result<[f64; 2], Trouble> {
     let rod = |name: &str, x: f64, v: f64, mass: f64| {
         format!(
@@ -268,7 +269,7 @@ fn bounce(lab: &Lab, restitution: f64, rule: &str) -> Result<[f64; 2], Trouble> 
     Ok([(second - first) / 4.0, world.energy().loss_contact / (0.5 * 2.0 / 3.0 * 16.0)])
 }
 
-/// The displacement of a chain that slides down a pinned line, after 150 frames [m].
+/// The displacement after 150 frames of a chain that slides down a pinned line [m].
 fn slide_down(lab: &Lab, h: f64, friction: f64, rule: &str) -> Result<f64, Trouble> {
     let (frame, gap) = (1.0 / 60.0, 1e-3);
     let [x, y] = [gap / 5f64.sqrt(), 2.0 * gap / 5f64.sqrt()];
@@ -290,7 +291,7 @@ fn slide_down(lab: &Lab, h: f64, friction: f64, rule: &str) -> Result<f64, Troub
     Ok((x[0] - start[0]).hypot(x[1] - start[1]))
 }
 
-/// The momentum of two balls of gas after their contact, divided by that before.
+/// The total momentum of two balls of gas after their contact, divided by that before the contact.
 fn balls(lab: &Lab, n: f64, substeps: u32, rule: &str) -> Result<f64, Trouble> {
     let ball = |name: &str, x: f64, y: f64, v: f64| {
         format!(

@@ -5,9 +5,9 @@ use crate::bodies::{Cells, displacement};
 use crate::case::{Case, Check, Over};
 use crate::lab::{Lab, Scene, Trouble};
 
-/// Twice the exponent of the singularity at the clamped upper corner, where the angle is 108.4° between the clamped and the free side: sin² λα = (κ +
-/// 1)²/4κ − λ²/κ sin² α with κ = 2 in plane stress and 2.2 in plane strain (M. L. Williams 1952). Displacements under a load far from the corner
-/// converge at that order on uniform meshes.
+/// Twice the exponent λ of the singularity at the clamped upper corner. With the angle α = 108.4° between the clamped and the free side, λ satisfies
+/// sin² λα = (κ + 1)²/4κ − λ²/κ sin² α with κ = 2 in plane stress and 2.2 in plane strain (M. L. Williams 1952). On uniform meshes, displacements
+/// under a load far from the corner converge at the order 2λ.
 const SINGULAR: f64 = 1.354;
 
 const LINEAR: Case = Case {

@@ -31,7 +31,7 @@ mod volumes;
 
 use crate::case::{Case, Check, Family, Over, Scale};
 
-/// The common values of the cases.
+/// The values that a case has unless it gives others.
 const BASE: Case = Case {
     name: "",
     family: Family::Statics,
@@ -86,7 +86,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
     lists.into_iter().flatten()
 }
 
-/// Cases that a reader may miss, and the reasons for their absence.
+/// Cases that a reader might expect, and the reasons for their absence.
 pub const LEFT_OUT: &[(&str, &str)] =
     &[("thin membranes of rubber", "there is no model of membranes; springs obey another law")];
 

@@ -56,7 +56,8 @@ pub(super) fn irregular<const D: usize>(n: f64, cells: Cells) -> Result<Mesh<D>,
     cells.cut(grid)
 }
 
-/// Displacements by up to a tenth: an affine one, or pure bending in plane stress with ν = 0.4.
+/// The displacement at a point in an affine deformation, or in pure bending in plane stress with ν = 0.4. Displacements are up to about a tenth of
+/// the size.
 pub(super) fn displaced<const D: usize>(x: &[f64; D], bends: bool) -> [f64; D] {
     if bends {
         let (curvature, poisson) = (0.1, 0.4);

@@ -99,7 +99,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// Equal cells of a block with its lowest corner at a given height; its inner nodes are moved at random by up to an eighth of a cell.
+/// A block of equal cells whose lowest corner is at a given height. Its inner nodes are moved at random by up to an eighth of a cell.
 fn block<const D: usize>(n: u32, cells: Cells, height: f64) -> Result<Mesh<D>, Trouble> {
     let random = Cell::new(11u64);
     mapped([n; D], cells, |x| {
@@ -115,7 +115,7 @@ fn block<const D: usize>(n: u32, cells: Cells, height: f64) -> Result<Mesh<D>, T
     })
 }
 
-/// Rows for `pin = [ … ]`: nodes that satisfy a condition, pinned along an axis.
+/// A row of `pin = [ … ]` that pins the nodes that satisfy a condition along an axis.
 fn pinned<const D: usize>(mesh: &Mesh<D>, axis: usize, which: impl Fn(&[f64; D]) -> bool) -> String {
     format!("{{ select = {{ nodes = {:?} }}, axes = \"{}\" }}", nodes(mesh, which), ["x", "y", "z"][axis])
 }
@@ -133,7 +133,7 @@ fn solid(law: &str, pins: &[String]) -> String {
     )
 }
 
-/// The area (in the plane the length) of the boundary at a given height that belongs to each node.
+/// For each node, its part of the boundary at a given height: an area, or a length in the plane.
 fn shares<const D: usize>(mesh: &Mesh<D>, height: f64) -> Vec<f64> {
     let surface = mesh.touching_surface(true);
     let (positions, mut of_points) = (surface.positions(&mesh.positions), vec![0.0; surface.points()]);
@@ -159,7 +159,7 @@ fn shares<const D: usize>(mesh: &Mesh<D>, height: f64) -> Vec<f64> {
     out
 }
 
-/// The worst result of the patch test with a constraint.
+/// The largest relative error of the pressure in the patch test, if contact is a constraint.
 fn pressures<const D: usize>(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble>
 where
     Lab: Worlds<D>,
@@ -167,29 +167,29 @@ where
     Ok(patch(lab, n, cells, None, DAMPED)?.worst)
 }
 
-/// The worst result of the patch test with statics and a constraint.
+/// The largest relative error of the pressure in the patch test with statics, if contact is a constraint.
 pub(super) fn pressures_at_rest(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(patch::<2>(lab, n, Cells::Boxes, None, "equilibrium")?.worst)
 }
 
-/// The patch test with statics and a barrier of a given reach [m].
+/// The largest relative error of the pressure in the patch test with statics, if contact is a barrier of a given reach [m].
 pub(super) fn patch_at_rest_by_barrier(lab: &Lab, reach: f64) -> Result<f64, Trouble> {
     Ok(patch::<2>(lab, 3.0, Cells::Linear, Some(reach), "equilibrium")?.worst)
 }
 
-/// An integrator with which bodies come to rest in steps of 0.1 s, because it damps everything.
+/// An integrator that damps all motion, so that bodies come to rest in steps of 0.1 s.
 const DAMPED: &str = "backward_euler";
 
 /// The results for two blocks.
 struct Patch {
-    /// The largest relative difference of the pressure on a node.
+    /// The largest relative error of the pressure on a node.
     worst: f64,
     /// The mean height of the nodes at the top [m].
     height: f64,
 }
 
-/// Two blocks without friction at rest, the upper one under a pressure of 1 kPa; with a barrier of a given reach [m], beyond which they start, or
-/// with a constraint.
+/// Brings two blocks without friction to rest, the upper one under a pressure of 1 kPa. Contact is a barrier of a given reach [m], outside of which
+/// the blocks start, or a constraint.
 fn patch<const D: usize>(lab: &Lab, n: f64, cells: Cells, reach: Option<f64>, rule: &str) -> Result<Patch, Trouble>
 where
     Lab: Worlds<D>,
@@ -240,8 +240,8 @@ impl Worlds<3> for Lab {
     }
 }
 
-/// The part of a cylinder of 1 m about the origin with positive x below `width`, from its lowest line up to the middle; cells near that line are
-/// small.
+/// A part of a cylinder with a radius of 1 m about the origin. It extends from x = 0 to `width`, and from the surface up to the height of the axis.
+/// Cells near the lowest line are small.
 fn lens(n: u32, width: f64) -> Result<Mesh<2>, Trouble> {
     mapped([n; 2], Cells::Boxes, |[s, t]| {
         let x = width * s * s;
@@ -249,7 +249,8 @@ fn lens(n: u32, width: f64) -> Result<Mesh<2>, Trouble> {
     })
 }
 
-/// Half of a cylinder that is pressed onto a plane by 1 cm. Hertz's pressure has ∫ p x² = F a²/4.
+/// The width of the contact of a cylinder that is pressed onto a plane by 1 cm, divided by Hertz's width for the same force. For Hertz's pressure, ∫
+/// p x² = F a²/4.
 fn hertz_line(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let mesh = lens(n as u32, 0.85)?;
     let top = nodes(&mesh, |x| x[1].abs() < 1e-9);
@@ -274,8 +275,9 @@ fn hertz_line(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(2.0 * (moment / force).sqrt() / (4.0 * 2.0 * force / (std::f64::consts::PI * young)).sqrt())
 }
 
-/// The force between two blocks after 5 s, divided by the weight of the upper one, whose mass and stiffness are the given multiples of those of the
-/// lower one. The stiffness of both grows with the mass above, so the relative compression of the lower block is always the same.
+/// The force between two blocks after 5 s, divided by the weight of the upper one. The mass and the stiffness of the upper block are the given
+/// multiples of those of the lower one. The stiffness of both blocks grows with the mass of the upper one, so that it compresses the lower one
+/// equally in all cases.
 pub(super) fn weight(lab: &Lab, rule: &str, contact: &str, masses: f64, stiffness: f64) -> Result<f64, Trouble> {
     let base = 1e5 * masses.max(1.0);
     let block = |name: &str, x: f64, y: f64, width: f64, mass: f64, young: f64, more: &str| {

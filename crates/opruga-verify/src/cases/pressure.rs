@@ -125,7 +125,7 @@ fn gas_law(lab: &Lab, gamma: f64) -> Result<f64, Trouble> {
     Ok(worst)
 }
 
-/// Three pins that hold a round ring as a whole but leave it free to expand.
+/// Three pins that prevent rigid motions of a round ring but let it expand.
 pub(super) fn ring_pins(n: u32) -> String {
     format!(
         "pin = [{{ select = {{ nodes = [0, {}] }}, axes = \"y\" }}, {{ select = {{ node = {} }}, axes = \"x\" }}]",
@@ -142,7 +142,7 @@ fn gas_filled_ring(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     ));
     let mut world = lab.plane(scene)?;
     world.frame()?;
-    // The mean over the edges.
+    // The result is the mean length of the edges.
     let count = n as u32;
     let length = |k: u32| {
         let (a, b) = (world.position(0, k), world.position(0, (k + 1) % count));
@@ -161,7 +161,7 @@ fn breathing_modes(lab: &Lab, n: f64) -> Result<f64, Trouble> {
         pressure * area
     ));
     let world = lab.plane(scene)?;
-    // In uniform expansion Σ m φ·x/R is √(mass); in all other motions it is 0.
+    // For the mode φ of uniform expansion, Σ m φ·x/R is √(mass). For all other modes it is 0.
     let alike = |shape: &[[f64; 2]]| -> f64 {
         let along = shape.iter().enumerate().map(|(k, v)| {
             let x = world.position(0, k as u32);
@@ -173,7 +173,7 @@ fn breathing_modes(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(modes.iter().find(|mode| alike(&mode.shape) > 0.99).ok_or("it does not breathe")?.omega())
 }
 
-/// The angular frequency of the volume, from two downward crossings of its value at rest.
+/// The angular frequency at which the volume oscillates, found from the times at which it falls through its value at rest.
 fn pulse<const D: usize>(world: &mut World<D>) -> Result<f64, Trouble> {
     let rest = reading(world, "volume")?;
     for node in 0..world.node_count(0) as u32 {

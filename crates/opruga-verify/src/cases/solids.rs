@@ -56,8 +56,8 @@ pub(super) const CASES: &[Case] = &[
         ..BAR
     },
     Case {
-        // Changed to consistent masses. With lumped masses the weight does not match the shape functions, and the elongation has an error of 0.3 %
-        // that does not depend on the mesh.
+        // Changed to consistent masses. Lumped masses distribute the weight differently from the shape functions, which causes an error of 0.3 % in
+        // the elongation that does not depend on the mesh.
         name: "hanging-bar-quadratic-triangles",
         measure: |lab, n| bar(lab, n, Cells::Quadratic),
         ..BAR
@@ -65,8 +65,8 @@ pub(super) const CASES: &[Case] = &[
     Case { name: "lame-tube-quadrilaterals", quick: true, measure: |lab, n| tube(lab, n, Cells::Boxes, false), ..TUBE },
     Case { name: "lame-tube-triangles", quick: true, measure: |lab, n| tube(lab, n, Cells::Linear, false), ..TUBE },
     Case {
-        // Changed after its first run, which started at 4 cells and had only the pressure. The second-order part of the pressure was most of the
-        // error, and the error changes its sign between 4 and 8 cells.
+        // Changed after its first run, which started at 4 cells and had only the pressure. The part of the result that is of second order in the
+        // pressure was most of the error, and the error changes its sign between 4 and 8 cells.
         name: "lame-tube-quadratic-triangles",
         levels: &[8.0, 16.0, 32.0],
         quick: false,
@@ -156,7 +156,7 @@ fn bar(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     Ok(-bottom.iter().map(|k| world.position(0, *k)[1]).sum::<f64>() / bottom.len() as f64)
 }
 
-/// A solid of E = 1 Pa and ν = 0.3 with planes of symmetry.
+/// The lines of the scene for a solid of E = 1 Pa and ν = 0.3 with planes of symmetry.
 fn solid(pins: &str) -> String {
     format!(
         "density = 1.0\nmodels = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 1.0, poissons_ratio = 0.3 }}]\n{pins}"
@@ -167,8 +167,8 @@ fn pressed(select: &[u32], pressure: f64) -> String {
     format!("[[load]]\nkind = \"pressure\"\nbody = \"body\"\nselect = {{ nodes = {select:?} }}\nvalue = {pressure:?}")
 }
 
-/// Half of the difference between the results for pressure and suction. A pressure follows the wall, which causes a second-order part; it cancels in
-/// the difference.
+/// Half of the difference between the results for pressure and suction. A pressure follows the wall, which adds a part of second order in the
+/// pressure. This part cancels in the difference.
 fn tube(lab: &Lab, n: f64, cells: Cells, stress: bool) -> Result<f64, Trouble> {
     let mesh = octant::<2>(n as u32, n as u32, Some(1.0), 2.0, cells)?;
     let inner = at_radius(&mesh, 1.0);
@@ -199,7 +199,8 @@ fn ball(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(outward(&world, &outer) / SMALL)
 }
 
-/// A quarter of the plate between the ellipses with semi-axes 2, 1 and 3.25, 2.75 m, with E = 210 GPa and a thousandth of the tension.
+/// A quarter of the plate between the ellipses with semi-axes 2, 1 and 3.25, 2.75 m. It has E = 210 GPa and carries a thousandth of the tension of
+/// the reference.
 fn plate(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     let mesh = mapped([n as u32; 2], cells, |s| {
         let angle = std::f64::consts::FRAC_PI_2 * s[1];
@@ -217,16 +218,17 @@ fn plate(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     ))?.add(&pressed(&outer, -10e3));
     let mut world = lab.plane(scene)?;
     world.frame()?;
-    // Stress at a thousandth of the tension, converted to MPa.
+    // The stress is multiplied by 1000 for the tension of the reference, and divided by 10⁶ to give MPa.
     Ok(stress_at(&world, [2.0, 0.0], [1, 1])? * 1e-3)
 }
 
-/// A quarter of the sheet between the hole of 1 m and the circle of 4 m, whose points move according to Kirsch.
+/// A quarter of the sheet between a hole with a radius of 1 m and a circle with a radius of 4 m. The points of the circle move according to Kirsch's
+/// solution.
 fn hole(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let poisson = 0.3;
     let mesh = mapped([n as u32; 2], Cells::Boxes, |s| {
         let (angle, radius) = (std::f64::consts::FRAC_PI_2 * s[1], 4.0f64.powf(s[0]));
-        // Nodes on the axes must be there exactly, without rounding.
+        // Nodes on the axes must be exactly there, without rounding errors.
         [if s[1] == 1.0 { 0.0 } else { radius * angle.cos() }, radius * angle.sin()]
     })?;
     let outer = at_radius(&mesh, 4.0);

@@ -61,7 +61,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// 200 N · (√1.09 − l)·√(l² − 1)/l with l = 1.09^(1/6).
+/// The largest load: 200 N · (√1.09 − l)·√(l² − 1)/l with l = 1.09^(1/6).
 const SNAP: f64 = 0.994_991_695_774_456_3;
 
 fn catenary(lab: &Lab, links: f64) -> Result<f64, Trouble> {
@@ -81,7 +81,7 @@ fn catenary(lab: &Lab, links: f64) -> Result<f64, Trouble> {
     Ok(-(0..=count).map(|k| world.position(0, k)[1]).fold(0.0, f64::min))
 }
 
-/// Twice the energy divided by area and strain², with the whole boundary displaced.
+/// Twice the elastic energy of a lattice whose whole boundary is displaced, divided by its area and by the square of the strain.
 fn lattice(lab: &Lab, strain: f64, by: impl Fn(&[f64; 2], f64) -> [f64; 2]) -> Result<f64, Trouble> {
     let (columns, rows, height) = (6u32, 4u32, 0.75f64.sqrt());
     let mut mesh = Mesh::<2>::default();
@@ -107,7 +107,7 @@ fn lattice(lab: &Lab, strain: f64, by: impl Fn(&[f64; 2], f64) -> [f64; 2]) -> R
     Ok(2.0 * world.energy().elastic / (strain * strain * area))
 }
 
-/// The largest load on the path through the snap.
+/// The largest load on the path along which a roof snaps through.
 fn snap(lab: &Lab, arc_length: f64) -> Result<f64, Trouble> {
     let load = 10.0;
     let scene = Scene::new(2, 1.0, 1, &format!("equilibrium\narc_length = {arc_length:?}\ntolerance = 1e-11")).add(&format!(
@@ -117,7 +117,7 @@ fn snap(lab: &Lab, arc_length: f64) -> Result<f64, Trouble> {
         -load
     ));
     let mut world = lab.plane(scene)?;
-    // Height and load, up to the other side.
+    // The path contains pairs of height and load, until the roof is on the other side.
     let mut path: Vec<[f64; 2]> = Vec::new();
     for _ in 0..2000 {
         world.frame()?;
@@ -136,7 +136,7 @@ pub(super) fn summit(path: &[[f64; 2]]) -> Option<f64> {
     let [p, q, r] = [*path.get(top.checked_sub(1)?)?, path[top], *path.get(top + 1)?];
     let (left, right) = ((q[1] - p[1]) / (q[0] - p[0]), (r[1] - q[1]) / (r[0] - q[0]));
     let bend = (right - left) / (r[0] - p[0]);
-    // The slope at q, and the distance from there to the maximum.
+    // The slope of the parabola at q.
     let slope = left + bend * (q[0] - p[0]);
     Some(q[1] - 0.25 * slope * slope / bend)
 }

@@ -54,8 +54,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "beam-first-bending-quadrilaterals",
-        // Changed after its first run, which had half as many cells along the beam: the spurious part of the shear depends only on the ratio of the
-        // length of a cell to the thickness.
+        // Changed after its first run, which had half as many cells along the beam: the spurious shear depends only on the ratio of the length of a
+        // cell to the thickness.
         levels: &[100.0, 200.0, 400.0],
         measure: |lab, n| beam(lab, [n as u32, 4], Cells::Boxes, true, 0),
         ..BEAM
@@ -131,7 +131,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         name: "ball-becomes-oval-hexahedra",
-        // Changed to start at 6 cells: with 2 to 4 the errors of masses and of stiffness have opposite signs and cancel (5e-4, 6e-4, 4e-4).
+        // Changed to start at 6 cells. With 2 to 4 cells, the errors due to the masses and to the stiffness have opposite signs and cancel (5e-4,
+        // 6e-4, 4e-4).
         levels: &[6.0, 8.0, 12.0],
         quantity: "ωa/c_s of the slowest spheroidal vibration (l = 2) of a free ball, ν = 0.3",
         source: "H. Lamb 1882; Love, Treatise, art. 197: spheroidal vibrations, l = 2",
@@ -158,12 +159,12 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// c_p of E = 1 Pa, ν = 0.3, ρ = 1 kg/m³.
+/// The speed c_p of pressure waves for E = 1 Pa, ν = 0.3, ρ = 1 kg/m³.
 fn pressure_speed() -> f64 {
     (0.7f64 / (1.3 * 0.4)).sqrt()
 }
 
-/// A linear solid of E = 1 Pa and ρ = 1 kg/m³.
+/// The lines of the scene for a linear solid of E = 1 Pa and ρ = 1 kg/m³.
 fn solid(poisson: f64, plane: &str, pins: &str) -> String {
     format!(
         "density = 1.0\nmodels = [{{ kind = \"fem\", material = \"linear\", youngs_modulus = 1.0, poissons_ratio = {poisson:?}{plane} }}]\n{pins}"
@@ -212,11 +213,11 @@ fn bar(lab: &Lab, n: f64, number: usize) -> Result<f64, Trouble> {
     omega(&world, number)
 }
 
-/// The relative difference in ω of modes so close to one another that a mesh mixes them.
+/// Modes whose ω differ by less than this fraction are so close that a mesh mixes them.
 const CLOSE_MODES: f64 = 0.03;
 
-/// The frequency of the mode most similar to a uniform expansion. If a mesh mixes it with neighbouring modes of other shapes, ω² is their mean,
-/// weighted by the part of the expansion in each: the value for the expansion in the space of these modes.
+/// The angular frequency of the mode that is most similar to a uniform expansion. A mesh may mix this mode with neighbouring modes of other shapes.
+/// The result is therefore the root of the mean of ω² over these modes, weighted by the part of the expansion in each of them.
 fn breathing<const D: usize>(world: &World<D>, count: usize) -> Result<f64, Trouble> {
     let rest = &world.blueprint().bodies[0].mesh.positions;
     let likeness = |shape: &[[f64; D]]| -> f64 {
@@ -259,8 +260,8 @@ fn ball(lab: &Lab, n: f64, cells: Cells, motion: Motion) -> Result<f64, Trouble>
     let mesh = octant::<3>(n as u32, n as u32, None, 1.0, cells)?;
     let pins = match motion {
         Motion::Twist => {
-            // The motion is about z and odd in z: planes through the axis move only perpendicular to themselves, and the plane of the equator does
-            // not move.
+            // The motion is a rotation about z that is odd in z. Points in planes through the axis move only perpendicular to these planes, and
+            // points in the plane of the equator do not move.
             let rows: Vec<String> = ["yz", "xz", "xy"]
                 .iter()
                 .enumerate()

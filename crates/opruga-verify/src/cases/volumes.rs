@@ -187,8 +187,8 @@ fn bar(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(-bottom.iter().map(|k| world.position(0, *k)[1]).sum::<f64>() / bottom.len() as f64)
 }
 
-/// Half of the difference between the results for pressure and suction. A pressure follows the wall, which causes a second-order part; it cancels in
-/// the difference.
+/// Half of the difference between the results for pressure and suction. A pressure follows the wall, which adds a part of second order in the
+/// pressure. This part cancels in the difference.
 fn tube(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     let mesh = octant::<2>(n as u32, n as u32, Some(1.0), 2.0, cells)?;
     let inner = at_radius(&mesh, 1.0);
@@ -231,7 +231,7 @@ fn wave(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(world.modes(0, 1)?.first().ok_or("too few modes")?.omega())
 }
 
-/// A cube of the given cells, one per side, between frictionless plates that are pulled apart in twenty steps.
+/// A cube between frictionless plates that are pulled apart in twenty steps. It consists of one box, which is cut into the given cells.
 fn pull(lab: &Lab, material: &str, cells: Cells, stretch: f64) -> Result<f64, Trouble> {
     let scene = Scene::new(3, 0.05, 1, "equilibrium\ntolerance = 1e-11").add(&format!(
         "[[body]]\nname = \"cube\"\ndensity = 1.0\nshape = {{ kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1] }}\n{}\n{}\n\

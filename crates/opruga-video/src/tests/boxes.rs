@@ -12,7 +12,7 @@ pub(super) fn number(bytes: &[u8], place: usize) -> usize {
     u32::from_be_bytes(bytes[place..place + 4].try_into().expect("four bytes")) as usize
 }
 
-/// All boxes of a file in order; panics if lengths are inconsistent.
+/// All boxes of a file in order. Panics if lengths are inconsistent.
 pub(super) fn read(bytes: &[u8]) -> Vec<Found> {
     let mut found = Vec::new();
     within(bytes, 0..bytes.len(), "", &mut found);
@@ -42,7 +42,7 @@ fn within(bytes: &[u8], part: std::ops::Range<usize>, path: &str, found: &mut Ve
     }
 }
 
-/// The content of the only box with a path.
+/// The content of the only box with this path.
 pub(super) fn only<'a>(bytes: &'a [u8], path: &str) -> &'a [u8] {
     let mut found = read(bytes).into_iter().filter(|found| found.path == path);
     let first = found.next().unwrap_or_else(|| panic!("no {path}"));

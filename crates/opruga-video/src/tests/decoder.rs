@@ -14,8 +14,8 @@ struct Reader {
 }
 
 impl Reader {
-    /// The bits of a unit, without its header and without the bytes that were inserted so that nothing in it looks like the
-    /// start of a unit.
+    /// Reads the bits of a unit. Its header is skipped, and so are the bytes that were inserted so that nothing inside looks like the start of a
+    /// unit.
     fn new(unit: &[u8]) -> Reader {
         let mut bytes: Vec<u8> = Vec::new();
         for (place, &byte) in unit.iter().enumerate().skip(1) {
@@ -70,7 +70,7 @@ impl Reader {
         panic!("no code at bit {start}");
     }
 
-    /// Up to `most` levels, starting with the lowest frequency; if `near` is `None`, chroma DC levels.
+    /// Reads up to `most` levels, starting with the lowest frequency. If `near` is `None`, they are chroma DC levels.
     fn levels(&mut self, near: Option<u8>, most: usize) -> (Vec<i32>, u8) {
         let (ones, total) = match near {
             None => (self.code(SUM_COUNTS.as_flattened()), 5),

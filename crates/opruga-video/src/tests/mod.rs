@@ -8,7 +8,7 @@ mod drawing;
 use super::*;
 use drawing::Drawing;
 
-/// A film, and the expected output of a decoder for each frame: three planes without the cropped part.
+/// A film, and the expected output of a decoder for each frame: its three planes without the cropped part.
 struct Made {
     bytes: Vec<u8>,
     shown: Vec<[Vec<u8>; 3]>,
@@ -85,7 +85,7 @@ fn quality(image: Image<'_>, shown: &[Vec<u8>; 3]) -> f64 {
     10.0 * (255.0 * 255.0 / mean.max(1e-9)).log10()
 }
 
-/// FNV-1a.
+/// The hash FNV-1a.
 fn hash(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01B3))
 }
@@ -100,7 +100,7 @@ fn a_drawn_film_is_small_and_sharp() {
         assert!(quality > 40.0, "{quality} dB");
     }
     assert!(made.bytes.len() < 60_000, "{} bytes", made.bytes.len());
-    // The disc has passed through this part; white is 235.
+    // The disc has passed through this part, which must be white again. White is 235.
     let last = &made.shown[44][0];
     let traces = (64..112).flat_map(|row| &last[row * 320 + 64..row * 320 + 112]).filter(|pixel| **pixel < 234).count();
     assert_eq!(traces, 0);
@@ -133,7 +133,7 @@ fn check_decoded(made: &Made, size: [u32; 2]) {
 fn a_decoder_shows_what_the_encoder_expects() {
     let size = [200, 150];
     let mut images: Vec<Drawing> = (0..30).map(|step| scene(size, step)).collect();
-    // A cut, an unchanged picture, and a picture that moves as a whole, even beyond its edges.
+    // The film has a cut, an unchanged picture, and pictures that move as a whole, even beyond their edges.
     images.push(noise(size, 5));
     images.extend([scene(size, 8), scene(size, 8)]);
     for step in 0..6 {
@@ -147,7 +147,7 @@ fn a_decoder_shows_what_the_encoder_expects() {
 
 #[test]
 fn known_films_have_known_bytes() {
-    // ffmpeg decodes this film as the encoder expects, to the byte and without a warning. It contains no lines and letters, because their pixels may
+    // ffmpeg decodes exactly the expected bytes from this film, without a warning. The film contains no lines and letters, because their pixels may
     // differ on other machines.
     let size = [98, 51];
     let mut images: Vec<Drawing> = Vec::new();

@@ -1,4 +1,4 @@
-//! The renderers of the page: WebGPU, WebGL 2 or none; a lost device; the time of pictures.
+//! Tests the renderers of the page (WebGPU, WebGL 2 or none) and lost devices, and measures the time of pictures.
 
 use super::super::server;
 use super::{Browser, Outcome, PATIENCE, Trial, holds};
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 /// Makes the page lose its device, as drivers do.
 const LOSE: &str =
     "document.querySelector('canvas').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()";
-/// A browser without a device.
+/// Makes the browser have no graphics device.
 const NONE: &str = "Object.defineProperty(navigator, 'gpu', { value: undefined }); \
                     const get = HTMLCanvasElement.prototype.getContext; \
                     HTMLCanvasElement.prototype.getContext = function (kind, ...rest) { \
@@ -38,7 +38,7 @@ const DIFFER: &str = "async (first, second) => { \
     for (let k = 0; k < a.length; k += 4) \
       count += [0, 1, 2].some((c) => Math.abs(a[k + c] - b[k + c]) > 48); \
     return 4 * count / a.length; }";
-/// A scene of which one frame takes minutes.
+/// A scene with a frame that takes minutes.
 const LONG: &str = r#"
 format = "opruga-1"
 dimension = 2
@@ -93,8 +93,8 @@ impl Trial {
         Ok(())
     }
 
-    /// WebGPU is used if it works, and WebGL 2 if there is no WebGPU, if it fails, or if the user insists on WebGL 2. Both draw the same, and the
-    /// page names the one in use.
+    /// WebGPU is used if it works. WebGL 2 is used if there is no WebGPU, if WebGPU fails, or if the user insists on WebGL 2. Both draw the same
+    /// picture, and the page names the one in use.
     pub(super) fn on_webgpu(&mut self) -> Outcome {
         self.browser.size([1280, 720], 1.0, false)?;
         self.fresh("")?;
@@ -125,7 +125,7 @@ impl Trial {
         Ok(())
     }
 
-    /// The picture of a fixed moment, drawn by a given renderer, which the title and the status line name.
+    /// Takes the picture of a fixed moment, drawn by a given renderer. Checks that the title and the status line name this renderer.
     fn picture_by(&mut self, drawn_by: &str, named: &str) -> Result<String, String> {
         let by = self.browser.value("opruga_drawn_by.name")?;
         holds(by == drawn_by, || format!("it is drawn by {by} and not by {drawn_by}"))?;
@@ -143,7 +143,7 @@ impl Trial {
     /// The process of the graphics driver ends, and the page continues with another one.
     fn goes_on_after_the_driver_has_ended(&mut self) -> Outcome {
         let before = self.state()?;
-        // It is a matter of chance whether the answer comes before the process has ended.
+        // The result is ignored, because the answer may or may not arrive before the process has ended.
         let _ = self.browser.call("Browser.crashGpuProcess", json!({}));
         self.until_value("opruga_losses.length === 1 && document.querySelector('#cover').className === 'gone'")?;
         let frames = before["frames"].as_u64().unwrap_or(0);
@@ -154,7 +154,7 @@ impl Trial {
         Ok(())
     }
 
-    /// If nothing can be drawn, the page reports it and loads nothing.
+    /// If the browser cannot draw, the page reports this and does not load the program.
     pub(super) fn says_where_nothing_draws(&mut self) -> Outcome {
         let added = self.browser.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": NONE }))?;
         self.browser.open("about:blank")?;
@@ -190,7 +190,7 @@ impl Trial {
         holds((measured - told).abs() < 0.1 + 0.25 * measured, || format!("{measured} is told as {told}"))
     }
 
-    /// A frame of minutes blocks nothing: the page interrupts it, reports it, and handles the next requests.
+    /// A frame that would take minutes blocks nothing. The page interrupts it, reports this, and handles the next requests.
     pub(super) fn asks_about_long_frames(&mut self) -> Outcome {
         self.fresh("")?;
         self.browser.value(&format!("opruga.show('long', {})", json!(LONG)))?;
@@ -208,7 +208,7 @@ impl Trial {
         Ok(())
     }
 
-    /// Opens the page again, without the data that it has stored before.
+    /// Opens the page again, without the data that it has stored earlier.
     fn fresh(&mut self, query: &str) -> Outcome {
         let address = format!("{}{query}", self.address);
         self.browser.open("about:blank")?;
@@ -270,7 +270,7 @@ pub(in super::super) fn measure(page: &Path, pictures: u32) -> Outcome {
             trial.browser.value(&begin)?;
             let begin = Instant::now();
             let said = loop {
-                // A busy page answers late, but it answers.
+                // A busy page answers late, so a missing report is not an error.
                 if let Some(said) = trial.browser.value("window.told")?.as_str() {
                     break said.to_string();
                 }
