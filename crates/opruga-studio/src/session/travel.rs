@@ -18,7 +18,7 @@ pub(super) struct Past {
     pub(super) label: Step,
     pub(super) document: Document,
     pub(super) own_commands: usize,
-    /// The scene at its start, as it was at this moment ([`Session::start`]).
+    /// The scene at its start, as it was at this moment.
     pub(super) start: Document,
     pub(super) frame: u64,
     /// The frame up to which the run of this moment is identical to the run that replaced it.
