@@ -68,7 +68,7 @@ impl Held {
         }
     }
 
-    /// Steps through frames until `enough`, at most `frames`.
+    /// Steps frame by frame until `enough` returns true, for at most `frames` frames.
     pub fn run(&mut self, frames: usize, enough: impl Fn(&Run) -> bool) -> Result<Run, String> {
         let mut run = Run { milliseconds: Vec::new(), heights: vec![self.height()] };
         while run.milliseconds.len() < frames && !enough(&run) {

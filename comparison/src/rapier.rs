@@ -20,7 +20,7 @@ pub enum Damping {
     Full,
 }
 
-/// Runs a body through frames until `enough`, at most `frames`.
+/// Runs a body frame by frame until `enough` returns true, for at most `frames` frames.
 pub fn run(
     shape: &Shape,
     modulus: f64,

@@ -36,8 +36,7 @@ pub struct Table {
 }
 
 impl Row {
-    /// Compares an oscillating run with its reference. `resting` is the sag of a run that came to rest, which is also compared; none if it did not
-    /// come to rest.
+    /// Compares an oscillating run with its reference. Also compares `resting`, the sag of a run that came to rest; none if it did not come to rest.
     pub fn new(name: &str, nodes: usize, swinging: &Run, resting: Option<f64>, reference: &Reference) -> Row {
         let swings = swinging.swing(reference.frame).zip(reference.swing);
         let relative = |value: f64, expected: f64| value / expected - 1.0;

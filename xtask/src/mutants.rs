@@ -59,7 +59,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "time: h, h, load, impulse: 1.0, echo: 0.0 };",
         tests: &["--package", "opruga-integrators", "--lib", "a_truss_is_followed_through_its_snap"],
     },
-    // The normal of a triangle is read as its first corner.
+    // The reader takes the normal of a triangle for its first corner.
     Mutant {
         name: "reader of STL",
         file: "crates/opruga-io/src/shapes/stl.rs",
@@ -67,7 +67,7 @@ const MUTANTS: [Mutant; 10] = [
         instead: "record[0..36].chunks_exact(12)",
         tests: &["--package", "opruga-io", "--test", "all", "every_format_gives_the_same_cube"],
     },
-    // Nodes have other numbers than in the file.
+    // Nodes get other numbers than they have in the file.
     Mutant {
         name: "reader of TetGen",
         file: "crates/opruga-io/src/meshes/tetgen.rs",

@@ -22,7 +22,7 @@ pub fn nice_ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
     ticks
 }
 
-/// The smallest of 1, 2, 2.5 and 5 times a power of ten that is at least `rough`.
+/// The smallest number that is 1, 2, 2.5 or 5 times a power of ten and at least `rough`.
 pub fn nice_step(rough: f64) -> f64 {
     let power = power_of_ten(rough);
     let mantissa = rough / power;
@@ -30,7 +30,7 @@ pub fn nice_step(rough: f64) -> f64 {
     round.unwrap_or(10.0) * power
 }
 
-/// The largest of 1, 2 and 5 times a power of ten that is at most `limit`.
+/// The largest number that is 1, 2 or 5 times a power of ten and at most `limit`.
 pub fn nice_length(limit: f64) -> f64 {
     let power = power_of_ten(limit);
     let mantissa = limit / power;

@@ -42,7 +42,7 @@ pub(crate) struct Residual {
     pub(crate) colour_coded: u32,
 }
 
-/// The number of levels of every block, on which the codes of its neighbours depend.
+/// The number of levels of every block. The codes of neighbouring blocks depend on it.
 #[derive(Clone, Debug)]
 pub(crate) struct Counts {
     /// Blocks in a row of each plane.

@@ -110,7 +110,7 @@ pub struct Level {
     pub label: String,
 }
 
-/// A map of quantities over two others: coloured cells, in one panel for each quantity, one above another.
+/// A map of quantities over two other quantities. Each quantity has a panel of coloured cells, and the panels are one above another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeatMap {
     /// The title, which may be empty.

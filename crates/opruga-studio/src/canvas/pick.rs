@@ -55,7 +55,7 @@ pub(crate) fn in_plane(shown: &Shown, flat: &Flat, rect: Rect, at: Pos2) -> Opti
     Some(Under { body: body.number, name: body.name.clone(), point, distance: 0.0, pixel })
 }
 
-/// Whether the outlines of a body contain a point by the even-odd rule.
+/// Whether a point is inside the outlines of a body, by the even-odd rule.
 fn around(body: &opruga::draw::BodyPicture, x: f64, y: f64) -> bool {
     let Facets::Edges(edges) = &body.facets else { return false };
     let crosses = |edge: &&[u32; 2]| {

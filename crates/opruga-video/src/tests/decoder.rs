@@ -1,5 +1,5 @@
-//! A decoder for the output of the encoder only. It has its own bit reader, but shares the tables, the prediction and the inverse transform with the
-//! encoder.
+//! A decoder that supports only the output of the encoder. It has its own bit reader, but shares the tables, the prediction and the inverse transform
+//! with the encoder.
 
 use super::super::frame::Frame;
 use super::super::parameters::NUMBER_BITS;
