@@ -25,20 +25,46 @@ use opruga_math::{Simd, WIDTH};
 /// first-level cache.
 const TANGENTS: usize = 4;
 
-/// The largest number of packs of boxes that are processed together.
+/// The largest number of packs of boxes that are processed together. The instructions of all steps of a pass over hexahedra do not
+/// fit into the first-level cache, so every step works on two packs before the next one begins.
 const MOST_BOXES: usize = 2;
+
+/// The largest number of packs of points of which a pass keeps data.
+const MOST_POINTS: usize = MOST_BOXES * MOST_PACKS;
 
 /// A pass, with the buffers that it needs.
 pub(super) struct Pass<'a, E, const D: usize, const N: usize> {
     section: &'a Section<E, D, N>,
     simd: Simd,
-    gradient: PackBuffer<{ MOST_PACKS * 9 * WIDTH }>,
+    gradient: PackBuffer<{ MOST_POINTS * 9 * WIDTH }>,
     /// Kept data of boxes.
     kept: PackBuffer<{ MOST_BOXES * KEPT * WIDTH }>,
-    numbers: PackBuffer<{ MOST_PACKS * PARAMETERS * WIDTH }>,
-    times: PackBuffer<{ MOST_PACKS * WIDTH }>,
+    numbers: PackBuffer<{ MOST_POINTS * PARAMETERS * WIDTH }>,
+    times: PackBuffer<{ MOST_POINTS * WIDTH }>,
     /// Pressures of cells whose nodes resist changes of volume.
     pressures: PackBuffer<{ MOST_PACKS * WIDTH }>,
+}
+
+/// The largest number of packs of points whose forces are computed together.
+fn most_points<E: Shape<D, N>, const D: usize, const N: usize>(section: &Section<E, D, N>) -> usize {
+    if E::BOX { MOST_BOXES * section.points } else { MOST_PACKS }
+}
+
+/// The buffers that only the forces of a damped section need.
+struct DampingBuffers {
+    rate: PackBuffer<{ MOST_POINTS * 9 * WIDTH }>,
+    kept_rate: PackBuffer<{ MOST_BOXES * KEPT * WIDTH }>,
+    power: PackBuffer<{ MOST_POINTS * WIDTH }>,
+}
+
+impl DampingBuffers {
+    fn new() -> Self {
+        DampingBuffers {
+            rate: PackBuffer([0.0; MOST_POINTS * 9 * WIDTH]),
+            kept_rate: PackBuffer([0.0; MOST_BOXES * KEPT * WIDTH]),
+            power: PackBuffer([0.0; MOST_POINTS * WIDTH]),
+        }
+    }
 }
 
 /// The quantity whose matrix is computed: tangents at the points, or damping.
@@ -53,15 +79,15 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         let mut pass = Pass {
             section,
             simd,
-            gradient: PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]),
+            gradient: PackBuffer([0.0; MOST_POINTS * 9 * WIDTH]),
             kept: PackBuffer([0.0; MOST_BOXES * KEPT * WIDTH]),
-            numbers: PackBuffer([0.0; MOST_PACKS * PARAMETERS * WIDTH]),
-            times: PackBuffer([0.0; MOST_PACKS * WIDTH]),
+            numbers: PackBuffer([0.0; MOST_POINTS * PARAMETERS * WIDTH]),
+            times: PackBuffer([0.0; MOST_POINTS * WIDTH]),
             pressures: PackBuffer([0.0; MOST_PACKS * WIDTH]),
         };
         // Parameters that hold for all elements are written once.
         if section.uniform && section.packs() > 0 {
-            let together = (MOST_PACKS / section.points).max(1);
+            let together = (most_points(section) / section.points).max(1);
             pass.read_parameters(&section.group(0, together));
         }
         pass
@@ -104,20 +130,21 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         force: &mut [f64],
     ) -> Result<(), StepError> {
         let (section, simd) = (self.section, self.simd);
-        let mut rate = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut kept_rate = PackBuffer([0.0; MOST_BOXES * KEPT * WIDTH]);
-        let mut stress = PackBuffer([0.0; MOST_PACKS * 9 * WIDTH]);
-        let mut density = PackBuffer([0.0; MOST_PACKS * WIDTH]);
-        let mut power = PackBuffer([0.0; MOST_PACKS * WIDTH]);
-        for group in section.groups(share, MOST_PACKS) {
+        let mut damping = section.damped.then(DampingBuffers::new);
+        let mut stress = PackBuffer([0.0; MOST_POINTS * 9 * WIDTH]);
+        let mut density = PackBuffer([0.0; MOST_POINTS * WIDTH]);
+        for group in section.groups(share, most_points(section)) {
             self.deform(&group, positions, pressures);
             let points = self.points(&group);
-            section.law.stress(simd, points, &mut density.0, &mut stress.0);
+            for (k, points) in points.chunks::<D>().enumerate() {
+                let first = k * MOST_PACKS * WIDTH;
+                section.law.stress(simd, points, &mut density.0[first..], &mut stress.0[first * D * D..]);
+            }
             if section.nodal {
                 let (turns, pressures, stress) = (group.turns, &self.pressures.0, &mut stress.0);
                 simd.run(PressedStress::<D> { points, turns, pressures, stress });
             }
-            if section.damped {
+            if let Some(DampingBuffers { rate, kept_rate, power }) = &mut damping {
                 let (shape, nodes, gradient, times) = (PhantomData, velocities, &mut rate.0, &self.times.0);
                 if E::BOX {
                     let (kept, kept_rate, rate) = (&self.kept.0, &mut kept_rate.0, gradient);
@@ -131,10 +158,10 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
             let (shape, stress, density, force) = (PhantomData, &stress.0, &mut density.0, &mut *force);
             if E::BOX {
                 let (kept, times) = (&self.kept.0, &self.times.0);
-                let rates = section.damped.then_some(Rates { kept: &kept_rate.0, times, power: &mut power.0 });
+                let rates = damping.as_mut().map(|of| Rates { kept: &of.kept_rate.0, times, power: &mut of.power.0 });
                 simd.run(Push::<E, D, N> { shape, group, kept, stress, density, rates, force });
             } else {
-                let power = section.damped.then_some(&mut power.0[..]);
+                let power = damping.as_mut().map(|of| &mut of.power.0[..]);
                 simd.run(Forces::<E, D, N> { shape, group, stress, density, power, force });
             }
             for k in 0..group.packs {
@@ -146,7 +173,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
                 for (total, energy) in totals.energy[row].iter_mut().zip(energy) {
                     *total += energy;
                 }
-                if section.damped {
+                if let Some(DampingBuffers { power, .. }) = &damping {
                     for (total, power) in totals.power[row].iter_mut().zip(&power.0[k * WIDTH..]) {
                         *total += power;
                     }

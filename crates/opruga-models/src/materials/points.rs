@@ -5,7 +5,7 @@ use super::material::{Parameters, Tangent};
 use opruga_math::matrix::Matrix;
 use opruga_math::{Register, WIDTH};
 
-/// The largest number of packs of points that are processed together.
+/// The largest number of packs of points that a law receives together.
 pub(crate) const MOST_PACKS: usize = 9;
 
 /// Memory for some packs of points.
@@ -24,6 +24,17 @@ pub(crate) struct Points<'a> {
     pub(crate) gradient: &'a [f64],
     /// Parameters.
     pub(crate) parameters: &'a [f64],
+}
+
+impl<'a> Points<'a> {
+    /// The same points, at most [`MOST_PACKS`] packs at a time.
+    pub(crate) fn chunks<const D: usize>(self) -> impl Iterator<Item = Points<'a>> {
+        (0..self.count).step_by(MOST_PACKS).map(move |first| Points {
+            count: MOST_PACKS.min(self.count - first),
+            gradient: &self.gradient[first * D * D * WIDTH..],
+            parameters: &self.parameters[first * PARAMETERS * WIDTH..],
+        })
+    }
 }
 
 /// The number of values of [`super::material::Invariants`].
