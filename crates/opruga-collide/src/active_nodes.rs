@@ -7,9 +7,9 @@ use opruga_math::{Register, WIDTH};
 /// Which surfaces hold a node when a collider is processed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Meets {
-    /// Only surfaces on which the node was at the start of the step.
+    /// Only surfaces that the node was on at the start of the step.
     WhatItLiesOn,
-    /// All surfaces behind which the node is.
+    /// All surfaces that the node is behind.
     Everything,
 }
 
@@ -27,7 +27,7 @@ impl ActiveNodes {
         }
         out
     }
-    /// Records the nodes from index `k + offset` on for which `hit` is above 0.
+    /// Marks as active all nodes from index `k + offset` on whose number in `hit` is above 0.
     #[inline(always)]
     pub(crate) fn note<R: Register>(&mut self, k: usize, offset: usize, hit: R) {
         let hit = numbers(hit);

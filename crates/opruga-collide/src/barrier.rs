@@ -8,8 +8,8 @@
 //! two continuous derivatives and grows without bound as g falls to zero. The factor m fades out pairs of nearly parallel
 //! edges, whose closest points jump. κ [N/m] is the stiffness of the bodies at the pair, so the user need not give one.
 //!
-//! Of the second derivatives only κ m b″ ∇g ∇gᵀ is used: this matrix has no negative eigenvalue, and the next iteration
-//! accounts for the curvature of the distance.
+//! Of the second derivatives, only the part κ m b″ ∇g ∇gᵀ is used, because this matrix has no negative eigenvalue. The next
+//! iteration accounts for the curvature of the distance, which is left out.
 //!
 //! The friction of a pair with the normal force N = −κ m b′ depends on its slip s in the step, perpendicular to the normal:
 //!
@@ -17,8 +17,8 @@
 //! t = λ + k s,   D = |t|²/(2 k) where |t| ≤ µ N, else µ N |t|/k − (µ N)²/(2 k)
 //! ```
 //!
-//! Its force −∂D/∂s is at most µ N. λ is found by iteration, λ ← the force, so that sticking pairs do not slip (method of
-//! multipliers).
+//! The friction force −∂D/∂s is at most µ N. Repeated searches find λ: after each search, λ is replaced by the opposite of this
+//! force. In the end, sticking pairs do not slip (method of multipliers).
 //!
 //! Sources: M. Li and others, Incremental potential contact, ACM Trans. Graph. 39 (2020), equations 6 and 24; M. Li, D. M. Kaufman, C. Jiang,
 //! Codimensional incremental potential contact (2021), for the thickness; P. Alart, A. Curnier, A mixed formulation for frictional contact
@@ -40,7 +40,8 @@ use opruga_math::{Lane, Simd};
 /// The smallest fraction of its gap that a pair keeps in one iteration; the value is that of the source (2020, section 5).
 const KEPT: f64 = 0.1;
 
-/// The fade-out of nearly parallel edges: the squared sine of their angle, as in the source (2020, section 5.3).
+/// The squared sine of the angle between two edges below which their barrier fades out. The source uses the same value (2020,
+/// section 5.3).
 const PARALLEL: f64 = 1e-3;
 
 /// The stiffness of sticking, relative to that of the pair. The ratio of this stiffness to the response of the bodies determines
@@ -114,7 +115,7 @@ impl<const D: usize> Rubbing<D> {
         }
         subtract(&sum, &scaled(&self.normal, dot(&sum, &self.normal)))
     }
-    /// Returns t and its magnitude [N].
+    /// Returns the vector t of the formula for friction, and its magnitude [N].
     fn pull(&self, slip: &[f64; D]) -> ([f64; D], f64) {
         let pull = add(&self.multiplier, &scaled(slip, self.stiffness));
         (pull, length(&pull))
@@ -237,7 +238,8 @@ impl<const D: usize> Barrier<D> {
         Err(Trouble::TooMany { found: most + 1 })
     }
 
-    /// Whether the boxes of a pair come within reach on the paths examined last. Pairs that only the margin adds do not.
+    /// Whether the boxes of a pair come within reach on the paths examined last. A pair that was found only because of the
+    /// margin does not.
     fn comes_close(&self, surface: &Surface<D>, distances: [f64; 2], [a, b]: [u32; 2], with_facet: bool) -> bool {
         let at = |p: u32| self.boxes[p as usize];
         let (first, second, points) = if with_facet {
@@ -257,7 +259,7 @@ impl<const D: usize> Barrier<D> {
         vertex_facet.iter().map(|pair| (*pair, true)).chain(edge_edge.iter().map(|pair| (*pair, false)))
     }
 
-    /// The closest points of a pair.
+    /// Returns the closest points of a pair.
     fn closest(&self, surface: &Surface<D>, x: &[[f64; D]], [a, b]: [u32; 2], with_facet: bool) -> Pair<D> {
         let (mut points, mut weights) = ([a; 4], [0.0; 4]);
         if with_facet {
@@ -338,7 +340,7 @@ impl<const D: usize> Barrier<D> {
         Ok(())
     }
 
-    /// κ of a pair: both features in series, each with the mean compliance of its points.
+    /// Returns κ of a pair: the stiffness of both features in series, each with the mean compliance of its points.
     fn stiffness(&self, points: &[u32; 4], with_facet: bool) -> f64 {
         let mean =
             |points: &[u32]| points.iter().map(|p| self.softness[*p as usize]).sum::<f64>() / points.len() as f64;
@@ -368,9 +370,9 @@ impl<const D: usize> Barrier<D> {
 }
 
 impl<const D: usize> Touching<D> {
-    /// Records the contacts of the barrier in a step of h [s] for reports. Takes the pairs and their friction, both ascending,
-    /// and the displacements of the points at the end of the step [m]. Friction uses the normal forces of the previous round,
-    /// so it may act on pairs that no longer press.
+    /// Records the contacts of the barrier in a step of h [s] for reports. The arguments are the pairs and their friction, both
+    /// in ascending order of their keys, and the displacements of the points at the end of the step [m]. Friction uses the
+    /// normal forces of the previous round, so it may act on pairs that no longer press.
     pub fn take_pressed(&mut self, h: f64, pressed: &[Pressed<D>], rubbing: &[Rubbing<D>], moved: &[[f64; D]]) {
         self.rows.clear();
         self.spread.clear();

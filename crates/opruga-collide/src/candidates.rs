@@ -42,7 +42,7 @@ pub(crate) fn wider<const D: usize>([mut low, mut high]: Bounds<D>, distance: f6
     [low, high]
 }
 
-/// One number per pair, which is compared faster than two.
+/// Combines the two numbers of a pair into one, which is compared faster than two.
 pub(crate) fn key([a, b]: &[u32; 2]) -> u64 {
     u64::from(*a) << 32 | u64::from(*b)
 }
@@ -61,7 +61,8 @@ fn merge(pairs: &mut Vec<[u32; 2]>, fresh: &[[u32; 2]], merged: &mut Vec<[u32; 2
     std::mem::swap(pairs, merged);
 }
 
-/// The least number of pairs of bodies whose features are compared as one part. So many pairs take some tens of microseconds.
+/// The least number of pairs of bodies whose features are compared as one part. The comparison of this many pairs takes some
+/// tens of microseconds.
 const LEAST_PART: usize = 16;
 
 impl<const D: usize> Candidates<D> {
@@ -70,7 +71,7 @@ impl<const D: usize> Candidates<D> {
     ///
     /// `meet` returns whether two bodies, or a body and itself, may touch. Two features do not form a pair if they share a
     /// point, or if a node carries points of both. A facet of an obstacle does not form a pair with a vertex of a body whose
-    /// nodes are held by obstacles. Returns false if there are more than `most` pairs; the search then ends.
+    /// nodes are held by obstacles. If there are more than `most` pairs, the search ends and returns false.
     pub fn find(
         &mut self,
         surface: &Surface<D>,
@@ -83,8 +84,9 @@ impl<const D: usize> Candidates<D> {
         self.refresh(surface, boxes, own, distances, most, meet, |_, _| true)
     }
 
-    /// Searches as [`Self::find`] does, but only between those bodies (and within those) whose present pairs are incomplete
-    /// according to `stale`. All other pairs are kept. `own` gives the boxes of points for pairs within one body.
+    /// Searches as [`Self::find`] does, but only for the pairs of bodies (or of a body with itself) whose features must be
+    /// compared again according to `stale`. The features of all other pairs of bodies are kept. `own` gives the boxes of points
+    /// for pairs within one body.
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn refresh(
         &mut self,
@@ -133,8 +135,8 @@ impl<const D: usize> Candidates<D> {
         counted.into_inner() <= most
     }
 
-    /// Lists the pairs of bodies whose boxes are closer than the distance for such a pair [m], each in both orders. Also lists
-    /// bodies that touch themselves, as pairs of a body with itself.
+    /// Lists the pairs of bodies whose boxes overlap after each was enlarged by a distance [m], in both orders. Bodies that
+    /// touch themselves are listed as pairs of a body with itself.
     fn find_close_bodies(
         &mut self,
         surface: &Surface<D>,

@@ -1,9 +1,10 @@
 //! Continuous collision detection: whether, and when, moving features come closer than a distance.
 //!
-//! Additive steps: features at distance d that approach at a speed of at most l (per step) cannot meet before (d − ξ)/l. The time
-//! advances by nine tenths of this bound again and again, until d − ξ has fallen to a billionth of its initial value. No
-//! polynomial root is computed, so rounding cannot hide anything: features that meet are always found. Features that pass at less
-//! than a billionth of their initial distance count as meeting too.
+//! The time advances in additive steps. Features at the distance d that approach at a speed of at most l (per step of the
+//! integrator) cannot come closer than a distance ξ before the time (d − ξ)/l. The time advances by nine tenths of this bound
+//! again and again, until d − ξ has fallen to a billionth of its initial value. No polynomial root is computed, so rounding
+//! errors cannot hide a meeting: features that meet are always found. Features that pass at less than a billionth of their
+//! initial distance count as meeting too.
 
 use crate::closest::{closest_of_segments, closest_on_facet, mean};
 use crate::vector::{dot, subtract};
@@ -17,12 +18,14 @@ const PART: f64 = 0.9;
 /// instead of 10 (14 with a millionth).
 const LEFT: f64 = 1e-9;
 
-/// The number of steps after which features count as meeting. Features that approach in a straight line take two or three; those
-/// that rotate about one another at a constant distance take the most, since each step advances by at least d/l.
+/// The number of steps after which features count as meeting. Features that approach head-on need about ten steps, because each
+/// step reduces their distance to a tenth. Features that rotate about one another at a constant distance need the most steps,
+/// because the bound does not grow.
 const MOST_STEPS: usize = 1000;
 
 /// Returns the fraction of the step at which a vertex comes closer to a facet than `distance` [m], or a slightly smaller
-/// fraction; none if the vertex stays farther away. All points move in straight lines from `[0]` to `[1]`.
+/// fraction; none if the vertex stays farther away. All points move in straight lines from the positions `[0]` to the positions
+/// `[1]`.
 ///
 /// There are no false negatives. Features that are this close at the start meet at 0.
 ///

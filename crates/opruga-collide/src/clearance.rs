@@ -28,8 +28,8 @@ pub(crate) struct Clearance<const D: usize> {
     push: Vec<f64>,
     /// Upper bounds on both paths of every body at the end of this step [m], wherever contact pushes its points.
     ends: Vec<[f64; 2]>,
-    /// For every body, its path at the last search for its own pairs, and the distance around its points that this search
-    /// covered [m].
+    /// For every body, its path at the last search for its own pairs (those of the body with itself), and the distance around
+    /// its points that this search covered [m].
     own: Vec<[f64; 2]>,
     /// For every body, whether the present search includes its own pairs.
     due: Vec<bool>,
@@ -55,7 +55,7 @@ struct Motion<const D: usize> {
 struct Known {
     features: [u32; 2],
     bodies: [u32; 2],
-    /// Its latest known distance, plus the paths that both bodies had then [m].
+    /// The latest known distance of the pair, plus the paths of both bodies at that time [m].
     until: f64,
 }
 
@@ -70,7 +70,8 @@ fn of_both(paths: &[[f64; 2]], [a, b]: &[u32; 2]) -> f64 {
 /// The entry of a body whose own pairs have not been searched for.
 const NEVER: [f64; 2] = [0.0, f64::NEG_INFINITY];
 
-/// Paths restart at zero beyond this many margins: up to this length, additions to them are rounded to 1e-12 of a margin.
+/// Paths that are longer than this many margins restart at zero. Up to this length, additions to them are rounded to 1e-12 of a
+/// margin.
 const LONG: f64 = 1e4;
 
 /// Replaces the known pairs by new ones, both in ascending order. The bounds of pairs in both lists are kept.
@@ -141,8 +142,8 @@ impl<const D: usize> Clearance<D> {
         self.own.fill(NEVER);
     }
 
-    /// How far points of a body may move relative to their mean in this step, plus the additional distance at which pairs may
-    /// be requested [m].
+    /// Returns how far points of a body may move relative to their mean in this step, plus the additional distance at which
+    /// pairs may be requested [m].
     fn wanted(&self, body: usize, margin: f64) -> f64 {
         2.0 * self.push[body] + 0.125 * margin
     }
@@ -187,7 +188,8 @@ impl<const D: usize> Clearance<D> {
         [-width, width].map(|side| self.x[point as usize].map(|c| c + side))
     }
 
-    /// Takes over the pairs that a search has found, both lists ascending. The bounds of known pairs are kept.
+    /// Stores the pairs that a search has found. Both lists of the candidates are ascending. The bounds of known pairs are
+    /// kept.
     pub(crate) fn take(&mut self, surface: &Surface<D>, candidates: &Candidates<D>, margin: f64) {
         let body = |point: u32| surface.body[point as usize];
         let of_facet = |[p, f]: [u32; 2]| [body(p), body(surface.facets[f as usize][0])];

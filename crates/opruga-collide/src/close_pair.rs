@@ -4,14 +4,14 @@ use crate::row::Row;
 use crate::spread::Spread;
 use crate::surface::Surface;
 
-/// Two features that come close in the step: what a [`Row`] needs, without masses and impulses.
+/// Two features that come close in the step: the content of a [`Row`] without masses and impulses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ClosePair<const D: usize> {
     pub(crate) id: u64,
     pub(crate) points: [u32; 4],
     pub(crate) weights: [f64; 4],
     pub(crate) normal: [f64; D],
-    /// The gap at the start of the step, less the thickness; and the thickness [m].
+    /// The gap at the start of the step, minus the thickness; and the thickness [m].
     pub(crate) gap: f64,
     pub(crate) thickness: f64,
     pub(crate) friction: f64,

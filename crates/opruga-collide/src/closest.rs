@@ -119,7 +119,8 @@ pub fn closest_of_segments<const D: usize>(a: &[[f64; D]; 2], b: &[[f64; D]; 2])
     [s, t]
 }
 
-/// The squared sine below which two edges count as parallel: a hundred times the rounding of the products, 1e-16.
+/// The squared sine of their angle below which two edges count as parallel. It is a hundred times the rounding error of the
+/// products, 1e-16.
 pub(crate) const PARALLEL: f64 = 1e-14;
 
 /// Returns the weighted sum Σ wᵢ xᵢ of points.

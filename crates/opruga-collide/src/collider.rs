@@ -20,7 +20,7 @@ pub(crate) struct Law {
     pub(crate) rest_speed: f64,
     /// The distance that nodes keep [m].
     pub(crate) thickness: f64,
-    /// The size of the coordinates of the shape [m], against which rounding is measured.
+    /// The size of the coordinates of the shape [m], to which rounding errors are proportional.
     pub(crate) extent: f64,
 }
 
@@ -169,8 +169,9 @@ impl<const D: usize> Collider<D> {
     }
     /// How far it may move, relative to nodes that stay within a box, in a step that ends at `time`.
     ///
-    /// The paths of nodes are straight lines in the rotating frame. The straight line in space, (1 − s) T(0) a + s T(1) b,
-    /// deviates from T(s) ((1 − s) a + s b) by at most φ |b − a|/4 + φ² r/8 for an angle φ and radius r.
+    /// The paths of nodes are straight lines from a to b in the rotating frame, and T(s) is the rotation at the fraction s of
+    /// the step. The straight line in space, (1 − s) T(0) a + s T(1) b, deviates from T(s) ((1 − s) a + s b) by at most φ |b −
+    /// a|/4 + φ² r/8 if the frame rotates by an angle φ and the path is within a radius r.
     pub(crate) fn sweep(&self, time: f64, h: f64, space: &[[f64; D]; 2]) -> Reach<D> {
         let mut reach = self.reach(time - h, time);
         if self.motion.turns {
@@ -211,7 +212,7 @@ impl<const D: usize> Collider<D> {
                 let clear = plane.least_gap(low, high) - ahead >= margin;
                 !clear
             }
-            // A hollow that rotates about a point other than its centre may be anywhere.
+            // A rotating hollow ball may be anywhere, because its pivot need not be its centre.
             Part::Ball(ball) if ball.sign < 0.0 => {
                 let mut far = [0.0; D];
                 for d in 0..D {
@@ -398,7 +399,7 @@ fn convex<const D: usize>(values: &Values) -> Result<Built<D>, BuildError> {
     let flat = || if D == 2 { Refusal::NoArea { count } } else { Refusal::NoVolume { count } };
     let (facets, faces) = Facets::convex(&points).map_err(|_| refused(values, flat()))?;
     let form = if D == 2 {
-        // Each face runs clockwise, but the faces are listed counterclockwise: their second corners form the polygon
+        // Each face runs clockwise, but the faces are listed counterclockwise. Their second corners therefore list the polygon
         // counterclockwise.
         Form::Polygon { points: faces.iter().map(|f| points[f[1]]).collect() }
     } else {

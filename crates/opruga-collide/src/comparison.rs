@@ -10,8 +10,9 @@ use core::ops::Range;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use opruga_math::{Simd, WIDTH};
 
-/// Up to this number of features, or of packs of pairs, the features of two bodies are compared with one another, eight at a time.
-/// Larger sets are sorted into cells: finding the cells of a feature takes as long as a thousand comparisons.
+/// The features of two bodies are compared directly, eight at a time, if the second body has at most this many features or if
+/// there are at most this many packs of pairs. Otherwise, features are sorted into cells. To find the cells of a feature takes as
+/// long as a thousand comparisons.
 const FEW: usize = 1024;
 
 /// One part of the pairs of bodies, and the pairs of features found in it.
@@ -36,12 +37,12 @@ pub(crate) struct Comparisons<'a, O, const D: usize> {
     pub(crate) own: O,
     /// The boxes around the points of every body [m].
     pub(crate) bodies: &'a [Bounds<D>],
-    /// Each pair in both orders.
+    /// The pairs of bodies, each in both orders.
     pub(crate) pairs: &'a [[u32; 2]],
-    /// Features that are farther apart than this do not form a pair [m]: between bodies, and with obstacles.
+    /// The largest distances of features that form a pair [m]: between bodies, and with obstacles.
     pub(crate) distances: [f64; 2],
     pub(crate) simd: Simd,
-    /// The largest number of pairs of features, and the number of those found by all parts.
+    /// The largest allowed number of pairs of features, and the number that all parts together have found so far.
     pub(crate) most: usize,
     pub(crate) counted: &'a AtomicUsize,
 }

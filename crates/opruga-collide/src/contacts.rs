@@ -115,7 +115,8 @@ impl<const D: usize> Colliders<D> {
         let parts = || self.all.iter().filter(|collider| self.holds(collider)).flat_map(|collider| &collider.parts);
         parts().nth(1).is_some() && parts().any(Part::has_edges)
     }
-    /// Whether several such parts are so close to the nodes of a tile that nodes may move from one solid to another.
+    /// Whether several parts, at least one of them a solid with edges, are so close to the nodes of a tile that nodes may move
+    /// from one to another.
     fn has_seams_in(&self, moved: &Moved<D>, space: &[[f64; D]; 2]) -> bool {
         let (mut count, mut edges) = (0, false);
         for collider in self.all.iter().filter(|collider| self.holds(collider)) {
@@ -164,13 +165,13 @@ impl<const D: usize> Contacts<D> for Colliders<D> {
         if used == 0 {
             return 0;
         }
-        // The box around the nodes, from which distant colliders are recognised and skipped.
+        // Colliders that are far from this box around the nodes are skipped.
         let simple = self.is_simple();
         let mut space = if simple { None } else { Some(simd.run(Bounds { moved, used })) };
         let (mut active, mut ever) = (ActiveNodes([0; TILE / WIDTH]), false);
-        // First apply the surfaces on which nodes were: the first solid then holds a node that slides onto a second one until
-        // it is on the second, and the node does not hit the side of the second. Then apply all colliders more than once, since
-        // one may push a node into another.
+        // First apply only the surfaces that nodes were on. If a node slides from one solid onto a second one, the first solid
+        // then holds it until it is on the second, and the node does not hit the side of the second. Then apply all colliders
+        // more than once, because one may push a node into another.
         let seams = self.has_seams() && space.as_ref().is_some_and(|space| self.has_seams_in(moved, space));
         let first = seams.then_some(Meets::WhatItLiesOn);
         for meets in first.into_iter().chain([Meets::Everything; ROUNDS]) {

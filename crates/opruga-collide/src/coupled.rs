@@ -1,7 +1,7 @@
 //! Bodies whose points respond to impulses together, such as bodies with implicit integrators.
 //!
-//! An impulse on one point moves all of them, Δv = Y p. Columns of Y are requested when contacts need them, and are kept as long
-//! as the body responds with the same matrix.
+//! An impulse p on one point changes the velocities of all of them: Δv = Y p. Columns of Y are requested when contacts need
+//! them, and are kept as long as the body responds with the same matrix.
 
 use crate::spread::Weighted;
 use crate::vector::scaled;
@@ -9,12 +9,12 @@ use core::ops::Range;
 
 /// The response of the points of a body to impulses.
 pub trait Respond<const D: usize> {
-    /// The number of the matrix with which a body responds now: the same number means the same responses. `None` if it cannot
-    /// respond.
+    /// Returns a number that identifies the matrix with which a body responds now. Equal numbers mean equal responses. `None`
+    /// if the body cannot respond.
     fn matrix(&mut self, body: usize) -> Option<u64>;
-    /// Computes the mean velocities over the step of all points of the body due to unit impulses along every axis at one point
-    /// [1/kg]. `out[q][d][i]` is that of point q along axis i due to an impulse along axis d. Bodies and their points are
-    /// numbered in the order in which they were added. Returns whether the response is known.
+    /// Computes the responses of all points of the body to unit impulses along every axis at one point: their mean velocities
+    /// over the step [1/kg]. `out[q][d][i]` is the velocity of point q along axis i due to an impulse along axis d. Bodies and
+    /// their points are numbered in the order in which they were added. Returns whether the response is known.
     fn respond(&mut self, body: usize, point: usize, out: &mut [[[f64; D]; D]]) -> bool;
 }
 
@@ -31,8 +31,8 @@ pub struct Coupled<const D: usize> {
 #[derive(Clone, Debug)]
 struct Body<const D: usize> {
     points: Range<usize>,
-    /// The number of the matrix with which it responds, once known in this solution; and the number of the matrix to which the
-    /// columns belong.
+    /// The number of the matrix with which the body responds in this solution, if already known; and the number of the matrix
+    /// to which the columns belong.
     matrix: Option<u64>,
     matrix_of_columns: Option<u64>,
     /// The column of each point; `NONE` if it is not known.
@@ -87,12 +87,12 @@ impl<const D: usize> Coupled<D> {
         self.of_point.get(point as usize).is_some_and(|body| *body != NONE)
     }
 
-    /// Whether a row has any point that responds together with others.
+    /// Whether a row acts on any point that responds together with others.
     pub(crate) fn holds(&self, (points, weights): Weighted<'_>) -> bool {
         !self.bodies.is_empty() && (0..points.len()).any(|k| weights[k] != 0.0 && self.body_of(points[k]).is_some())
     }
 
-    /// Starts the accumulation of impulses.
+    /// Discards all impulses, so that those of a new solution can be added.
     pub(crate) fn begin(&mut self) {
         for body in &mut self.bodies {
             body.matrix = None;

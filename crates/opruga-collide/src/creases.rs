@@ -4,7 +4,7 @@ use crate::vector::{add, dot, scaled, subtract};
 use core::array::from_fn;
 use opruga_mesh::Mesh;
 
-/// The smallest angle between the normals of two facets at an edge, in radians.
+/// The angle between the normals of two facets, in radians, from which their common side counts as an edge.
 const FLAT: f64 = 1e-9;
 
 /// A surface whose points are sorted: those within plane faces come first.
@@ -16,8 +16,9 @@ pub(crate) struct Creases<const D: usize> {
 }
 
 impl<const D: usize> Creases<D> {
-    /// Finds the corners and edges. The nodes of a body that lies on a plane face already hold it there: lines and points within
-    /// the face would hold it a second time, along a normal that rounding has rotated.
+    /// Finds the corners and edges. Lines and points within a plane face are not among them. If a body lies on the face, contact
+    /// of its nodes with the face already holds it. Lines and points within the face would hold the body a second time, along a
+    /// normal that rounding errors have rotated.
     pub(crate) fn of(mut mesh: Mesh<D>) -> Creases<D> {
         // The sides of every facet and wire, and the corner opposite to each; in the plane sides are points.
         let mut sides: Vec<([u32; 2], u32)> = Vec::new();

@@ -97,7 +97,8 @@ fn of_vertex_and_facet<S: Lane, const D: usize>(p: &[S; D], corners: &[[S; D]; D
         let normal = cross(&ab, &ac);
         let size = dot(&normal, &normal);
         side = dot(&normal, &ap);
-        // Whether the point is above the inside of the triangle: within all three sides. A triangle without area has no inside.
+        // Whether the projection of the point onto the plane of the triangle is within all three sides. A triangle without area
+        // has no inside.
         let mut within = (S::splat(PARALLEL) * dot(&ab, &ab) * dot(&ac, &ac)).less(size);
         for (from, to) in [(a, b), (b, c), (c, a)] {
             let inwards = cross(&normal, &subtract(to, from));
@@ -118,7 +119,7 @@ fn of_edges<S: Lane, const D: usize>(a: &[[S; D]; 2], b: &[[S; D]; 2]) -> S {
     let denominator = aa * ee - ab * ab;
     let crossing = (S::splat(PARALLEL) * aa * ee).less(denominator);
     let mut s = S::select(crossing, unit((ab * f - c * ee) / denominator), S::zero());
-    // The closest point of a second segment without length is its start.
+    // If the second segment has no length, its closest point is its start.
     let t = S::select(S::zero().less(ee), (ab * s + f) / ee, -S::one());
     let (before, behind) = (t.less(S::zero()), S::one().less(t));
     s = S::select(before, unit(-c / aa), S::select(behind, unit((ab - c) / aa), s));

@@ -2,9 +2,9 @@
 
 use opruga_math::{Pack, WIDTH, Work};
 
-/// The number of rows from which a block of columns is subtracted in one pass: each number of the block is loaded once for all of
-/// them. A pack has two registers of AVX2, so four rows, the block and a factor fit into its sixteen registers. Results do not
-/// depend on it (`solutions_satisfy_their_equations_at_every_size` covers remaining rows).
+/// The number of rows from which a block is subtracted in one pass. Each number of the block is loaded once for all of these
+/// rows. A pack fills two registers of AVX2, so four rows, the block and a factor fit into the sixteen registers of AVX2. Results
+/// do not depend on this number (`solutions_satisfy_their_equations_at_every_size` covers remaining rows).
 const LINES: usize = 4;
 
 /// Adds `factor` times `from` to `to`, for whole packs.
@@ -22,7 +22,8 @@ impl Work for Add<'_> {
     }
 }
 
-/// A loop over indices, because iterator adapters are compiled without the vector instructions of their caller.
+/// Adds `factor` times `from` to `to`. The loop runs over indices, because iterator adapters are compiled without the vector
+/// instructions of their caller.
 #[inline(always)]
 fn add_rows<P: Pack>(from: &[f64], factor: f64, to: &mut [f64]) {
     let (factor, from, to) = (P::splat(factor), from.as_chunks::<WIDTH>().0, to.as_chunks_mut::<WIDTH>().0);

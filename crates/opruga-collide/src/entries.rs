@@ -59,8 +59,8 @@ impl<const D: usize> NodePaths<D> {
     pub(crate) fn look_for_entries<T: Shape<D>>(&self, shape: &T, margin: f64, found: &mut Found<D>) {
         for l in (0..WIDTH).filter(|l| self.asked[*l] != 0.0) {
             let [a, b] = self.of(l);
-            // If another contact keeps a node on the surface, the node may pass edges, because no face is in its way there. If
-            // no contact keeps a node that is exactly at the junction of two solids, the node is in both of them.
+            // If another contact keeps a node on the surface, the node may pass edges, because no face is in its way there. A
+            // node exactly at the junction of two solids that no contact keeps on the surface counts as inside both of them.
             let kept = T::FACES && self.active[l] > 0.0 && found.gap[l] >= -self.small[l];
             if kept && is_on_edge(shape, margin, &b) {
                 found.set(l, (f64::INFINITY, [0.0; D]));
@@ -70,7 +70,7 @@ impl<const D: usize> NodePaths<D> {
         }
     }
 
-    /// Finds the nodes that were on a shape and enter it. All other nodes count as far away.
+    /// Finds the nodes that were on a shape and enter it. The gaps of all other nodes become infinite.
     #[inline(never)]
     pub(crate) fn look_for_supports<T: Shape<D>>(&self, shape: &T, margin: f64, found: &mut Found<D>) {
         for l in 0..WIDTH {

@@ -49,7 +49,7 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
         let mass = moved.mass.at(index);
         let (lane, bit) = (index % WIDTH, 1u8 << (k % WIDTH));
         let is_active = |active: &ActiveNodes| active.0.get(k / WIDTH).is_some_and(|bits| bits & bit != 0);
-        // A node that one facet of a thin surface pushes out may be pushed through another facet, which then pushes it.
+        // One facet of a thin surface may push a node through another facet, which then also pushes the node.
         let mut through = false;
         for _ in 0..if surface.facets.solid { 1 } else { PUSHES } {
             let (x, v) = (moved.x.at(index), moved.v.at(index));
@@ -70,8 +70,8 @@ pub(crate) fn hold_back_by_facets<const D: usize>(
                 break;
             }
             let obstacle = surface.pose.velocity_at(&x);
-            // As for other solids: if another contact keeps a node on the surface, the node may pass edges. If no contact keeps
-            // a node that is exactly at the junction of two solids, the node is in both of them.
+            // As for other solids: if another contact keeps a node on the surface, the node may pass edges. A node exactly at
+            // the junction of two solids that no contact keeps on the surface counts as inside both of them.
             if surface.facets.solid && !lies && gap.abs() <= surface.facets.grain().larger(rounding(law, &x)) {
                 if !is_active(active) {
                     if let Some((behind, face)) = entry(surface.facets, surface.margin, &from, &to) {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Finds facets in space.
 trait Tree<const D: usize>: Send + Sync + Debug {
-    /// The nearest point on all facets nearer than `within` [m]: the point and the facet.
+    /// Returns the nearest point of all facets and the index of its facet, if the point is nearer than `within` [m].
     fn nearest(&self, x: &[f64; D], within: f64) -> Option<([f64; D], usize)>;
     /// Calls `call` with every facet whose bounding box overlaps a box.
     fn visit(&self, low: &[f64; D], high: &[f64; D], call: &mut dyn FnMut(usize));
@@ -51,7 +51,7 @@ macro_rules! tree {
                 Some((out, facet as usize))
             }
             fn visit(&self, low: &[f64; D], high: &[f64; D], call: &mut dyn FnMut(usize)) {
-                // The comparison is made in this crate, so that the loop is compiled with its kernels.
+                // The comparison is made here and not in parry, so that the loop is compiled with the kernels of this crate.
                 let meets = |node: &$parry::partitioning::BvhNode| {
                     let (least, greatest) = (node.mins(), node.maxs());
                     $((least[$axis] <= high[$axis % D]) & (low[$axis % D] <= greatest[$axis]))&*
@@ -87,8 +87,8 @@ pub(crate) struct Facets<const D: usize> {
     /// The largest coordinates.
     pub(crate) high: [f64; D],
     half_width: f64,
-    /// The distance from the surface below which the direction to the surface is only rounding [m]. Nearer nodes are on the
-    /// surface.
+    /// The distance from the surface below which the computed direction to the surface consists only of rounding errors [m].
+    /// Nearer nodes count as on the surface.
     grain: f64,
 }
 
@@ -144,7 +144,7 @@ impl<const D: usize> Facets<D> {
         out.grain = 0.01 * out.resolved();
         Ok(out)
     }
-    /// A distance that is large enough to have a direction in spite of rounding [m].
+    /// Returns a distance from the surface at which the direction to the surface is well defined in spite of rounding [m].
     fn resolved(&self) -> f64 {
         let mut far = 0.0;
         for d in 0..D {
@@ -156,7 +156,7 @@ impl<const D: usize> Facets<D> {
     pub(crate) fn skin(&self) -> f64 {
         if self.solid { 0.0 } else { self.resolved() }
     }
-    /// The distance below which a node is on a facet [m].
+    /// The distance below which a node counts as on a facet [m].
     pub(crate) fn grain(&self) -> f64 {
         self.grain
     }
@@ -189,7 +189,7 @@ impl<const D: usize> Facets<D> {
         {
             return found;
         }
-        // A node on the surface has no direction towards the surface.
+        // From a node on the surface, there is no direction towards the surface.
         if gap <= self.grain || gap >= margin + reach {
             return (gap - margin, normal);
         }
@@ -236,7 +236,8 @@ impl<const D: usize> Facets<D> {
     }
 }
 
-/// The convex solid as the intersection of the half-spaces behind its faces: exact inside, a lower bound outside.
+/// The convex solid as the intersection of the half-spaces behind its faces. The signed distance is exact inside and a lower
+/// bound outside.
 impl<const D: usize> Shape<D> for Facets<D> {
     const FACES: bool = true;
     fn visit_faces(&self, x: &[f64; D], grain: f64, visit: &mut dyn FnMut(f64, [f64; D])) {
@@ -298,8 +299,8 @@ impl<const D: usize> Facet<D> {
         Some(Facet { corner: corners[0], normal: scaled(&normal, 1.0 / size), weights })
     }
     /// The position along a segment (0 … 1) at which it crosses the facet, and how far its end is behind the facet: positive if
-    /// it came from the side of the normal, otherwise negative. A segment that begins closer than `grain` to the facet begins on
-    /// it, and comes from the side of the normal.
+    /// it came from the side of the normal, otherwise negative. A segment that begins closer than `grain` to the facet counts as
+    /// beginning on it and as coming from the side of the normal.
     fn crossed(&self, a: &[f64; D], b: &[f64; D], grain: f64) -> Option<(f64, f64)> {
         let from = dot(&subtract(a, &self.corner), &self.normal);
         let from = if from.abs() <= grain { 0.0 } else { from };

@@ -1,4 +1,4 @@
-//! From candidates to contacts: the relevant gaps.
+//! The selection of contacts among the candidates, according to their gaps.
 
 use crate::close_pair::ClosePair;
 use crate::closest::facet_normal;
@@ -14,9 +14,9 @@ use core::ops::Range;
 use opruga_math::Lane;
 
 /// A surface and a facet face each other if the cosine of the angle between their normals is below this number. The cosine is
-/// −0.58 for the corner of a cube and a facet that it meets, and 0 for a side that begins next to a flat face; deformation
-/// changes both. Without this limit, points near an edge of the other body leave sideways while others do not, and the cubes of
-/// `cubes_that_begin_inside_one_another_part` end up interlocked.
+/// −0.58 for the corner of a cube and a facet that it meets, and 0 for a point of a flat face and a side of the other body that
+/// is perpendicular to this face. Deformation changes both values. Without this limit, points near an edge of the other body
+/// leave sideways while others do not, and the cubes of `cubes_that_begin_inside_one_another_part` end up interlocked.
 const FACING: f64 = -0.3;
 
 /// Finds, in one part of the candidates, the pairs that come close in a step of h [s].
@@ -79,12 +79,14 @@ impl<const D: usize> Finder<'_, D> {
             inside |= *distance == f64::NEG_INFINITY;
         }
         if inside {
-            // For a vertex inside a body, the nearest facet is needed, whatever was known before.
+            // For a vertex inside a body, the nearest facet is needed, so all candidates are examined, whatever their bounds
+            // are.
             self.found.around.clear();
             self.found.close[0].truncate(close);
             self.take_gaps_of(self.candidates_of(unclear), 0.0, true);
         }
-        // A vertex that seems to be deep inside may be outside, in front of a facet that is nearer but beyond the reach.
+        // A vertex that seems to be deep inside may be in front of a nearer facet, which was left out because the vertex cannot
+        // reach it in this step.
         let known = -self.touching.reach.push_of(vertex) - self.thickest_at(vertex);
         // Bodies at rest may begin deep inside one another.
         if self.touching.at_once || self.found.around.iter().any(|(row, _)| row.gap < known) {
@@ -138,7 +140,8 @@ impl<const D: usize> Finder<'_, D> {
         if bodies[0] == bodies[1] && gap.gap < 0.0 {
             (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
         }
-        // Edges deep inside one another often belong to opposite sides, so vertices and facets determine the direction out.
+        // Edges that are deep inside one another often belong to opposite sides of the bodies. Vertices and facets then
+        // determine the direction out.
         if gap.gap < -law.thickness {
             return;
         }
@@ -146,12 +149,12 @@ impl<const D: usize> Finder<'_, D> {
         self.take_around(true);
     }
 
-    /// Activates the pairs around a vertex or of two edges. Pairs that do not meet by themselves are only watched. Pairs that
-    /// cannot move are dropped when they are activated.
+    /// Activates the pairs around a vertex or of two edges. Pairs that would not meet in the free motion are only watched.
+    /// Pairs that cannot move are dropped when they are activated.
     ///
     /// Pairs of edges are inactive at first unless they pressed in the previous step. The same is true of all pairs if there are
-    /// coupled bodies. Where vertices and facets hold surfaces, few edges press, and of the pairs near coupled bodies only a
-    /// quarter press. Overlapping pairs are active, because they must be separated.
+    /// coupled bodies. Where contacts of vertices and facets already keep surfaces apart, few edges press. Near coupled bodies,
+    /// only a quarter of the pairs press. Overlapping pairs are active, because they must be separated.
     fn take_around(&mut self, of_edges: bool) {
         let starts_inactive =
             !self.touching.at_once && (of_edges || self.touching.coupled.count() > 0 && !self.touching.coupled.apart);
@@ -259,8 +262,9 @@ impl<const D: usize> Finder<'_, D> {
             self.touching.at_once && self.touching.last.binary_search_by_key(&close.id, |(id, ..)| *id).is_ok();
         let meets = meets && (end < 0.0 || close.gap < 0.0 || self.h * comes > close.gap || presses);
         if law.restitution > 0.0 && meets && close.gap > 0.0 {
-            // The pair meets within the step, but the force acts until the end of the step. So s² = u² + 2 a g, and s is
-            // limited to the range between the speeds at both ends.
+            // The pair meets within the step, but the force acts until the end of the step. The speed s of the impact therefore
+            // follows from s² = u² + 2 a g, with the approach u and the gap g at the start of the step and the acceleration a.
+            // It is limited to the range between the approaches at both ends of the step.
             let square = came * came + 2.0 * (comes - came) / self.h * close.gap;
             let speed = square.larger(0.0).sqrt().smaller(came.larger(comes)).larger(came.smaller(comes));
             if speed > self.touching.laws.rest_speed {
@@ -270,7 +274,7 @@ impl<const D: usize> Finder<'_, D> {
         self.found.around.push((close, meets));
     }
 
-    /// Whether the relative motion of a pair within the step exceeds a quarter of a feature.
+    /// Whether the relative displacement of a pair within the step exceeds a quarter of the length of an edge of its features.
     fn goes_far(&self, gap: &Gap<D>, with_facet: bool) -> bool {
         let ([x0, _], [x1, _]) = (&self.touching.before, &self.touching.after);
         let first = usize::from(with_facet);
@@ -284,8 +288,9 @@ impl<const D: usize> Finder<'_, D> {
         16.0 * dot(&travel, &travel) > dot(&edge, &edge)
     }
 
-    /// Keeps the relevant rows of one vertex. Outside a body, these are all facets in front of which it is, each closest point
-    /// once. Inside a body, it is the nearest facet, through which the vertex leaves.
+    /// Keeps the relevant rows of one vertex. If the vertex is outside a body, these are the rows of all facets that it is in
+    /// front of, one row for each closest point. If the vertex is inside, it is the row of the nearest facet, through which the
+    /// vertex leaves.
     fn keep_the_nearest(&mut self) {
         if self.found.around.len() < 2 {
             return;
@@ -307,7 +312,8 @@ impl<const D: usize> Finder<'_, D> {
                 }
                 let others = features(other);
                 let [a, b] = [row, other].map(depth);
-                // Both rows have the same closest point, or one point is on the rim of a facet over which the vertex is.
+                // Both rows have the same closest point, or the closest point of this row is on the rim of the other facet,
+                // which has a nearer point.
                 let within = key.iter().all(|p| *p == u32::MAX || others.contains(p));
                 if within && (key != others || k < j) {
                     keep[j] = false;

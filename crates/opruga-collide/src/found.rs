@@ -6,7 +6,7 @@ use crate::row::Row;
 use crate::spread::Spread;
 use core::ops::Range;
 
-/// The pairs among one part of the candidates that come close in a step.
+/// The pairs of one part of the candidates that come close in a step.
 #[derive(Debug, Default)]
 pub(crate) struct Found<const D: usize> {
     /// The ranges of the candidates of a vertex and a facet, and of two edges. All candidates of one vertex are in the same
@@ -23,7 +23,7 @@ pub(crate) struct Found<const D: usize> {
     /// Candidates of a vertex and a facet that were examined again, and lower bounds on their distances at the start of the
     /// step [m].
     pub(crate) notes: Vec<(usize, f64)>,
-    /// The pairs of one vertex, or of two edges, and whether they meet by themselves; and which of them are kept.
+    /// The pairs of one vertex, or of two edges, and whether they meet in the free motion; and which of them are kept.
     pub(crate) around: Vec<(ClosePair<D>, bool)>,
     pub(crate) keep: Vec<bool>,
     /// Positions at an impact within a step.

@@ -21,15 +21,16 @@ pub struct Gap<const D: usize> {
     pub normal: [f64; D],
 }
 
-/// The distance, relative to the coordinates, below which the vector from one feature to the other is only rounding.
+/// The distance, relative to the coordinates, below which the vector from one feature to the other consists only of rounding
+/// errors.
 const ROUNDING: f64 = 1e-13;
 
 impl<const D: usize> Gap<D> {
     /// The gap of a vertex and a facet with the points at `x` [m].
     ///
-    /// A facet of a closed boundary has an inner side, where the gap is negative. The side follows from its own normal if the
-    /// closest point is inside the facet; otherwise from the normals of all facets around the edge or corner of the closest
-    /// point, each weighted by its angle there. Other facets act on both sides.
+    /// A facet of a closed boundary has an inner side, where the gap is negative. If the closest point is inside the facet, the
+    /// side follows from the normal of the facet. If it is on an edge or corner, the side follows from the normals of all
+    /// facets around this edge or corner, each weighted by its angle there. Other facets act on both sides.
     ///
     /// # Source
     /// J. A. Bærentzen, H. Aanæs, Signed distance computation using the angle weighted pseudonormal, IEEE TVCG 11 (2005) 243–253.
@@ -46,7 +47,7 @@ impl<const D: usize> Gap<D> {
         }
         let within = weights.iter().all(|w| *w > 0.0);
         let outward = || if within { facet_normal(&at) } else { normal_around(surface, x, &corners, &weights) };
-        // Usually the point is outside all surrounding facets; their angles then do not matter.
+        // Usually the point is in front of all surrounding facets. Their angles then do not matter.
         let may_be_inside = surface.closed[facet as usize]
             && (within || !lies_outside_of_all(surface, x, (&corners, &weights), &between));
         out.point_along(&between, may_be_inside, &p, outward);
@@ -74,7 +75,8 @@ impl<const D: usize> Gap<D> {
         let between = subtract(&mean(&[1.0 - s, s], &xa), &mean(&[1.0 - t, t], &xb));
         let sides = |edge: u32| surface.sides[edge as usize];
         let closed = [a, b].iter().all(|e| sides(*e) != [u32::MAX; 2]);
-        // Usually the vector points out of all facets beside the second edge and into those beside the first; their angles then do not matter.
+        // Usually the vector points out of all facets beside the second edge and into those beside the first. The angles of these facets then
+        // do not matter.
         let points_out = || {
             [(a, -1.0), (b, 1.0)].into_iter().all(|(edge, sign)| {
                 let mut beside = sides(edge).into_iter().filter(|side| *side != u32::MAX);
@@ -110,7 +112,7 @@ impl<const D: usize> Gap<D> {
         Some(out)
     }
 
-    /// Sets gap and normal from the vector between the closest points.
+    /// Computes gap and normal from the vector between the closest points.
     fn point_along(
         &mut self,
         between: &[f64; D],
@@ -132,7 +134,7 @@ impl<const D: usize> Gap<D> {
         }
     }
 
-    /// Σ wᵢ n·aᵢ of vectors at the points, such as their velocities.
+    /// Returns Σ wᵢ n·aᵢ for vectors aᵢ at the points, such as their velocities.
     #[inline]
     pub fn along(&self, vectors: &[[f64; D]]) -> f64 {
         let mut sum = 0.0;

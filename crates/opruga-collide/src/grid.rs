@@ -2,9 +2,10 @@
 
 use opruga_math::Lane;
 
-/// A box is sorted into a cell that contains its lowest corner and is at least as large as the box: the smallest cells have the
-/// mean extent of the boxes, and each further level has cells twice as large. So a box extends at most into the next cell along
-/// every axis, however different the sizes are, and no box is found twice.
+/// Boxes that are sorted into cells of several sizes. The smallest cells have the mean extent of the boxes, and each further
+/// level has cells twice as large. A box is in a cell that contains its lowest corner and is at least as large as the box. So a
+/// box extends at most into the next cell along every axis, however different the sizes of boxes are, and no box is found
+/// twice.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Grid<const D: usize> {
     boxes: Vec<[[f64; D]; 2]>,
@@ -20,15 +21,15 @@ pub(crate) struct Grid<const D: usize> {
 struct Level<const D: usize> {
     /// One over the extent of a cell [1/m].
     per_metre: f64,
-    /// The start of the boxes of every bucket in `entries`, and the last query that has examined it. A bucket holds the cells
-    /// with one hash.
+    /// For every bucket, the start of its boxes in `entries`, and the last query that has examined the bucket. A bucket holds
+    /// the boxes of all cells with the same hash.
     buckets: Vec<[u32; 2]>,
     /// Boxes with their numbers, one bucket after the other.
     entries: Vec<([[f64; D]; 2], u32)>,
     count: usize,
 }
 
-/// The last cell along an axis, which contains everything beyond it. The numbers of cells are exact up to this one and would
+/// The last cell along an axis, which contains everything beyond it. The indices of cells are exact up to this one and would
 /// overflow beyond it (`boxes_far_beyond_all_others_are_found`).
 const FARTHEST: f64 = 1e15;
 

@@ -26,7 +26,7 @@ fn size<const D: usize>(points: &[[f64; D]]) -> f64 {
     })
 }
 
-/// Andrew's monotone chain.
+/// Returns the edges of the convex hull in the plane, found by Andrew's monotone chain.
 fn polygon<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     let tolerance = 1e-12 * size(points);
     let mut order: Vec<usize> = (0..points.len()).collect();
@@ -66,8 +66,8 @@ struct Face<const D: usize> {
     alive: bool,
 }
 
-/// The incremental hull: for every point outside, the faces that are visible from it are replaced by faces between the point
-/// and their rim.
+/// Returns the faces of the convex hull in space, to which one point after the other is added. If a point is outside the
+/// present hull, the faces that are visible from it are replaced by faces between the point and the rim of the visible faces.
 fn polyhedron<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     let tolerance = 1e-10 * size(points);
     let farthest = |score: &dyn Fn(&[f64; D]) -> f64| {

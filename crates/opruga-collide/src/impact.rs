@@ -60,7 +60,7 @@ pub(crate) fn impact<const D: usize>(
         // For edges that meet at an end, a vertex meets a facet too.
         Gap::of_edges(surface, moved, a, b)?
     };
-    // They are apart at the start, so what is in front now stays in front.
+    // The features are apart at the start, so the gap at the start must not be negative.
     then.gap = then.along(x0);
     if then.gap < 0.0 {
         (then.gap, then.normal) = (-then.gap, then.normal.map(|n| -n));

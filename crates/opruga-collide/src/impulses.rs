@@ -13,32 +13,35 @@ use opruga_math::Lane;
 
 /// The sweeps end when the remaining contact velocities are below this fraction of the mean approach velocity of the connected
 /// bodies. At rest, where that velocity is h g, a contact then creeps by less than a hundredth of one step of free fall. The
-/// next step starts from these impulses and processes every contact, so the remainders do not accumulate. Only the first step of
-/// a frame starts without impulses. A tolerance of a thousandth needs two to three times as many turns and changes the kinetic
-/// energy of a heap by less than a thousandth.
+/// next step starts from these impulses and processes every contact, so the remainders do not accumulate. The world also passes
+/// impulses on from frame to frame ([`crate::Touching::keep`]). A tolerance of a thousandth needs two to three times as many
+/// turns and changes the kinetic energy of a heap by less than a thousandth.
 pub(crate) const TOLERANCE: f64 = 1e-2;
 
 /// The largest number of sweeps in a step. A sweep passes an impulse through all contacts in its direction. A column of bodies
-/// therefore needs about as many sweeps as it has contacts that the elastic wave connects within one step: a few.
+/// therefore needs about as many sweeps as there are contacts that an elastic wave passes within one step: a few.
 const MOST_SWEEPS: usize = 60;
 
-/// The same fraction for contacts of bodies with implicit integrators. Forces balance the remainder, so it changes these forces:
-/// with 1e-5 the pressure on a patch is wrong by 2e-4 (the rows `contact-patch-…` require 1e-6).
+/// The fraction of [`TOLERANCE`] for contacts of bodies with implicit integrators. The forces of these bodies balance the
+/// remaining velocities and therefore contain an error. With a fraction of 1e-5, the pressure on a patch is wrong by 2e-4 (the
+/// cases `contact-patch-…` of the verification require 1e-6).
 pub(crate) const COUPLED_TOLERANCE: f64 = 1e-9;
 
-/// The same fraction for bodies at rest, relative to the approach in the present correction. The next correction solves for the
-/// remainder, whose approach is smaller. With a tenth, one and a half times as many corrections are needed.
+/// The fraction of [`TOLERANCE`] for bodies at rest, relative to the approach in the present correction. The next correction
+/// solves for the remainder, whose approach is smaller. With a fraction of a tenth, one and a half times as many corrections
+/// are needed.
 const TOLERANCE_AT_REST: f64 = 1e-3;
 
-/// The largest number of sweeps for bodies with implicit integrators and bodies at rest. Contacts without friction take up to 30.
-/// Contacts that alternate between sticking and sliding never converge, and with 300 sweeps no test or row becomes more accurate.
+/// The largest number of sweeps for bodies with implicit integrators and bodies at rest. Contacts without friction need up to 30.
+/// Contacts that alternate between sticking and sliding never converge. With 300 sweeps, no test and no case of the verification
+/// becomes more accurate.
 const MOST_COUPLED_SWEEPS: usize = 100;
 
 /// The number of sweeps before each step in the subspace of the active contacts: one forward, one backward.
 const SWEEPS_BETWEEN: usize = 2;
 
-/// After this many steps that did not halve the change of a sweep, only sweeps continue: with friction, contacts may alternate
-/// between sticking and sliding.
+/// After this many steps in the subspace that did not halve the change of a sweep, only sweeps are made. With friction,
+/// contacts may alternate between sticking and sliding.
 const MOST_FAILURES: usize = 16;
 
 /// After this many such steps, the sweeps of bodies at rest end. The next correction continues from their result.
@@ -64,7 +67,7 @@ pub(crate) struct Problem<'a, const D: usize> {
 }
 
 impl<const D: usize> Problem<'_, D> {
-    /// The same problem, if it has this many dimensions.
+    /// Returns the same problem if it has `E` dimensions, otherwise none.
     fn of<const E: usize>(&mut self) -> Option<Problem<'_, E>> {
         fn cast<A: Any, B: Any>(one: &mut A) -> Option<&mut B> {
             (one as &mut dyn Any).downcast_mut()
@@ -83,8 +86,8 @@ impl<const D: usize> Problem<'_, D> {
         })
     }
 
-    /// Sweeps over the rows, forward and backward, until the velocities no longer change, separately for rows that no point
-    /// connects. Returns the number of turns.
+    /// Sweeps over the rows, forward and backward, until the velocities no longer change. Rows that no point connects are
+    /// solved for separately. Returns the number of turns.
     ///
     /// The code behind this call is not generic, so that the sweeps are compiled once, with this crate.
     pub(crate) fn solve(mut self) -> usize {

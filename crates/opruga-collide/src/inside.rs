@@ -21,14 +21,14 @@ pub struct Buried<const D: usize> {
 
 /// A step so short that obstacles hardly move in it [s].
 const INSTANT: f64 = 1e-9;
-/// How often a body is pushed out along the normal of its deepest node.
+/// The largest number of times that a body is pushed out along the normal of its deepest node.
 const PUSHES: usize = 32;
-/// How often the offset along an axis is doubled, and then halved.
+/// The largest number of times that an offset along an axis is doubled, and the number of bisections that follow.
 const DOUBLINGS: usize = 12;
 const HALVINGS: usize = 20;
 
 impl<const D: usize> Colliders<D> {
-    /// The obstacle in which nodes of a body are deepest at the start, by more than `slack` [m]; none if no node is that deep.
+    /// Returns the obstacle that contains the deepest node of a body at the start; none if no node is deeper than `slack` [m].
     pub fn buried(&self, points: &[[f64; D]], slack: f64) -> Option<Buried<D>> {
         let (point, deepest, count) = self.deepest(points, &[0.0; D], slack)?;
         let collider = self.collider_of(deepest.surface);

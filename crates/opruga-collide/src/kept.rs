@@ -1,5 +1,5 @@
-//! Impulses of pairs, identified by the numbers of features within their bodies. Callers keep them in this form while clusters
-//! change.
+//! Impulses of pairs, identified by the numbers of features within their bodies. Callers keep them in this form while the
+//! clusters of bodies change.
 
 use crate::impact::key;
 use crate::row::OBSTACLE_BIT;
@@ -54,15 +54,15 @@ impl<const D: usize> Touching<D> {
         }
     }
 
-    /// Calls `visit` with the pressing pairs, by [`Touching::features_of`], and the impulses of the previous step along and
-    /// across their normals [N s].
+    /// Calls `visit` with the pressing pairs, in the form of [`Touching::features_of`], and their impulses of the previous step
+    /// along and across their normals [N s].
     pub fn visit_kept(&self, mut visit: impl FnMut([u32; 5], f64, [f64; D])) {
         for (id, along, across) in &self.last {
             visit(self.features_of(*id), *along, *across);
         }
     }
 
-    /// Starts the next step from these impulses, given by the numbers of pairs, ascending.
+    /// Lets the next step start from these impulses, given in ascending order of the numbers of their pairs.
     pub fn keep(&mut self, pairs: impl Iterator<Item = (u64, f64, [f64; D])>) {
         self.last.clear();
         self.last.extend(pairs);

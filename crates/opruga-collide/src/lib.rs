@@ -13,18 +13,20 @@
 //! ```
 //!
 //! **Rest.** An approach is an impact if the node was off the surface at the start of the step and is faster than `rest_speed`.
-//! (If it was on the surface, its whole normal speed comes from the step itself, from weight or from the body behind it.) All
-//! other contacts do not bounce. With `rest_speed = 0` every crossing is an impact, even that of a node that lies on the floor:
-//! this is the rule v = −e v of the thesis.
+//! (If it was on the surface, its whole normal speed comes from the step itself: from weight or from the body behind it.) In
+//! all other contacts, nodes do not bounce. With `rest_speed = 0`, every crossing is an impact, even that of a node that lies
+//! on the floor. This is the rule v = −e v of the thesis.
 //!
-//! **Speed of an impact.** The force acts for the whole step, but the node meets the surface within it: s² = u² + 2 a g with the
-//! approach u and the gap g at the start of the step and the acceleration a towards the surface, and s is between the approaches
-//! at both ends of the step. So an impact returns e² of the incoming energy, and forces do not create energy. With `rest_speed =
-//! 0`, the rule of the thesis, s is the approach at the end of the step.
+//! **Speed of an impact.** The force acts for the whole step, but the node meets the surface within it. The speed s of the
+//! impact therefore follows from s² = u² + 2 a g, with the approach u and the gap g at the start of the step and the
+//! acceleration a towards the surface. It is limited to the range between the approaches at both ends of the step. So an impact
+//! returns e² of the incoming energy, and forces do not create energy. With `rest_speed = 0`, the rule of the thesis, s is the
+//! approach at the end of the step.
 //!
 //! **Position.** Without friction the node is moved along the normal onto the surface, and its tangential motion does not change
-//! in any bit. With friction a node that does not bounce moves from its previous position (carried along by the collider) with
-//! its new tangential velocity, and then onto the surface, so sticking nodes do not creep by h² g sin θ per step.
+//! in any bit. With friction, a node that does not bounce moves from its previous position (carried along by the collider) with
+//! its new tangential velocity, and then onto the surface. On a slope of angle θ, sticking nodes therefore do not creep by h² g
+//! sin θ per step.
 //!
 //! **Energy.** With v₀ before the step, v₁ after it, v̄ = ½ (v₀ + v₁) and the impulse J of the obstacle, the kinetic energy
 //! changes by (J + hF)·v̄. J·v̄ is work_colliders − loss_contact − loss_friction. Here work_colliders is J·v_c. The two losses
@@ -34,14 +36,14 @@
 //! before contact.
 //!
 //! **Walking.** On a slope only a little less steep than the angle of friction, a vibrating soft body creeps down: it slips where
-//! it presses less, and gravity supplies the energy that damping dissipates. This is not an error of the step: a block of 1 m ×
-//! 0.5 m on a slope of tan θ = ½ with µ = 0.6, placed on the slope suddenly, walks at 0.0682, 0.0683, 0.0683 and 0.0683 m/s with
-//! steps of 1/3840 s to 1/30720 s, at 0.0681 by velocity Verlet and Runge–Kutta, at 0.0654 with cells of half the size; with µ =
-//! 0.65 it comes to rest. Once at rest it stays at rest, with any damping.
+//! it presses less, and gravity supplies the energy that damping dissipates. This is not an error of the step. A block of 1 m ×
+//! 0.5 m is placed suddenly on a slope of tan θ = ½ with µ = 0.6. It walks at 0.0682, 0.0683, 0.0683 and 0.0683 m/s with steps of
+//! 1/3840 s to 1/30720 s. With velocity Verlet and Runge–Kutta it walks at 0.0681 m/s, and with cells of half the size at 0.0654
+//! m/s. With µ = 0.65 it comes to rest. Once at rest, it stays at rest with any damping.
 //!
 //! **Fast nodes.** A half-space has no far side. A node that could cross a ball, box, capsule or convex body within a step is
-//! stopped where it entered. Polylines and triangle meshes are thin and act on both sides: the segment from the previous to the
-//! present position of the node (in the frame of the collider) is intersected with them, and a node that would still end on the
+//! stopped where it entered. Polylines and triangle meshes are thin and act on both sides. The segment from the previous to the
+//! present position of the node (in the frame of the collider) is intersected with them. A node that would still end on the
 //! other side (in a narrow groove) stays where it was.
 //!
 //! **Order.** Colliders act in the order of the scene, up to four times, so that a node in a corner satisfies all of its walls.
@@ -52,10 +54,12 @@
 //! meets within a step.
 //!
 //! **Whole obstacles.** If bodies meet one another, corners and edges of obstacles ([`Outline`]) are part of the surfaces, with
-//! zero inverse mass, and meet the facets and edges of bodies as those of another body do. Nodes meet obstacles as above.
+//! zero inverse mass. They meet the facets and edges of bodies as the corners and edges of another body do. Nodes meet
+//! obstacles as above.
 //!
-//! **Limits.** Otherwise only nodes meet colliders, so an obstacle finer than the mesh can pass between two nodes. A tilted or
-//! curved surface is evaluated at the end of the step, which is first order in h.
+//! **Limits.** If bodies do not meet one another, only nodes meet colliders, so an obstacle finer than the mesh can pass
+//! between two nodes. A tilted or curved surface is evaluated at the end of the step. This is an approximation of first order
+//! in h.
 
 // Units are in brackets, [m], which rustdoc takes for links.
 #![allow(rustdoc::broken_intra_doc_links)]

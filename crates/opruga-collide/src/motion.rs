@@ -17,7 +17,7 @@ pub(crate) struct Motion<const D: usize> {
     pub(crate) pivot: [f64; D],
 }
 
-/// The pose of a collider at a time: x = R (X − pivot) + centre.
+/// The pose of a collider at a time, in which a point with the rest position X is at x = R (X − pivot) + centre.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose<const D: usize> {
     /// The rotation R, by its rows.

@@ -6,12 +6,14 @@
 //! friction  F = the point of the disc |F| ≤ µ max(0, a) that is nearest to b = F − r uₜ
 //! ```
 //!
-//! A contact that is apart (a ≤ 0) has no impulse, one that sticks (|b| ≤ µ a) does not move, and one that slides has the full
-//! friction along b. The residuals of these laws are linear except at the borders between the cases. So Newton's method
-//! converges even if sweeps let contacts alternate between sticking and sliding. Contacts are redundant, so W has no inverse. A
-//! fraction of its diagonal is added, which acts on the change of the impulses and makes the solution unique (a proximal
-//! point). The next attempt removes the error of this term, with a smaller fraction if the present attempt has converged and
-//! with a larger one if not.
+//! G maps the velocities of points to the velocities u of gaps, and Y contains the responses of the bodies to impulses (see
+//! [`Coupled`]). N and F are the impulses along and across a normal, and ρ and r are the inverse mobilities of the contact in
+//! these directions. A contact that is apart (a ≤ 0) has no impulse, one that sticks (|b| ≤ µ a) does not move, and one that
+//! slides has the full friction along b. The residuals of these laws are linear except at the borders between the cases. So
+//! Newton's method converges even if sweeps let contacts alternate between sticking and sliding. Contacts are redundant, so W
+//! has no inverse. A fraction of its diagonal is added, which acts on the change of the impulses and makes the solution unique
+//! (a proximal point). The next attempt removes the error of this term, with a smaller fraction if the present attempt has
+//! converged and with a larger one if not.
 //!
 //! Source: P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, Computer Methods in
 //! Applied Mechanics and Engineering 92 (1991) 353–375; V. Acary, M. Brémond, O. Huber, On solving contact problems with Coulomb friction:
@@ -24,8 +26,8 @@ use crate::spread::Spread;
 use crate::vector::{across, add, dot, scaled, subtract};
 use opruga_math::{Lane, Simd, WIDTH};
 
-/// The largest number of unknowns. An elimination takes ⅓ n³ products: 0.2 · 10⁹ for this many, as much as a hundred sweeps over
-/// bodies with as many points.
+/// The largest number of unknowns. An elimination needs ⅓ n³ products for n unknowns. For this many, these are 0.2 · 10⁹, as
+/// many as a hundred sweeps need for bodies with as many points.
 pub(crate) const MOST_UNKNOWNS: usize = 900;
 
 /// The fraction of the diagonal of W that restrains changes of impulses: its initial value, which is also its smallest one, and
@@ -84,7 +86,8 @@ struct Equations<const D: usize> {
     stride: usize,
     /// Velocities without impulses, relative to the targets [m/s].
     free: Vec<f64>,
-    /// The impulses from which changes are counted [N s]; the restraining fraction of the diagonal of W [1/kg].
+    /// The impulses from which changes are counted [N s]; the diagonal of W [1/kg], and the fraction of it that restrains these
+    /// changes.
     center: Vec<f64>,
     diagonal: Vec<f64>,
     proximal: f64,
@@ -112,8 +115,8 @@ pub(crate) fn count_of<const D: usize>(row: &Row<D>) -> usize {
 pub(crate) struct Aim {
     /// The largest change of velocity that a turn of a contact may make at the end [m/s].
     pub(crate) enough: f64,
-    /// What follows if the first sweeps have not converged: at most this number of further sweeps, or Newton's method if it is
-    /// none.
+    /// What follows if the first sweep has not converged: at most this number of sweeps in all or, if there is no number,
+    /// Newton's method.
     pub(crate) sweeps: Option<usize>,
 }
 
@@ -464,8 +467,8 @@ mod tests {
         row
     }
 
-    /// A column of points of 1 kg on a pinned point, with two equal contacts between neighbours. How these share the force is not
-    /// unique.
+    /// A column of points of 1 kg on a pinned point, with two equal contacts between neighbours. The share of each of the two in
+    /// the force is not unique.
     fn column(points: usize, friction: f64) -> (Vec<Row<3>>, Vec<[f64; 3]>) {
         let mut inverse_mass = vec![[1.0; 3]; points];
         inverse_mass[0] = [0.0; 3];
@@ -503,7 +506,8 @@ mod tests {
         let (mut rows, inverse_mass) = column(2, 0.3);
         let mut v = vec![[0.0; 3], [3.0, 4.0, -1.0]];
         solved(&mut rows, &inverse_mass, &mut v);
-        // The initial impulse is 2 N s, and 1 N s stops the fall: 0.3 · 3 N s slow the point down along its motion.
+        // The two contacts begin with 2 N s, and another 1 N s stops the fall. The friction of 0.3 · 3 N s slows the point down
+        // along its motion.
         let speed = 5.0 - 0.9;
         let expected = [0.6 * speed, 0.8 * speed, 0.0];
         assert!(v[1].iter().zip(expected).all(|(v, e)| (v - e).abs() < 1e-9), "{v:?}");

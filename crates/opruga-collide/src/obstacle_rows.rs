@@ -7,7 +7,8 @@ use crate::vector::{length, subtract};
 use opruga_core::contacts::Touch;
 use opruga_core::threads;
 
-/// The least number of points whose contacts with obstacles a thread finds in one piece. So many points take some tens of microseconds.
+/// The least number of points whose contacts with obstacles a thread finds in one piece. This many points take some tens of
+/// microseconds.
 const LEAST_POINTS: usize = 256;
 
 impl<const D: usize> Touching<D> {
@@ -18,7 +19,7 @@ impl<const D: usize> Touching<D> {
         self.asks.resize(self.surface.points(), false);
         for row in &self.rows[first..] {
             let (points, weights) = row.on(&self.spread);
-            // Without branches, because nobody can predict which points have a weight.
+            // Without branches, because the processor cannot predict which points have a weight.
             points.iter().zip(weights).for_each(|(p, weight)| self.asks[*p as usize] |= *weight != 0.0);
         }
         self.asked.clear();

@@ -16,8 +16,8 @@ use opruga_mesh::Mesh;
 pub struct Outline<const D: usize> {
     /// The number of the collider.
     pub collider: usize,
-    /// Corners, edges and faces in their positions at time 0 without any motion [m]. The first points are inside faces and are
-    /// not corners.
+    /// Corners, edges and faces of the collider as placed in the scene, before any motion [m]. The first points are inside
+    /// faces and are not corners.
     pub mesh: Mesh<D>,
     /// The number of points inside plane faces; in the plane, inside straight lines. These belong only to faces.
     pub within_faces: usize,

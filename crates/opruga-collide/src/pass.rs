@@ -88,8 +88,8 @@ impl<T: Shape<D>, const D: usize> Work for Pass<'_, '_, T, D> {
         };
         let lies = self.meets == Meets::WhatItLiesOn;
         let mut k = 0;
-        // If only nodes that were on the surface are processed, there is no first check: such a node may now be beside the
-        // surface.
+        // If only nodes that were on the surface are processed, there is no first check, because such a node may now be beside
+        // the surface.
         let mut has_candidates = lies;
         while k + 4 * WIDTH <= used && !has_candidates {
             has_candidates = look.any_candidate::<4>(&tile, k, P::first(WIDTH));
@@ -177,8 +177,8 @@ struct SecondLook<'a, T, const D: usize> {
 }
 
 impl<T: Shape<D>, const D: usize> SecondLook<'_, T, D> {
-    /// Applies the shape to the nodes of one register, the part of the pack at `k` of which `count` lanes are used; returns
-    /// whether it touched any.
+    /// Applies the shape to the nodes of one register; returns whether it touched any. The register is a part of the pack at
+    /// `k`, in which the first `count` lanes are used.
     #[inline(always)]
     fn hold_back<P: Pack<Part = R>, R: Register>(
         &self,
@@ -199,7 +199,8 @@ impl<T: Shape<D>, const D: usize> SecondLook<'_, T, D> {
         let from = lanes!(R, d => tile.before.load_part::<P>(d, k, part));
         let before = self.carry.along(&from);
         let displacement = subtract(&x, &before);
-        // A node that moves far may come out elsewhere, and a node that entered through one face may be closer to another one.
+        // A node that moves far may come out on another side, and a node that entered through one face may be closer to another
+        // one.
         let fast = R::both(R::splat(self.far).less(dot(&displacement, &displacement)), nodes);
         let mut asked = R::select(fast, R::one(), R::zero());
         if lies {

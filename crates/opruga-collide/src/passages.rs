@@ -1,5 +1,5 @@
-//! Pairs that would still pass through one another within a step after the impulses have been found. They are found by checking
-//! the final motion.
+//! Pairs that would pass through one another within a step in spite of the impulses. A check of the resulting motion finds
+//! them.
 
 use crate::gap::Gap;
 use crate::impact::{impact, key, meeting_time};
@@ -10,12 +10,12 @@ use crate::zones::{Led, PointsOfPair, ROUNDING, Zone};
 use opruga_core::threads;
 use opruga_math::Lane;
 
-/// The least number of pairs that a thread checks in one piece. So many pairs take some tens of microseconds.
+/// The least number of pairs that a thread checks in one piece. The check of this many pairs takes some tens of microseconds.
 const LEAST_PART: usize = 1024;
 
 impl<const D: usize> Touching<D> {
-    /// Checks the motion to the end of the step of h [s]: adds the pairs that pass through one another to those listed before.
-    /// Returns whether there are new ones.
+    /// Checks the motion to the end of the step of h [s]. Adds the pairs that pass through one another to those found before;
+    /// returns whether any pair passes.
     ///
     /// A vertex that starts inside a body may leave it. Pairs that move rigidly together do not pass.
     pub(crate) fn find_passages(&mut self, h: f64) -> bool {
@@ -36,8 +36,8 @@ impl<const D: usize> Touching<D> {
         found
     }
 
-    /// The fraction of the step at which a pair meets that may pass through one another, given its distance at the start of the step
-    /// [m].
+    /// Returns the fraction of the step at which the features of a pair meet, given their distance at the start of the step [m];
+    /// none if they cannot pass through one another.
     fn passage(&self, pair @ [a, b]: [u32; 2], with_facet: bool, distance: f64) -> Option<f64> {
         if self.is_out_of_reach(pair, with_facet, distance) {
             return None;
@@ -139,7 +139,7 @@ impl<const D: usize> Touching<D> {
         points.map(|p| self.surface.body[p as usize])
     }
 
-    /// Replaces the rows of passing pairs by rows with their gaps.
+    /// Replaces the rows of passing pairs by rows with the gaps that the check has found for them.
     pub(crate) fn put_passing(&mut self, h: f64) {
         if self.passing.is_empty() {
             return;
@@ -165,8 +165,9 @@ impl<const D: usize> Touching<D> {
         self.rows.sort_by_key(|row| row.id);
     }
 
-    /// Makes the points of pairs that still pass move rigidly together: x = x₀ + h (c + ω × r). In this motion no two features
-    /// pass. It has the momentum and the angular momentum of the points.
+    /// Makes the points of pairs that still pass move rigidly together: x = x₀ + h (c + ω × r), with the velocity c of their
+    /// centre, the angular velocity ω and the position r relative to the centre. In this motion no two features pass. It has
+    /// the momentum and the angular momentum of the points.
     ///
     /// # Errors
     /// [`Trouble::LedThrough`] if pins and obstacles prevent such a motion.

@@ -18,9 +18,9 @@ pub(crate) struct Reach<const D: usize> {
     pub(crate) found_in: Vec<Bounds<D>>,
     /// For every body, the largest displacement that contact may add to the motion of one of its points [m].
     body_push: Vec<f64>,
-    /// For every body, whether its candidates must be searched for again. This is so if a box of the step is not inside the box
-    /// of the last search with a quarter of a margin to spare, or if that box is far too large because it was made for a faster
-    /// motion.
+    /// For every body, whether its candidates must be searched for again. This is necessary if a box of the step is not inside
+    /// the box of the last search with a quarter of a margin to spare, or if the box of the last search is far too large
+    /// because it was made for a faster motion.
     stale: Vec<bool>,
     /// For every body, whether it will soon be stale. The next search covers all such bodies at once.
     due: Vec<bool>,
@@ -32,13 +32,14 @@ pub(crate) struct Reach<const D: usize> {
 pub(crate) const MOST_WIDTHS: f64 = 4.0;
 
 /// Returns how far beyond the box of a step candidates are searched for [m], for a point or body that moves by `moves` in the
-/// step. This is as far as it moves in `steps` more steps, but at least half a margin and at most a whole one. Otherwise long
-/// steps of fast bodies would make everything around them a candidate (ten times as many for eight falling cubes).
+/// step. This is as far as it moves in `steps` more steps, but at least half a margin and at most a whole one. Without the
+/// upper limit, long steps of fast bodies would make everything around them a candidate (ten times as many candidates for eight
+/// falling cubes).
 pub(crate) fn beyond(moves: f64, steps: f64, margin: f64) -> f64 {
     (0.5 * margin).larger((steps * moves).smaller(margin))
 }
 
-/// What the points of a body, or of a part of it, need in the step.
+/// The results of [`Reach::begin`] for the points of a body, or of a part of it.
 struct Began {
     body: u32,
     push: f64,
@@ -46,7 +47,7 @@ struct Began {
     due: bool,
 }
 
-/// The least number of points that a thread processes in one piece. So many points take some tens of microseconds.
+/// The least number of points that a thread processes in one piece. This many points take some tens of microseconds.
 const LEAST_PART: usize = 4096;
 
 /// An empty box.
@@ -115,8 +116,8 @@ impl<const D: usize> Reach<D> {
         }
     }
 
-    /// Whether all boxes are inside those of the last search, with a quarter of a margin to spare. Pairs that are needed slightly
-    /// beyond the boxes of the step are then known too, whenever they were searched for.
+    /// Whether all boxes are inside those of the last search, with a quarter of a margin to spare. Then even pairs slightly
+    /// beyond the boxes of the step are known, regardless of when they were searched for.
     pub(crate) fn is_covered(&self) -> bool {
         !self.stale.contains(&true)
     }

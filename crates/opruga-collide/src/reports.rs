@@ -14,7 +14,7 @@ pub struct Report<const D: usize> {
     pub pressed: f64,
     /// Σ λₙ n, from the second body to the first [N s].
     pub normal: [f64; D],
-    /// Σ λₙ x of the positions of all contacts at the end of their substep [N s m].
+    /// Σ λₙ x, with the position x of each contact at the end of its substep [N s m].
     pub moment: [f64; D],
 }
 

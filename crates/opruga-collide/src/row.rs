@@ -16,7 +16,8 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) id: u64,
     pub(crate) points: [u32; 4],
     pub(crate) weights: [f64; 4],
-    /// The position in [`Spread`] of the nodes that carry its points, and their number; none if it acts on its points.
+    /// The index in [`Spread`] of the nodes that carry its points, and their number; this number is zero if the contact acts on
+    /// its own points.
     pub(crate) spread: [u32; 2],
     pub(crate) normal: [f64; D],
     /// The gap at the start of the step, minus the thickness [m].
@@ -37,10 +38,11 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) coupled: bool,
 }
 
-/// The fraction of the mobility of its own points below which a pair cannot move. If obstacles hold all of its points, about
-/// 1e-16 of it remains, which is rounding. A stiff body of a million nodes moves as a whole and has 1e-6. Half-spaces and round
-/// obstacles hold the nodes of bodies with implicit integrators in this way. The limit was introduced for corners of polylines,
-/// which form their own pairs now. No test of contact changes if it is 0.
+/// The mobility below which a pair counts as immovable, as a fraction of the mobility that it would have if each of its points
+/// moved by itself. If obstacles hold all of its points, a fraction of about 1e-16 remains, which is rounding. Half-spaces and
+/// round obstacles can hold the nodes of bodies with implicit integrators in this way. In contrast, a stiff body of a million
+/// nodes, which moves as a whole, has a fraction of 1e-6. The limit was introduced for corners of polylines, which form their
+/// own pairs now. No test of contact changes if it is 0.
 const IMMOBILE: f64 = 1e-12;
 
 impl<const D: usize> Row<D> {
@@ -206,11 +208,11 @@ impl<const D: usize> Row<D> {
         out
     }
 
-    /// Takes one turn of a row that acts on its points, which have these indices in the lists: sets the normal impulse that its bound
-    /// needs, then the friction that this impulse allows. Returns the change of its velocity [m/s].
+    /// Takes one turn of a row that acts on its own points, given their indices in the lists. Sets the normal impulse that its bound
+    /// requires, then the friction that this impulse allows. Returns the change of its velocity [m/s].
     #[inline(always)]
     pub(crate) fn solve(&mut self, points: &[u32; 4], inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) -> f64 {
-        // Velocities and inverse masses of its points, which are at most D + 1, are read from memory once.
+        // The velocities and inverse masses of its points (at most D + 1) are read from memory once.
         let (mut own, mut inverse) = ([[0.0; D]; 4], [[0.0; D]; 4]);
         for k in 0..=D {
             let p = points[k] as usize;

@@ -30,8 +30,8 @@ impl<const D: usize> Touching<D> {
         self.put_passing(h);
     }
 
-    /// Divides the candidates into parts: one, or several if there are threads for them. The result does not depend on their
-    /// number.
+    /// Divides the candidates into parts: one, or several if there are threads for them. The result does not depend on the
+    /// number of parts.
     fn divide(&self, all: &mut Vec<Found<D>>) {
         let pairs = &self.candidates.vertex_facet;
         let lists = [pairs.len(), self.candidates.edge_edge.len()];
@@ -109,10 +109,10 @@ impl<const D: usize> Touching<D> {
     }
 }
 
-/// The least number of candidates in a part. So many candidates take some ten microseconds.
+/// The least number of candidates in a part. This many candidates take about ten microseconds.
 const LEAST_PART: usize = 1024;
 
-/// Moves all of a list behind another one.
+/// Moves all entries of a list to the end of another one.
 pub(crate) fn append<T>(to: &mut Vec<T>, from: &mut Vec<T>) {
     if to.is_empty() {
         std::mem::swap(to, from);

@@ -69,6 +69,6 @@ impl<const D: usize> Touching<D> {
     }
 }
 
-/// The number of later steps that a search for candidates of fast points covers. A search costs about as much as the gaps of
-/// eight steps.
+/// The number of later steps that a search for candidates of fast points covers. A search costs about as much as the
+/// computation of the gaps in eight steps.
 const STEPS: f64 = 8.0;

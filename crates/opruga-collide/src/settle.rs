@@ -6,11 +6,11 @@ use crate::vector::{dot, subtract};
 use opruga_core::threads;
 use opruga_math::Lane;
 
-/// The fraction of the thickness by which pairs may be too close before they are separated. Within this fraction the surfaces
-/// themselves do not overlap, and errors that the sweeps leave do not move anything.
+/// The fraction of the thickness by which pairs may be too close before they are separated. Within this fraction, the surfaces
+/// themselves do not overlap. The errors that sweeps leave are smaller, so they do not move points.
 pub(crate) const OVERLAP: f64 = 0.01;
 
-/// The least number of points that a thread moves in one piece. So many points take some ten microseconds.
+/// The least number of points that a thread moves in one piece. This many points take about ten microseconds.
 const LEAST_PART: usize = 4096;
 
 impl<const D: usize> Touching<D> {
@@ -19,7 +19,7 @@ impl<const D: usize> Touching<D> {
         for row in &self.rows {
             let (points, weights) = row.on(&self.spread);
             let presses = row.normal_impulse > 0.0 && !row.of_obstacle;
-            // Without branches, because nobody can predict which points have a weight.
+            // Without branches, because the processor cannot predict which points have a weight.
             points.iter().zip(weights).for_each(|(p, w)| self.touched[*p as usize] |= presses & (*w != 0.0));
         }
         self.recover(h);

@@ -1,4 +1,4 @@
-//! Shapes whose signed distance is a formula. The same source text serves for one number and for eight of them.
+//! Shapes whose signed distance is a formula. The same code computes it for one node and for eight nodes at once.
 
 use crate::motion::Pose;
 use crate::vector::{add, choose, dot, length, scaled, splat, subtract, turned};
@@ -14,21 +14,22 @@ pub(crate) trait Shape<const D: usize>: Sized {
     fn gap_and_normal<S: Lane>(&self, x: &[S; D]) -> (S, [S; D]);
     /// Whether it is bounded by flat faces, which meet in edges.
     const FACES: bool = false;
-    /// Calls back with the flat faces on which a point on the surface is, to within `grain` [m]: its height above each, and the
-    /// normal; if there are no flat faces, it does not call back.
+    /// Calls `visit` for every flat face that a point on the surface is on, to within `grain` [m], with the height of the point
+    /// above the face and the normal of the face. Without flat faces, it does nothing.
     fn visit_faces(&self, _x: &[f64; D], _grain: f64, _visit: &mut dyn FnMut(f64, [f64; D])) {}
 }
 
-/// A face that a node meets on its path: if there are several, the one that its displacement opposes most.
+/// A face that a node meets on its path. If there are several, it is the face into which the displacement of the node leads
+/// most directly.
 pub(crate) struct Met<const D: usize> {
     /// The height of the node above the face [m].
     pub(crate) height: f64,
     pub(crate) normal: [f64; D],
-    /// Over all faces on which the node is, the smallest depth of the end of the path behind a face [m].
+    /// The depth of the end of the path behind a face [m], the smallest one of all faces that the node is on.
     pub(crate) behind: f64,
-    /// The number of faces on which the node is.
+    /// The number of faces that the node is on.
     pub(crate) faces: usize,
-    /// The number of these faces behind which its path leads.
+    /// The number of these faces into which its path leads.
     pub(crate) entered: usize,
 }
 
@@ -317,7 +318,7 @@ pub(crate) fn support<T: Shape<D>, const D: usize>(
 /// Finds where a node that moved from `a` to `b` entered a convex solid. Returns the distance of `b` behind the tangent plane
 /// at that point (negative) and the normal; none if the node did not enter from outside.
 ///
-/// Sphere tracing: the signed distance is a safe step along the segment that does not reach the surface.
+/// This is sphere tracing: a step along the segment by the signed distance never crosses the surface.
 #[inline(never)]
 pub(crate) fn entry<T: Shape<D>, const D: usize>(
     shape: &T,

@@ -2,19 +2,19 @@
 
 use crate::surface::Surface;
 
-/// Points and their weights, on which a contact acts.
+/// The points on which a contact acts, and their weights.
 pub(crate) type Weighted<'a> = (&'a [u32], &'a [f64]);
 
-/// The nodes and weights of those contacts of a step that have a carried point, one contact after the other: such a contact acts
-/// on these nodes instead of its own points. Σ wᵢ vᵢ is the same for both, and so are momentum and angular momentum of an
-/// impulse.
+/// The nodes and weights of those contacts of a step that have a carried point, one contact after the other. Such a contact acts
+/// on these nodes instead of its own points. In other lists, a head represents each contact: either its own points, or its range
+/// in this list ([`Spread::head`]). Σ wᵢ vᵢ is the same for both, and so are momentum and angular momentum of an impulse.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Spread {
     points: Vec<u32>,
     weights: Vec<f64>,
 }
 
-/// The last entry of a head that represents nodes in [`Spread`].
+/// The last entry of a head that represents a range of [`Spread`].
 const ELSEWHERE: u32 = u32::MAX;
 
 impl Spread {
@@ -61,7 +61,7 @@ impl Spread {
         [first as u32, (self.points.len() - first) as u32]
     }
 
-    /// The nodes at this position, and their weights.
+    /// The nodes of a contact, given the index of the first one and their number, and the weights of these nodes.
     #[inline]
     pub(crate) fn at(&self, [first, count]: [u32; 2]) -> Weighted<'_> {
         let range = first as usize..(first + count) as usize;

@@ -1,11 +1,11 @@
 //! The impulses of all active contacts at once, by conjugate gradients between sweeps.
 //!
 //! A sweep passes an impulse on from contact to contact. For coupled bodies, such as those of implicit integrators, a sweep
-//! removes only a part of slow errors, such as a pressure that varies along a side. As long as the same contacts are active, the
-//! equations are linear: contacts that press keep their normal velocity, and those that stick do not slide. Their matrix W = G Y
-//! Gᵀ is symmetric and has no negative eigenvalues, so conjugate gradients can solve them. Contacts that would pull or begin to
-//! slide are removed from the equations; sweeps decide which ones return (Silcowitz, Niebe and Erleben 2010, a projected
-//! Gauss–Seidel subspace method).
+//! removes only a part of smooth errors, such as the error of a pressure that varies along a side. As long as the same contacts
+//! are active, the equations are linear: contacts that press keep their normal velocity, and those that stick do not slide.
+//! Their matrix W = G Y Gᵀ is symmetric and has no negative eigenvalues, so conjugate gradients can solve them. Contacts that
+//! would pull or begin to slide are removed from the equations, and sweeps decide which of them return. (Silcowitz, Niebe and
+//! Erleben 2010, a projected Gauss–Seidel subspace method.)
 
 use crate::coupled::Coupled;
 use crate::row::Row;
@@ -15,8 +15,8 @@ use core::ops::Range;
 use opruga_core::dense::Dense;
 use opruga_math::{Lane, Simd, WIDTH, sum_in_fixed_order};
 
-/// The fraction of the remaining velocities at which conjugate gradients end. With 1e-3, the errors of the rows
-/// `contact-patch-…` exceed 1e-6.
+/// The fraction of the initial remaining velocities at which conjugate gradients end. With 1e-3, the errors of the cases
+/// `contact-patch-…` of the verification exceed 1e-6.
 const LEFT: f64 = 1e-4;
 
 /// An active contact. Its unknowns are the changes of its impulse along its normal and, if it sticks, along the axes
@@ -40,8 +40,8 @@ fn reach<const D: usize>(row: &Row<D>, sticks: bool, change: &[f64; D]) -> (f64,
     let a = dot(&slides, &slides) - squared * more * more;
     let half = dot(&own, &slides) - squared * row.normal_impulse * more;
     let c = dot(&own, &own) - squared * row.normal_impulse * row.normal_impulse;
-    // c < 0 inside the cone, which ends at the first root above zero. If there is no root it is NaN, for which all comparisons
-    // are false.
+    // c < 0 inside the cone, which ends at the first root s above zero. If there is no root, the square root is NaN, for which
+    // all comparisons are false.
     let root = (half * half - a * c).sqrt();
     let sum = half + if half < 0.0 { -root } else { root };
     let roots = [-sum / a, -c / sum];
@@ -255,7 +255,7 @@ pub(crate) mod tests {
         (v[0], v[5], v[9]) = ([0.0; 2], [40.0, -1.0], [0.0, 30.0]);
         let before = v.clone();
         step(&mut rows, &Spread::default(), &inverse_mass, &mut Coupled::default(), &mut v);
-        // The last point leaves with the impulse of its contact, and the fast one slides.
+        // The last point leaves, so its contact has no impulse; the point that is fast along x slides.
         assert!(rows[8].normal_impulse == 0.0 && v[9][1] > v[8][1] && v[5][0] > 30.0);
         assert!(rows.iter().all(|row| row.normal_impulse >= 0.0));
         let momentum = |v: &[[f64; 2]]| v[1..].iter().map(|v| v[1]).sum::<f64>();

@@ -196,7 +196,7 @@ impl<const D: usize> Surface<D> {
         !self.carried.is_empty() && points.iter().any(|p| self.carried.binary_search(p).is_ok())
     }
 
-    /// Calls `visit` with the points that move by themselves and determine a point, and their weights.
+    /// Calls `visit` with the points that move by themselves and determine the given point, and with their weights.
     #[inline]
     pub fn visit_nodes(&self, point: u32, mut visit: impl FnMut(u32, f64)) {
         match if self.carried.is_empty() { None } else { self.carrier_of(point) } {

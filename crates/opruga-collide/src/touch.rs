@@ -14,10 +14,10 @@ use opruga_math::Lane;
 pub(crate) struct NodePath<'a, const D: usize> {
     pub(crate) from: &'a [f64; D],
     pub(crate) to: &'a [f64; D],
-    /// The end position of the node if the surface on which it was holds it. This position determines through which face the
-    /// node meets another solid.
+    /// The end position that the node has if the surfaces that it was on hold it. This position determines which face of
+    /// another solid the node meets.
     pub(crate) kept: [f64; D],
-    /// The faces of solids on which the node would be at that position. If two solids meet, these include opposite faces.
+    /// The faces of solids that the position `to` is on. Where two solids adjoin, these include opposite faces.
     pub(crate) faces: Faces<D>,
     pub(crate) time: f64,
     pub(crate) h: f64,
@@ -25,14 +25,14 @@ pub(crate) struct NodePath<'a, const D: usize> {
     pub(crate) reach: f64,
 }
 
-/// The normals of the faces on which a point is.
+/// The normals of the faces that a point is on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Faces<const D: usize> {
     normals: [[f64; D]; MOST_FACES],
     count: usize,
 }
 
-/// The largest number of faces that are examined, which is more than meet in a corner of several boxes.
+/// The largest number of faces that are examined. In a corner of several boxes, fewer faces meet.
 const MOST_FACES: usize = 16;
 
 impl<const D: usize> Faces<D> {
@@ -190,8 +190,8 @@ impl<const D: usize> Seen<'_, D> {
         (found.0 <= self.reach).then_some((found.0, before, found.1))
     }
 
-    /// Considers those faces at a point that no other solid adjoins. Among them, selects the face that the path opposes most,
-    /// and returns the height of the point above this face and its normal. Needed where solids meet.
+    /// Returns the height of a point above one of the faces at this point, and the normal of this face. Where solids adjoin,
+    /// faces that another solid covers do not count. Among the others, it is the face into which the path leads most directly.
     fn open_face<T: Shape<D>>(
         &self,
         shape: &T,

@@ -52,7 +52,8 @@ pub struct Touching<const D: usize> {
     pub losses: Vec<[f64; 4]>,
     /// Whether overlaps are removed by impulses within the step and not by positions: for bodies at rest, which have no velocity.
     pub(crate) at_once: bool,
-    /// Whether coupled bodies have a budget: impulses are then found only as accurately as those of uncoupled bodies.
+    /// Whether the steps of coupled bodies have a fixed budget. Impulses are then found only as accurately as those of
+    /// uncoupled bodies.
     pub has_budget: bool,
     /// The largest displacement of points of bodies at rest [m]: impulses that exceed it are rejected.
     pub farthest: f64,
@@ -79,11 +80,11 @@ pub struct Touching<const D: usize> {
     pub(crate) rows: Vec<Row<D>>,
     /// The nodes on which contacts act if nodes carry their points.
     pub(crate) spread: Spread,
-    /// Pairs that do not meet by themselves, and their points; pairs that were activated leave an empty entry.
+    /// Pairs that would not meet in the free motion, and their points; pairs that were activated leave an empty entry.
     pub(crate) watched: Vec<Row<D>>,
     pub(crate) heads: Vec<[u32; 4]>,
-    /// Pairs that meet by themselves, but are solved for only if they still approach too fast after the others have been solved
-    /// for.
+    /// Pairs that would meet in the free motion, but are solved for only if they still approach too fast after the others have
+    /// been solved for.
     pub(crate) inactive: Vec<Row<D>>,
     /// Features and impulses of the previous substep, ascending.
     pub(crate) last: Vec<(u64, f64, [f64; D])>,
@@ -97,14 +98,14 @@ pub struct Touching<const D: usize> {
     pub(crate) impact: Vec<[f64; D]>,
     /// The positions of the points at the end of the step [m].
     pub(crate) end: Vec<[f64; D]>,
-    /// Pairs that would pass through one another, ascending, and the gap with which each is solved.
+    /// Pairs that would pass through one another, ascending, and the gap with which each is solved for.
     pub(crate) passing: Vec<(u64, Gap<D>)>,
     /// The passing pairs that the last check has found.
     pub(crate) fresh: Vec<u64>,
     /// The pairs of a vertex and a facet, and of two edges, that may meet in the step, and their distances at its start [m].
     pub(crate) close: [Vec<([u32; 2], f64)>; 2],
     pub(crate) zones: Zones<D>,
-    /// Whether the frame has begun without a check of which points are inside other bodies; and these points, ascending.
+    /// Whether the points inside other bodies have still to be found in this frame; and these points, ascending.
     pub(crate) looks_inside: bool,
     pub(crate) began_inside: Vec<u32>,
     /// Pairs of bodies, one of which has points inside the other; ascending.
@@ -255,8 +256,8 @@ impl<const D: usize> Touching<D> {
     }
 
     /// Finds the impulses of a substep of h [s] and the resulting motion; coupled bodies respond through `respond`. Returns
-    /// whether that motion is valid. It is invalid if coupled bodies do not respond, or if their points would have to move in
-    /// another way.
+    /// whether that motion is valid. It is invalid if coupled bodies do not respond, if their points would move too far, or if
+    /// pairs would still pass through one another and would have to move rigidly.
     ///
     /// # Errors
     /// [`Trouble`] as for [`Touching::step`].
@@ -556,7 +557,7 @@ pub(crate) fn acting<'a, const D: usize>(spread: &'a Spread, row: &'a Row<D>) ->
     points.iter().copied().zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0)
 }
 
-/// The number of rounds in which pairs that would pass through one another are solved along their normals, before those that
-/// still pass move rigidly together: four, since an impulse along one pair may make another one pass, but each round leaves
-/// fewer.
+/// The number of rounds in which pairs that would pass through one another are solved for along their normals. Pairs that still
+/// pass after these rounds move rigidly together. An impulse along one pair may make another one pass, but each round leaves
+/// fewer pairs.
 const ROUNDS: usize = 4;

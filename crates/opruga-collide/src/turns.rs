@@ -15,8 +15,8 @@ use opruga_math::Lane;
 pub(crate) struct Turns<const D: usize> {
     /// The turn in which the velocity of each point last changed.
     stamps: Vec<u64>,
-    /// The points of the rows, and their last turns; 0 before the first. In a set whose points respond by themselves, points are
-    /// indices among those of the set.
+    /// The points of each row, and the number of its last turn; 0 before the first turn. In a set whose points respond by
+    /// themselves, points are indices among those of the set.
     heads: Vec<([u32; 4], u64)>,
     now: u64,
     /// The points of all sets whose points respond by themselves, and the first one of every set.
@@ -24,8 +24,8 @@ pub(crate) struct Turns<const D: usize> {
     first_alone: Vec<u32>,
     /// For each point, another one to which rows connect it, or the point itself.
     parent: Vec<u32>,
-    /// The number of the set to which a point is connected, by its root; and the start of the rows of each set, in the order in
-    /// which they are found.
+    /// For the root of each set of points, the number of the set; and the start of the rows of each set. Sets are numbered in
+    /// the order in which they are found.
     number: Vec<u32>,
     starts: Vec<u32>,
     joined: Vec<u32>,
@@ -50,8 +50,8 @@ struct Alone<const D: usize> {
     stamps: Vec<u64>,
 }
 
-/// The mean approach velocity of the contacts of connected bodies [m/s]: where one pair crashes, others may be at rest. Bodies
-/// that are not connected have no influence.
+/// The mean approach velocity of the contacts of connected bodies [m/s]. Each set of connected bodies has its own mean, because
+/// some bodies may crash while others are at rest.
 #[derive(Clone, Debug, Default)]
 struct Approach {
     /// For each body, another one to which it is connected, or the body itself.
@@ -73,7 +73,7 @@ impl Approach {
         self.parent[high as usize] = low;
     }
 
-    /// The mean velocity of the bodies connected to one [m/s].
+    /// The mean approach velocity of the bodies connected to one [m/s].
     fn of(&self, body: u32) -> f64 {
         self.mean[self.root(body) as usize].0
     }
@@ -107,7 +107,7 @@ fn movers_of<'a, const D: usize>(
     spread: &'a Spread,
     inverse_mass: &'a [[f64; D]],
 ) -> impl Iterator<Item = u32> + 'a {
-    // Heads that list points list only those that can move.
+    // A head that contains points contains only those that can move.
     let all = !Spread::is_elsewhere(head);
     let own = spread.points_of::<D>(head).iter().zip(spread.weights_of::<D>(head));
     own.filter(move |(p, w)| all || **w != 0.0 && inverse_mass[**p as usize] != [0.0; D]).map(|(p, _)| *p)
@@ -125,7 +125,7 @@ impl<const D: usize> Turns<D> {
 
     fn root(&mut self, mut point: u32) -> u32 {
         while self.parent[point as usize] != point {
-            // Path halving, for later searches.
+            // Path halving makes later searches shorter.
             self.parent[point as usize] = self.parent[self.parent[point as usize] as usize];
             point = self.parent[point as usize];
         }
@@ -169,7 +169,7 @@ impl<const D: usize> Turns<D> {
             if row.spread[1] > 0 {
                 return row.head();
             }
-            // Without branches, because nobody can predict which points have a weight.
+            // Without branches, because the processor cannot predict which points have a weight.
             let (mut head, mut count) = ([0; 4], 0);
             for k in 0..=D {
                 head[count] = row.points[k];
@@ -429,7 +429,7 @@ impl<const D: usize> Turns<D> {
     }
 }
 
-/// The least number of rows that a thread solves for in one piece. So many rows take some tens of microseconds.
+/// The least number of rows that a thread solves for in one piece. This many rows take some tens of microseconds.
 const LEAST_PART: usize = 256;
 
 /// Some sets whose points respond by themselves.

@@ -125,7 +125,7 @@ pub(crate) fn rotation<const D: usize>(omega: &[[f64; D]; D], time: f64) -> [[f6
     }
     out
 }
-/// Unit axes across a normal.
+/// Returns unit vectors that are perpendicular to a normal and to one another.
 pub(crate) fn across<const D: usize>(normal: &[f64; D]) -> impl Iterator<Item = [f64; D]> {
     let mut out = [[0.0; D]; D];
     if D == 2 {

@@ -9,7 +9,7 @@ pub(crate) const ROUNDING: f64 = 1e-9;
 /// The points of a pair, and their number: at most four points with at most four nodes each.
 pub(crate) type PointsOfPair = ([u32; 16], usize);
 
-/// The zones of a step, and the previous motion of their points.
+/// The zones of a step, and the motion that their points would have by themselves.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Zones<const D: usize> {
     /// For each point, another point of its zone, or the point itself; empty if there is no zone.
@@ -151,12 +151,12 @@ impl<const D: usize> Zones<D> {
         point
     }
 
-    /// Whether some points belong to one zone.
+    /// Whether all points of a pair belong to one zone.
     pub(crate) fn hold(&self, (points, count): &PointsOfPair) -> bool {
         !self.parent.is_empty() && points[..*count].windows(2).all(|pair| self.root(pair[0]) == self.root(pair[1]))
     }
 
-    /// Makes one zone of some points, which moved with velocities v [m/s].
+    /// Makes one zone of some points, which have the velocities v [m/s] before they move rigidly.
     pub(crate) fn join(&mut self, points: &[u32], v: &[[f64; D]]) {
         for p in points {
             if let Err(at) = self.points.binary_search_by_key(p, |(point, ..)| *point) {

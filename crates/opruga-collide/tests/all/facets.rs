@@ -93,7 +93,7 @@ fn a_groove_of_one_polyline_makes_no_energy() {
     }
 }
 
-/// The same for a groove so sharp that its sides push nodes back and forth.
+/// The same holds for a groove so sharp that its sides push nodes back and forth.
 #[test]
 fn a_sharp_groove_holds_its_nodes_and_makes_no_energy() {
     let polyline = values::<2>("polyline", &[("points", rows(&[&[-0.2, 3.0], &[0.0, 0.0], &[0.3, 3.0]]))]);
@@ -153,8 +153,8 @@ fn nodes_that_begin_on_a_thin_surface_are_held_on_the_side_of_its_normal() {
 }
 
 /// The margin of a thin surface grows with its distance from the origin. So a node that begins exactly on the surface is not
-/// inside it, whether the surface is near the origin or far away. A node is inside if it is closer to the surface than a
-/// thickness that the scene requires.
+/// inside it, whether the surface is near the origin or far away. If the scene requires a thickness, a node that is closer to
+/// the surface than this thickness is inside.
 #[test]
 fn nodes_that_begin_on_a_thin_surface_are_not_buried_in_it() {
     for far in [0.0, 3.0, 1e3, 1e6, 1e7] {

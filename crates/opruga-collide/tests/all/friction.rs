@@ -58,7 +58,7 @@ fn sticks<const D: usize>(tangent: f64) {
 }
 #[test]
 fn mu_050_sticks() {
-    // 26.565° is a little below atan ½: it sticks. Exactly ½ is the limit itself.
+    // An angle of 26.565° is a little below atan ½, so the node sticks. A tangent of exactly ½ is the limit itself.
     for tangent in [0.499_990_2, 0.5] {
         sticks::<2>(tangent);
         sticks::<3>(tangent);
@@ -81,7 +81,7 @@ fn a_dropped_node_sticks_where_it_lands() {
 
 #[test]
 fn sliding_stops_after_the_closed_form() {
-    // v0²/(2 µ g) and v0/(µ g).
+    // The node stops after the distance v0²/(2 µ g) and the time v0/(µ g).
     let (v0, mu) = (2.0, 0.3);
     let floor = values::<2>("half_space", &[("normal", vector(&[0.0, 1.0])), ("friction", number(mu))]);
     let mut system = particles(&[[0.0, 0.0]], &[[v0, 0.0]], 3.0, &[floor]);
@@ -104,7 +104,7 @@ fn sliding_stops_after_the_closed_form() {
 
 #[test]
 fn a_conveyor_takes_a_node_along() {
-    // A floor that moves at 1 m/s: the node slides until it has that speed, after v/(µ g).
+    // The floor moves at 1 m/s. The node slides until it has that speed, after the time v/(µ g).
     let floor = values::<2>(
         "half_space",
         &[
@@ -127,7 +127,7 @@ fn a_conveyor_takes_a_node_along() {
 
 #[test]
 fn a_turntable_holds_a_node_within_the_friction_limit() {
-    // ω² r < µ g: it moves with the floor at its radius; beyond that it slides outward.
+    // If ω² r < µ g, the node moves with the floor at its radius. If ω is larger, the node slides outward.
     let radius = |spin: f64| {
         let table = values::<3>(
             "half_space",
@@ -140,7 +140,7 @@ fn a_turntable_holds_a_node_within_the_friction_limit() {
         assert!(x[1].abs() < 1e-9);
         (x[0] * x[0] + x[2] * x[2]).sqrt()
     };
-    // The limit is 3.13 rad/s.
+    // The limit of ω is 3.13 rad/s.
     assert!((radius(3.0) - 0.5).abs() < 1e-9, "{}", radius(3.0));
     assert!(radius(3.3) > 0.6, "{}", radius(3.3));
 }

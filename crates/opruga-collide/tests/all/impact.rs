@@ -78,7 +78,8 @@ fn a_ball_bounces_back_with_its_fraction_of_speed() {
 
 #[test]
 fn the_floor_of_the_thesis() {
-    // y points down, floor at y = 500; on crossing y = 500, v_y = −½ v_y, even if the node lies on it.
+    // The axis y points down, and the floor is at y = 500. The rule of the thesis replaces v_y by −½ v_y when the node crosses
+    // y = 500, even if it lies on the floor.
     let plane = values::<2>(
         "half_space",
         &[
@@ -236,7 +237,7 @@ fn the_energy_of_a_pass_is_accounted_for() {
 
 #[test]
 fn a_piston_pushes_and_its_work_is_the_energy() {
-    // A wall at 2 m/s meets a node at rest: e = 1 gives it 4 m/s.
+    // A wall at 2 m/s meets a node at rest. With e = 1, the node leaves at 4 m/s.
     let wall = values::<2>(
         "box",
         &[

@@ -61,7 +61,7 @@ fn boxes<const D: usize>(start: &[[f64; D]], end: &[[f64; D]]) -> Vec<[[f64; D];
     .collect()
 }
 
-/// Whether features share a point, or a node that takes part in points of both.
+/// Whether two features share a point, or whether a node carries points of both.
 fn join<const D: usize>(surface: &Surface<D>, a: &[u32], b: &[u32]) -> bool {
     let nodes = |points: &[u32]| {
         let mut all = Vec::new();
@@ -78,7 +78,7 @@ fn compare_with_all_pairs<const D: usize>(meshes: &[Mesh<D>], seed: u64) -> usiz
     let meet = |a: u32, b: u32| if a == b { a.is_multiple_of(2) } else { !(a + b).is_multiple_of(5) };
     let mut candidates = Candidates::default();
     let margin = 0.03;
-    // Twice, because the data of the first search must not affect the second.
+    // The search runs twice, because the data of the first search must not affect the second.
     assert!(candidates.find(&surface, &boxes(&end, &end), [0.5; 2], usize::MAX, |_, _| true));
     assert!(candidates.find(&surface, &boxes(&start, &end), [margin; 2], usize::MAX, meet));
     let mut expected = Vec::new();
@@ -136,7 +136,7 @@ fn candidates_are_those_of_all_pairs() {
     assert!(found > 1000, "{found}");
 }
 
-/// No point of a fine grid on the features is closer than the closest ones.
+/// No points of a fine grid on two features are closer to one another than the computed closest points.
 #[test]
 fn closest_points_are_the_closest() {
     let mut noise = Noise(7);
