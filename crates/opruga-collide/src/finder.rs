@@ -114,7 +114,8 @@ impl<const D: usize> Finder<'_, D> {
         first..end
     }
 
-    /// Whether features at a given distance stay farther apart than another distance [m]. No point moves farther than contact may push it.
+    /// Whether features at a given distance stay farther apart than another distance [m]. The free motion of a point is no longer than the
+    /// distance by which contact may push it, so no point moves by more than twice this distance.
     fn stay_apart(&self, distance: f64, other: f64, first: &[u32], second: &[u32]) -> bool {
         let reach =
             |points: &[u32]| points.iter().fold(0.0, |most: f64, p| self.touching.reach.push_of(*p).larger(most));

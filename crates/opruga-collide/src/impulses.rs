@@ -22,14 +22,14 @@ pub(crate) const TOLERANCE: f64 = 1e-2;
 /// therefore needs about as many sweeps as there are contacts that an elastic wave passes within one step: a few.
 const MOST_SWEEPS: usize = 60;
 
-/// The fraction of [`TOLERANCE`] for contacts of bodies with implicit integrators. The forces of these bodies balance the
-/// remaining velocities and therefore contain an error. With a fraction of 1e-5, the pressure on a patch is wrong by 2e-4 (the
-/// cases `contact-patch-…` of the verification require 1e-6).
+/// The corresponding fraction (see [`TOLERANCE`]) for contacts of bodies with implicit integrators. The forces of these bodies
+/// balance the remaining velocities and therefore contain an error. With a fraction of 1e-5, the pressure on a patch is wrong
+/// by 2e-4 (the cases `contact-patch-…` of the verification require 1e-6).
 pub(crate) const COUPLED_TOLERANCE: f64 = 1e-9;
 
-/// The fraction of [`TOLERANCE`] for bodies at rest, relative to the approach in the present correction. The next correction
-/// solves for the remainder, whose approach is smaller. With a fraction of a tenth, one and a half times as many corrections
-/// are needed.
+/// The corresponding fraction (see [`TOLERANCE`]) for bodies at rest, relative to the approach in the present correction. The
+/// next correction solves for the remainder, whose approach is smaller. With a fraction of a tenth, one and a half times as
+/// many corrections are needed.
 const TOLERANCE_AT_REST: f64 = 1e-3;
 
 /// The largest number of sweeps for bodies with implicit integrators and bodies at rest. Contacts without friction need up to 30.
@@ -44,7 +44,8 @@ const SWEEPS_BETWEEN: usize = 2;
 /// contacts may alternate between sticking and sliding.
 const MOST_FAILURES: usize = 16;
 
-/// After this many such steps, the sweeps of bodies at rest end. The next correction continues from their result.
+/// After this many steps in the subspace that did not halve the change of a sweep, the sweeps of bodies at rest end. The next
+/// correction continues from their result.
 const MOST_FAILURES_AT_REST: usize = 2;
 
 /// The problem to solve.
@@ -55,10 +56,10 @@ pub(crate) struct Problem<'a, const D: usize> {
     pub(crate) coupled: &'a mut Coupled<D>,
     pub(crate) v: &'a mut Vec<[f64; D]>,
     pub(crate) turns: &'a mut Turns<D>,
-    /// For bodies at rest, the velocity of an approach by a whole thickness [m/s]. Their sweeps also end at the tolerance
-    /// relative to this velocity.
+    /// For bodies at rest, the velocity of an approach by a whole thickness [m/s]. Their sweeps also end at the fraction
+    /// [`COUPLED_TOLERANCE`] of this velocity.
     pub(crate) at_rest: Option<f64>,
-    /// Whether coupled bodies have a budget.
+    /// Whether the steps of coupled bodies have a fixed budget.
     pub(crate) has_budget: bool,
     /// The body of every point.
     pub(crate) body: &'a [u32],
@@ -153,8 +154,8 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
     count
 }
 
-/// Finds displacements that separate overlapping pairs by at most `most` [m] without causing other overlaps, with the same
-/// sweeps applied to positions. `wanted` is the required increase of the gap of every row [m], and `masses` is the mass of its
+/// Finds displacements that separate overlapping pairs by at most `most` [m] without causing other overlaps. The same sweeps
+/// are applied to positions. `wanted` is the required increase of the gap of every row [m], and `masses` is the mass of its
 /// points if each moves by itself [kg].
 pub(crate) fn part<const D: usize>(
     rows: &[Row<D>],

@@ -4,8 +4,8 @@ use crate::vector::{Bounds, dot, subtract};
 use opruga_core::threads;
 use opruga_math::Lane;
 
-/// For every point, the box that it does not leave within the step, whatever contact does; and the larger box of the last search
-/// for candidates.
+/// For every point, a box around its motion in the step, including the motion that contact may add; and the larger box of the
+/// last search for candidates.
 ///
 /// Every point has its own box, so one fast point does not turn all the others into candidates.
 #[derive(Clone, Debug, Default)]
@@ -54,8 +54,9 @@ const LEAST_PART: usize = 4096;
 const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 impl<const D: usize> Reach<D> {
-    /// Begins a step from the positions of points before and after the free motion [m] and their bodies. Contact may push every
-    /// point as far as it moves by itself, plus the distance for separating overlapping bodies.
+    /// Begins a step from the positions of points before and after the free motion [m] and their bodies. It is assumed that
+    /// contact pushes a point at most as far as the point moves by itself, plus the distance by which overlapping bodies are
+    /// separated. [`Reach::grow`] widens the box of a point that contact pushes farther.
     pub(crate) fn begin(
         &mut self,
         body: &[u32],

@@ -6,8 +6,8 @@ use crate::surface::Surface;
 pub(crate) type Weighted<'a> = (&'a [u32], &'a [f64]);
 
 /// The nodes and weights of those contacts of a step that have a carried point, one contact after the other. Such a contact acts
-/// on these nodes instead of its own points. In other lists, a head represents each contact: either its own points, or its range
-/// in this list ([`Spread::head`]). Σ wᵢ vᵢ is the same for both, and so are momentum and angular momentum of an impulse.
+/// on these nodes instead of its own points. Σ wᵢ vᵢ is the same for both, and so are momentum and angular momentum of an
+/// impulse. In other lists, a head represents each contact: either its own points, or its range in this list ([`Spread::head`]).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Spread {
     points: Vec<u32>,

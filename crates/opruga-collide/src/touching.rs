@@ -105,7 +105,7 @@ pub struct Touching<const D: usize> {
     /// The pairs of a vertex and a facet, and of two edges, that may meet in the step, and their distances at its start [m].
     pub(crate) close: [Vec<([u32; 2], f64)>; 2],
     pub(crate) zones: Zones<D>,
-    /// Whether the points inside other bodies have still to be found in this frame; and these points, ascending.
+    /// Whether the points inside other bodies still have to be found in this frame; and these points, ascending.
     pub(crate) looks_inside: bool,
     pub(crate) began_inside: Vec<u32>,
     /// Pairs of bodies, one of which has points inside the other; ascending.

@@ -65,8 +65,8 @@ pub(crate) fn report<const D: usize>(
     );
 }
 
-/// Prints the memory of contact per vertex. Also divides the memory that exceeds 400 bytes per vertex by the mean number of
-/// candidates of the last frames.
+/// Prints the memory of contact per vertex. Also prints the memory in excess of 400 bytes per vertex, divided by the mean
+/// number of candidates of the last frames.
 pub(crate) fn report_memory<const D: usize>(touching: &Touching<D>, vertices: usize) {
     let bytes = touching.heap_bytes() as f64;
     let candidates = touching.counts.candidates as f64 / touching.counts.steps as f64;

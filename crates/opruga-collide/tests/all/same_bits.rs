@@ -190,7 +190,8 @@ fn a_body_at_rest_does_not_tremble() {
         }
         let mut system = particles(&ring, &[[0.0; 2]; 12], 0.1, &[slope(e, mu)]);
         system.gravity = [0.0, -G];
-        // A second plane, because a ring on one slope would roll down: between the slope and this wall it is held.
+        // A second plane is needed, because a ring on one slope would roll down. Between the slope and this wall, the ring
+        // stays in place.
         system.contacts = Some(std::sync::Arc::new(colliders::<2>(&[
             slope(e, mu),
             values::<2>(
