@@ -1,9 +1,9 @@
 //! Pairs of features that may meet.
 
-use crate::comparison::{Comparison, Comparisons};
+use crate::comparison::{Comparison, Comparisons, key};
 use crate::grid::Grid;
 use crate::surface::Surface;
-use crate::vector::Bounds;
+use crate::vector::{Bounds, wider};
 use core::sync::atomic::AtomicUsize;
 use opruga_core::threads;
 use opruga_math::{Lane, Simd};
@@ -31,20 +31,6 @@ pub struct Candidates<const D: usize> {
     bodies: Vec<Bounds<D>>,
     close_bodies: Vec<[u32; 2]>,
     parts: Vec<Comparison<D>>,
-}
-
-/// A box, enlarged by a distance [m] on all sides.
-pub(crate) fn wider<const D: usize>([mut low, mut high]: Bounds<D>, distance: f64) -> Bounds<D> {
-    for d in 0..D {
-        low[d] -= distance;
-        high[d] += distance;
-    }
-    [low, high]
-}
-
-/// Combines the two numbers of a pair into one, which is compared faster than two.
-pub(crate) fn key([a, b]: &[u32; 2]) -> u64 {
-    u64::from(*a) << 32 | u64::from(*b)
 }
 
 /// Merges new pairs into an ascending list.

@@ -5,27 +5,15 @@ use crate::newton::Aim;
 use crate::row::Row;
 use crate::spread::Spread;
 use crate::subspace;
-use crate::turns::Turns;
+use crate::turns::{COUPLED_TOLERANCE, TOLERANCE, Turns};
 use crate::vector::{dot, scaled};
 use crate::working_set;
 use core::any::Any;
 use opruga_math::Lane;
 
-/// The sweeps end when the remaining contact velocities are below this fraction of the mean approach velocity of the connected
-/// bodies. At rest, where that velocity is h g, a contact then creeps by less than a hundredth of one step of free fall. The
-/// next step starts from these impulses and processes every contact, so the remainders do not accumulate. The world also passes
-/// impulses on from frame to frame ([`crate::Touching::keep`]). A tolerance of a thousandth needs two to three times as many
-/// turns and changes the kinetic energy of a heap by less than a thousandth.
-pub(crate) const TOLERANCE: f64 = 1e-2;
-
 /// The largest number of sweeps in a step. A sweep passes an impulse through all contacts in its direction. A column of bodies
 /// therefore needs about as many sweeps as there are contacts that an elastic wave passes within one step: a few.
 const MOST_SWEEPS: usize = 60;
-
-/// The corresponding fraction (see [`TOLERANCE`]) for contacts of bodies with implicit integrators. The forces of these bodies
-/// balance the remaining velocities and therefore contain an error. With a fraction of 1e-5, the pressure on a patch is wrong
-/// by 2e-4 (the cases `contact-patch-…` of the verification require 1e-6).
-pub(crate) const COUPLED_TOLERANCE: f64 = 1e-9;
 
 /// The corresponding fraction (see [`TOLERANCE`]) for bodies at rest, relative to the approach in the present correction. The
 /// next correction solves for the remainder, whose approach is smaller. With a fraction of a tenth, one and a half times as

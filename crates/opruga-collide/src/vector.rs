@@ -5,6 +5,15 @@ use opruga_math::{Lane, lanes};
 /// The lowest and the highest corner of a box.
 pub(crate) type Bounds<const D: usize> = [[f64; D]; 2];
 
+/// A box, enlarged by a distance [m] on all sides.
+pub(crate) fn wider<const D: usize>([mut low, mut high]: Bounds<D>, distance: f64) -> Bounds<D> {
+    for d in 0..D {
+        low[d] -= distance;
+        high[d] += distance;
+    }
+    [low, high]
+}
+
 /// The scalar product.
 #[inline(always)]
 pub(crate) fn dot<S: Lane, const D: usize>(a: &[S; D], b: &[S; D]) -> S {
