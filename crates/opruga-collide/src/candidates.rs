@@ -110,7 +110,7 @@ impl<const D: usize> Candidates<D> {
             most,
             counted: &counted,
         };
-        threads::each_in_pool(&mut self.parts, |part| comparisons.compare(part));
+        threads::each_in_pool(self.parts.iter_mut(), |part| comparisons.compare(part));
         for (list, known) in [&mut self.vertex_facet, &mut self.edge_edge].into_iter().enumerate() {
             self.fresh.clear();
             self.parts.iter().for_each(|part| self.fresh.extend(&part.pairs[list]));

@@ -31,13 +31,15 @@ impl<const D: usize> Touching<D> {
             }
         }
         let parts = threads::parts(self.asked.len(), self.threads, LEAST_POINTS);
-        let mut parts: Vec<_> = parts.map(|range| (range, Vec::new())).collect();
-        parts[0].1 = std::mem::take(&mut self.rows);
+        let mut lists = std::mem::take(&mut self.obstacle_rows);
+        let of_parts = threads::empty_lists(&mut lists, parts.len());
+        of_parts[0] = std::mem::take(&mut self.rows);
         let touching = &*self;
-        threads::each_in_pool(&mut parts, |(range, rows)| {
-            touching.asked[range.clone()].iter().for_each(|p| touching.hold_point(*p, h, obstacles, rows));
+        threads::each_in_pool(parts.zip(of_parts.iter_mut()), |(range, rows)| {
+            touching.asked[range].iter().for_each(|p| touching.hold_point(*p, h, obstacles, rows));
         });
-        parts.iter_mut().for_each(|(_, rows)| append(&mut self.rows, rows));
+        of_parts.iter_mut().for_each(|rows| append(&mut self.rows, rows));
+        self.obstacle_rows = lists;
     }
 
     /// Adds the contacts between obstacles and one point.

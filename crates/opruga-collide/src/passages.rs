@@ -24,14 +24,16 @@ impl<const D: usize> Touching<D> {
         for with_facet in [true, false] {
             let close = &self.close[usize::from(!with_facet)];
             let parts = threads::parts(close.len(), self.threads, LEAST_PART);
-            let mut parts: Vec<_> = parts.map(|range| (range, Vec::new())).collect();
-            threads::each_in_pool(&mut parts, |(range, meeting)| {
+            let mut lists = std::mem::take(&mut self.meeting);
+            let of_parts = threads::empty_lists(&mut lists, parts.len());
+            threads::each_in_pool(parts.zip(of_parts.iter_mut()), |(range, meeting)| {
                 let time = |(pair, distance): &_| self.passage(*pair, with_facet, *distance).map(|time| (*pair, time));
-                meeting.extend(close[range.clone()].iter().filter_map(time));
+                meeting.extend(close[range].iter().filter_map(time));
             });
-            for (pair, time) in parts.into_iter().flat_map(|(_, meeting)| meeting) {
-                found |= self.look(pair, with_facet, time, h);
+            for (pair, time) in of_parts.iter().flatten() {
+                found |= self.look(*pair, with_facet, *time, h);
             }
+            self.meeting = lists;
         }
         found
     }

@@ -24,6 +24,8 @@ pub(crate) struct Reach<const D: usize> {
     stale: Vec<bool>,
     /// For every body, whether it will soon be stale. The next search covers all such bodies at once.
     due: Vec<bool>,
+    /// What the points of bodies need in this step, by parts of the points.
+    began: Vec<Vec<Began>>,
 }
 
 /// A box whose margin is this many times as wide as it would be now is computed anew. Otherwise bodies that come to rest after
@@ -40,6 +42,7 @@ pub(crate) fn beyond(moves: f64, steps: f64, margin: f64) -> f64 {
 }
 
 /// The results of [`Reach::begin`] for the points of a body, or of a part of it.
+#[derive(Clone, Debug)]
 struct Began {
     body: u32,
     push: f64,
@@ -81,8 +84,9 @@ impl<const D: usize> Reach<D> {
         let size = threads::part_size(from.len(), threads, LEAST_PART);
         let boxes = self.push.chunks_mut(size).zip(self.swept.chunks_mut(size)).zip(self.found_in.chunks(size));
         let points = from.chunks(size).zip(to.chunks(size)).zip(body.chunks(size));
-        let mut parts: Vec<_> = points.zip(boxes).map(|part| (part, Vec::new())).collect();
-        threads::each_in_pool(&mut parts, |(((points, body), ((push, swept), found)), bodies)| {
+        let began = threads::empty_lists(&mut self.began, from.len().div_ceil(size));
+        let parts = points.zip(boxes).zip(began.iter_mut());
+        threads::each_in_pool(parts, |(((points, body), ((push, swept), found)), bodies)| {
             let own = push.iter_mut().zip(swept.iter_mut()).zip(found.iter()).zip(body.iter());
             for ((from, to), (((push, swept), found), body)) in points.0.iter().zip(points.1).zip(own) {
                 let displacement = subtract(to, from);
@@ -109,8 +113,8 @@ impl<const D: usize> Reach<D> {
                 }
             }
         });
-        for Began { body, push, stale, due } in parts.into_iter().flat_map(|(_, bodies)| bodies) {
-            let body = body as usize;
+        for Began { body, push, stale, due } in began.iter().flatten() {
+            let body = *body as usize;
             self.body_push[body] = push.larger(self.body_push[body]);
             self.stale[body] |= stale;
             self.due[body] |= due;

@@ -24,7 +24,7 @@ impl<const D: usize> Touching<D> {
         self.divide(&mut all);
         self.lend_lists(&mut all[0]);
         let touching = &*self;
-        threads::each_in_pool(&mut all, |found| Finder { touching, found, h }.find());
+        threads::each_in_pool(all.iter_mut(), |found| Finder { touching, found, h }.find());
         all.iter_mut().for_each(|found| self.take_in(found));
         self.found = all;
         self.put_passing(h);

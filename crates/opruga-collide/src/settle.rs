@@ -27,9 +27,9 @@ impl<const D: usize> Touching<D> {
             self;
         end.resize(free.len(), [0.0; D]);
         let size = threads::part_size(end.len(), self.threads, LEAST_PART);
-        let mut parts: Vec<_> = end.chunks_mut(size).zip(moved.chunks_mut(size)).enumerate().collect();
-        threads::each_in_pool(&mut parts, |(part, (end, moved))| {
-            let first = *part * size;
+        let parts = end.chunks_mut(size).zip(moved.chunks_mut(size)).enumerate();
+        threads::each_in_pool(parts, |(part, (end, moved))| {
+            let first = part * size;
             end.copy_from_slice(&free[first..first + end.len()]);
             for (k, (end, moved)) in end.iter_mut().zip(moved.iter_mut()).enumerate() {
                 let p = first + k;

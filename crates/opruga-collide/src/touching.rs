@@ -92,6 +92,8 @@ pub struct Touching<const D: usize> {
     pub(crate) known: Vec<bool>,
     pub(crate) asks: Vec<bool>,
     pub(crate) asked: Vec<u32>,
+    /// The contacts with obstacles, by parts of these points.
+    pub(crate) obstacle_rows: Vec<Vec<Row<D>>>,
     pub(crate) v: Vec<[f64; D]>,
     pub(crate) moved: Vec<[f64; D]>,
     /// Positions at an impact within a step.
@@ -102,6 +104,8 @@ pub struct Touching<const D: usize> {
     pub(crate) passing: Vec<(u64, Gap<D>)>,
     /// The passing pairs that the last check has found.
     pub(crate) fresh: Vec<u64>,
+    /// Pairs that meet within the step, and the fraction of the step at which they do, by parts of the close pairs.
+    pub(crate) meeting: Vec<Vec<([u32; 2], f64)>>,
     /// The pairs of a vertex and a facet, and of two edges, that may meet in the step, and their distances at its start [m].
     pub(crate) close: [Vec<([u32; 2], f64)>; 2],
     pub(crate) zones: Zones<D>,

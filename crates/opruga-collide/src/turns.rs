@@ -5,6 +5,7 @@ use crate::row::Row;
 use crate::spread::Spread;
 use crate::vector::{dot, length, subtract};
 use core::ops::Range;
+use core::sync::atomic::{AtomicU64, Ordering};
 use opruga_core::threads;
 use opruga_math::Lane;
 
@@ -373,24 +374,28 @@ impl<const D: usize> Turns<D> {
         let Alone { points, v: own, inverse_mass, stamps } = alone;
         own.clear();
         own.extend(points.iter().map(|(p, _)| v[*p as usize]));
-        let mut parts = Vec::new();
-        let least = if threads < 2 { rows.len() } else { (rows.len() / (4 * threads)).max(LEAST_PART) };
+        let least = threads::part_size(rows.len(), threads, LEAST_PART);
         let (mut rows, mut heads) = (rows, &mut heads[..]);
         let (mut copies, mut stamps) = (&mut own[..], &mut stamps[..]);
         let mut first = 0;
-        for end in 1..first_alone.len() {
-            let row_count = (starts[end] - starts[first]) as usize;
-            if row_count < least && end + 1 < first_alone.len() {
-                continue;
-            }
-            let count = (first_alone[end] - first_alone[first]) as usize;
-            let Some(rows) = rows.split_off_mut(..row_count) else { break };
-            let Some(heads) = heads.split_off_mut(..row_count) else { break };
-            let (Some(v), Some(stamps)) = (copies.split_off_mut(..count), stamps.split_off_mut(..count)) else { break };
-            parts.push(Part { sets: first..end, rows, heads, v, stamps, turns: 0 });
+        let sets = first_alone.len() - 1;
+        let parts = core::iter::from_fn(|| {
+            let is_enough = |end: &usize| (starts[*end] - starts[first]) as usize >= least;
+            let end = (first < sets).then(|| (first + 1..sets).find(is_enough).unwrap_or(sets))?;
+            let range = [&*starts, &*first_alone].map(|starts| (starts[end] - starts[first]) as usize);
+            let part = Part {
+                sets: first..end,
+                rows: rows.split_off_mut(..range[0])?,
+                heads: heads.split_off_mut(..range[0])?,
+                v: copies.split_off_mut(..range[1])?,
+                stamps: stamps.split_off_mut(..range[1])?,
+            };
             first = end;
-        }
-        threads::each_in_pool(&mut parts, |part| {
+            Some(part)
+        });
+        let turns = AtomicU64::new(0);
+        threads::each_in_pool(parts, |part| {
+            let mut now = 0;
             let [first_row, first_copy] = [&*starts, &*first_alone].map(|starts| starts[part.sets.start]);
             for set in part.sets.clone() {
                 let of =
@@ -407,21 +412,21 @@ impl<const D: usize> Turns<D> {
                     inverse_mass: &inverse_mass[copies],
                     v: &mut part.v[own.clone()],
                     stamps: &mut part.stamps[own],
-                    now: &mut part.turns,
+                    now: &mut now,
                 };
                 let mut sweep = 0;
                 while sweep < most && sweeps.sweep_alone(sweep % 2 == 1, enough) {
                     sweep += 1;
                 }
             }
+            turns.fetch_add(now, Ordering::Relaxed);
         });
-        let turns = parts.iter().map(|part| part.turns as usize).sum();
         for ((p, moves), own) in points.iter().zip(&*own) {
             if *moves {
                 v[*p as usize] = *own;
             }
         }
-        turns
+        turns.into_inner() as usize
     }
 
     /// Bytes on the heap.
@@ -450,7 +455,6 @@ struct Part<'a, const D: usize> {
     heads: &'a mut [([u32; 4], u64)],
     v: &'a mut [[f64; D]],
     stamps: &'a mut [u64],
-    turns: u64,
 }
 
 /// Sweeps over the rows of one set.

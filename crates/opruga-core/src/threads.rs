@@ -68,18 +68,31 @@ pub fn each<T: Send>(threads: usize, pieces: &mut [T], work: impl Fn(&mut T) + S
 
 /// Does the work on every piece on the threads of the pool in which the caller runs. Unlike those of a team, these threads
 /// sleep between calls. This function is meant for pieces that take tens of microseconds, between longer work on one thread.
-pub fn each_in_pool<T: Send>(pieces: &mut [T], work: impl Fn(&mut T) + Sync + Send) {
-    match pieces {
-        [] => {}
-        [piece] => work(piece),
-        _ => pieces.par_iter_mut().for_each(work),
+///
+/// A single piece needs no memory.
+pub fn each_in_pool<T: Send>(mut pieces: impl Iterator<Item = T>, work: impl Fn(T) + Sync + Send) {
+    let Some(first) = pieces.next() else { return };
+    match pieces.next() {
+        None => work(first),
+        Some(second) => {
+            let all: Vec<T> = [first, second].into_iter().chain(pieces).collect();
+            all.into_par_iter().for_each(work);
+        }
     }
+}
+
+/// Empties the first `count` lists, and adds lists if there are fewer; returns these lists.
+pub fn empty_lists<T>(lists: &mut Vec<Vec<T>>, count: usize) -> &mut [Vec<T>] {
+    lists.resize_with(lists.len().max(count), Vec::new);
+    let lists = &mut lists[..count];
+    lists.iter_mut().for_each(Vec::clear);
+    lists
 }
 
 /// Divides a list into parts for [`each_in_pool`]: one part for a single thread, otherwise four for each thread, so that threads
 /// that finish early take over work of others. Only the last part may have fewer entries than `least`. An empty list has one
 /// empty part.
-pub fn parts(length: usize, threads: usize, least: usize) -> impl Iterator<Item = Range<usize>> {
+pub fn parts(length: usize, threads: usize, least: usize) -> impl ExactSizeIterator<Item = Range<usize>> {
     let size = part_size(length, threads, least);
     (0..length.max(1)).step_by(size).map(move |first| first..length.min(first + size))
 }
