@@ -18,9 +18,9 @@ pub(crate) use verify::Verify;
     version,
     max_term_width = 110,
     after_help = "Without a command, `opruga` opens the studio if there is a screen; otherwise it runs the scene \
-                  `ball`.\n\nOPRUGA_SIMD=scalar|sse2|avx2|avx512 in the environment selects the vector instructions of the kernels; the default is \
-                  the best that the processor has. The results are the same, bit for bit. `scalar` selects the instructions that every processor of \
-an architecture has: `sse2` on x86-64."
+`ball`.\n\nOPRUGA_SIMD=scalar|sse2|avx2|avx512 in the environment selects the vector instructions of the kernels; by default, the kernels use the \
+best ones that the processor has. The results are the same, bit for bit. `scalar` selects the instructions that every processor of an architecture \
+has: `sse2` on x86-64."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -102,7 +102,7 @@ pub(crate) struct Mesh {
     /// average. Parts thinner than H may be lost; a message then reports the loss.
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub(crate) size: Option<f64>,
-    /// The longest side of the whole body [m], instead of the units of the file; required for drawings
+    /// The length of the longest side of the whole body [m]; it replaces the units of the file, and drawings require it
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     pub(crate) scale_to: Option<f64>,
     /// Set a field of the shape, as in a scene, such as layer=countries, feature=Italy, path=wing, text=opruga; may be given several times
@@ -111,7 +111,8 @@ pub(crate) struct Mesh {
     /// The order of the cells: 1 has nodes at the corners only; 2 also has one in the middle of every edge
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2))]
     pub(crate) order: u32,
-    /// Repair the mesh: flip inverted cells, drop nodes that no cell uses, merge vertices at the same position; report the number of each repair
+    /// Repair the mesh: flip inverted cells, drop nodes that no cell uses, merge vertices at the same position; report how many repairs of each sort
+    /// were made
     #[arg(long)]
     pub(crate) mend: bool,
     /// The file for the picture [default: next to the mesh]
@@ -150,7 +151,7 @@ pub(crate) struct Check {
     /// Allow shapes to be read from files outside the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
-    /// Check again whenever the scene or a file that it names changes, until Ctrl-C
+    /// Repeat the check whenever the scene or one of its files changes, until you press Ctrl-C
     #[arg(long)]
     pub(crate) watch: bool,
 }
@@ -162,15 +163,15 @@ pub(crate) struct Sweep {
     pub(crate) scene: Option<String>,
     /// The values of a parameter; may be given several times
     ///
-    /// PATH=a,b,c lists the values. PATH=LOW..HIGH:COUNT gives COUNT values, including both ends. With :log, neighbouring values have equal ratios;
-    /// with :whole, the values are rounded to whole numbers. PATH=VALUE changes the parameter for all points. If several parameters vary, the points
-    /// form a grid, unless --each or --sample is given.
+    /// PATH=a,b,c lists the values. PATH=LOW..HIGH:COUNT gives COUNT values, including both ends. With :log, the ratio of neighbouring values is
+    /// constant; with :whole, the values are rounded to whole numbers. PATH=VALUE gives the parameter the same value in all runs. If several
+    /// parameters vary, there is one run for every combination of their values, unless --each or --sample is given.
     #[arg(long = "set", value_name = "PATH=VALUES", conflicts_with = "resume")]
     pub(crate) set: Vec<String>,
     /// Vary one parameter at a time; the others keep their values from the scene
     #[arg(long, conflicts_with_all = ["resume", "sample"])]
     pub(crate) each: bool,
-    /// Use this many random points instead of a grid; ranges then have no COUNT
+    /// Use this many random points instead of a grid; give ranges as LOW..HIGH, without :COUNT
     ///
     /// The points form a Latin hypercube sample: if the range of a parameter is divided into as many equal parts as there are points,
     /// each part contains exactly one point.
@@ -184,8 +185,8 @@ pub(crate) struct Sweep {
     pub(crate) seed: u64,
     /// What to measure in every run; may be given several times
     ///
-    /// bounce_height[.BODY], settling_time, equilibrium_radius[.BODY], energy_drift, nanoseconds_per_step, or
-    /// PROBE.COLUMN.min, .max, .mean, .last for a column of a probe of the scene, such as top.y.max.
+    /// METRIC is bounce_height[.BODY], settling_time, equilibrium_radius[.BODY], energy_drift or nanoseconds_per_step. For a column of a probe of the
+    /// scene, it is PROBE.COLUMN.min, .max, .mean or .last, such as top.y.max.
     #[arg(long = "metric", value_name = "METRIC", conflicts_with = "resume")]
     pub(crate) metrics: Vec<String>,
     /// The simulated time at which runs end [s] [default: that of the scene]
@@ -196,13 +197,13 @@ pub(crate) struct Sweep {
     /// If you repeat the same call for the same folder, an interrupted sweep continues.
     #[arg(long, value_name = "FOLDER", conflicts_with = "resume")]
     pub(crate) out: Option<PathBuf>,
-    /// Continue the sweep of this folder, which contains its definition
+    /// Continue the sweep in this folder; the folder also contains the definition of the sweep
     #[arg(long, value_name = "FOLDER")]
     pub(crate) resume: Option<PathBuf>,
-    /// Start again, whatever the folder contains
+    /// Start from the beginning, whatever the folder contains
     #[arg(long, conflicts_with = "resume")]
     pub(crate) force: bool,
-    /// Number of simultaneous runs, 1 to 256 [default: the number of cores]; results do not depend on it, speeds do
+    /// Number of simultaneous runs, 1 to 256 [default: the number of cores]; it affects measured speeds, but no other results
     #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub(crate) threads: Option<u16>,
     /// Print the summary, or an error, as JSON
@@ -219,7 +220,7 @@ pub(crate) struct Sweep {
     pub(crate) lenient: bool,
 }
 
-/// What is drawn of a run or of a recording.
+/// The options for the pictures of a run or of a recording.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Pictures {
     /// Pictures and exported frames per second of simulated time, at most 240 [default: 20]
@@ -237,7 +238,7 @@ pub(crate) struct Pictures {
     /// Draw arrows: the pressure of gas (without gas, the force on nodes) and the pull of the pointer
     #[arg(long, conflicts_with = "no_pictures")]
     arrows: bool,
-    /// Draw every spring and node, even on surfaces, under skins and where there are many of them
+    /// Draw all springs and nodes, even on surfaces and under skins, and even if there are many
     #[arg(long, conflicts_with = "no_pictures")]
     springs: bool,
 }
@@ -248,7 +249,7 @@ impl Pictures {
         self.fps.is_some() || self.no_pictures || self.gif || self.arrows || self.springs
     }
 
-    /// The output that the call requests. `notes` selects whether a note reports that pictures have another rate than requested.
+    /// The output that the call requests. If `notes` is true, a note reports when the pictures have another rate than requested.
     fn wanted(&self, notes: bool) -> Wanted {
         Wanted {
             row_every: None,
@@ -269,8 +270,9 @@ pub(crate) struct Run {
     pub(crate) scene: Option<String>,
     /// The simulated time at which the run ends [s] [default: that of the scene]
     ///
-    /// A run consists of whole frames; if the last one ends after this time, a note reports when. A resumed run that continues from t = 5 with
-    /// --seconds 8 runs for 3 s; without --seconds, it ends where the earlier run was meant to end. --seconds 0 writes the state at the start.
+    /// A run consists of whole frames. If the last frame ends after this time, a note reports the time at which the frame ends. A resumed run that
+    /// continues from t = 5 with --seconds 8 runs for 3 s; without --seconds, it ends where the earlier run was meant to end. --seconds 0 writes the
+    /// state at the start.
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
     #[command(flatten)]
@@ -286,8 +288,8 @@ pub(crate) struct Run {
     pub(crate) threads: u16,
     /// Also write Cauchy's stress, the von Mises stress and J of every node to final.csv
     ///
-    /// The value at a node is the mean over the finite elements around it, weighted by their volume at rest. Columns: sxx, syy, szz, sxy,
-    /// in 3D also syz and szx, then von_mises (of the mean stress) and volume_ratio. Nodes of bodies without finite elements have NaN.
+    /// The value at a node is the mean over the finite elements around it, weighted by their volume at rest. The columns are sxx, syy, szz and sxy,
+    /// in 3D also syz and szx, and then von_mises (computed from the mean stress) and volume_ratio. Nodes of bodies without finite elements have NaN.
     #[arg(long)]
     pub(crate) stress: bool,
     /// Override a parameter, such as time.substeps=64; may be given several times
@@ -305,16 +307,16 @@ pub(crate) struct Run {
     /// must be given again. The output covers only the rest of the run, so it goes to a folder of its own.
     #[arg(long, value_name = "FILE")]
     pub(crate) resume: Option<PathBuf>,
-    /// Real time between two checkpoints during the run [s]; 0 writes one only at the end
+    /// Real time between two checkpoints during the run [s]; 0 writes a checkpoint only at the end
     ///
-    /// A run that is killed loses at most the work of this time: `checkpoint` and `diagnostics.csv` reach up to the last checkpoint, and
-    /// `checkpoint.previous` is the checkpoint before it. --resume continues from either.
+    /// A killed run loses at most the work of this interval. `checkpoint` and `diagnostics.csv` reach up to the last checkpoint;
+    /// `checkpoint.previous` is the checkpoint before the last one. --resume continues from either of these files.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, default_value_t = 60.0)]
     pub(crate) checkpoint_every: f64,
-    /// Record the run to this file, for `opruga replay`, which also writes its frames as VTU, glTF, PC2, MDD, OBJ or PLY
+    /// Record the run to this file; `opruga replay` can later draw its pictures and write its frames as VTU, glTF, PC2, MDD, OBJ or PLY
     ///
-    /// The file contains a hash of every frame. It also contains the scene, so it needs no other file. A run that is killed loses no frame that it
-    /// has finished. --force replaces an existing file.
+    /// The file contains a hash of every frame. It also contains the scene, so it needs no other file. If the run is killed, the file still contains
+    /// all frames that were finished. --force replaces an existing file.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
     /// Keep one state every FRAMES frames of the recording; 1 keeps all states
@@ -325,8 +327,8 @@ pub(crate) struct Run {
     pub(crate) record_every: Option<u32>,
     /// Write a row of diagnostics.csv every FRAMES frames; 1 writes every frame
     ///
-    /// The first and the last frame always have a row. By default, every frame has a row if the table then stays below 67 MB. Otherwise, only one
-    /// frame in several has a row, and a warning reports this number of frames.
+    /// The first and the last frame always have a row. By default, every frame has a row if the table then stays below 67 MB. Otherwise, only every
+    /// n-th frame has a row, and a warning reports n.
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
     pub(crate) diagnostics_every: Option<u32>,
     /// Check after every frame that no surfaces cross; a run in which surfaces cross ends with exit code 1
@@ -347,7 +349,7 @@ pub(crate) struct Run {
     /// Allow shapes to be read from files outside the folder of the scene
     #[arg(long)]
     pub(crate) allow_outside: bool,
-    /// Run again whenever the scene or a file that it names changes, until Ctrl-C; later runs replace the output of earlier ones
+    /// Run again whenever the scene or one of its files changes, until you press Ctrl-C; later runs replace the output of earlier ones
     #[arg(long, conflicts_with = "resume")]
     pub(crate) watch: bool,
 }
@@ -362,7 +364,7 @@ pub(crate) struct Modes {
     /// The body whose modes are computed [default: the first one]
     #[arg(long, value_name = "NAME")]
     pub(crate) body: Option<String>,
-    /// Find the modes about the equilibrium, which the integrator `equilibrium` computes, instead of the state at the start
+    /// Find the modes about the equilibrium (computed by the integrator `equilibrium`) instead of about the state at the start
     #[arg(long)]
     pub(crate) equilibrium: bool,
     /// Find the modes about the state at this simulated time [s]
@@ -392,10 +394,9 @@ pub(crate) struct Modes {
 pub(crate) struct Replay {
     /// A recording: a file that `opruga run --record` has written
     pub(crate) file: PathBuf,
-    /// Recompute every frame and compare its hash, and its whole state if the recording contains it; exit code 1 if a frame differs
+    /// Recompute every frame and compare its hash, and its whole state where the recording contains one; exit code 1 if a frame differs
     ///
-    /// Without an output option, nothing is written. With --out or another output option, the output is written afterwards if all frames are the
-    /// same.
+    /// Without an output option, nothing is written. With --out or another output option, the output is written afterwards if all frames agree.
     #[arg(long)]
     pub(crate) verify: bool,
     /// The simulated time at which to begin [s] [default: the first frame]
@@ -421,10 +422,10 @@ pub(crate) struct Replay {
     /// Also write the run as animated glTF (run.glb), with one morph target per picture
     #[arg(long)]
     pub(crate) gltf: bool,
-    /// Also write a point cache of every body (NAME.pc2), for the mesh of --obj
+    /// Also write a point cache of every body (NAME.pc2), for use with the mesh that --obj writes
     #[arg(long)]
     pub(crate) pc2: bool,
-    /// Also write a point cache of every body (NAME.mdd), for the mesh of --obj
+    /// Also write a point cache of every body (NAME.mdd), for use with the mesh that --obj writes
     #[arg(long)]
     pub(crate) mdd: bool,
     /// Also write the state at every picture as Wavefront OBJ
@@ -494,7 +495,7 @@ impl Command {
     }
 }
 
-/// Reads a number of modes. The word `all` stands for a number larger than that of any body.
+/// Reads a number of modes. The word `all` stands for a number larger than the number of modes of any body.
 fn count_of_modes(text: &str) -> Result<usize, String> {
     match text {
         "all" => Ok(usize::MAX),

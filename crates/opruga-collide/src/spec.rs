@@ -21,12 +21,12 @@ macro_rules! collider {
                 Field::new("restitution", Allowed::FRACTION, "", ZERO, "Ratio of the normal speeds after and before an impact. The speed before an \
 impact is the speed at which a node meets the surface within the step: √(u² + 2 a g), where u and g are the speed and the gap of the node at the \
 start of the step, and a is its acceleration by forces. This speed is limited to the speed at the end of the step, so that an impact creates no \
-energy. With `rest_speed = 0`, the speed at the end of the step is always used, as in the thesis; a node that forces push towards the surface then \
-gains a little energy. Between two impacts at speed v, `symplectic_euler` loses about m g h v of energy: a ball dropped from 1 m loses a tenth of \
-its energy in 20 s at 16 substeps. `verlet` loses none."),
+energy. With `rest_speed = 0`, the speed at the end of the step is always used, as in the thesis. Forces that push a node towards the surface then \
+give it a little energy. Between two impacts at speed v, `symplectic_euler` loses about m g h v of energy: a ball dropped from 1 m loses a tenth of \
+its energy in 20 s at 16 substeps. `verlet` loses no energy."),
                 Field::new("friction", Allowed::NOT_NEGATIVE, "", ZERO, "Coulomb's coefficient µ, for both sticking and sliding."),
                 Field::new("rest_speed", Allowed::NOT_NEGATIVE, "m/s", Default::Number(0.05), "Normal speed up to which a contact does not bounce; \
-with 0 every crossing bounces, even that of a node at rest on the collider.").applies(&[Condition::NotZero("restitution")]),
+with 0, every node that crosses the surface bounces, even a node at rest on the collider.").applies(&[Condition::NotZero("restitution")]),
                 Field::new("thickness", Allowed::NOT_NEGATIVE, "m", ZERO, "Distance that nodes keep from the surface; edges and corners become round."),
                 Field::new("motion", Allowed::Path, "s, m", Default::Absent, "Displacement over time, added to the position; the obstacle is at rest \
 before the first row and after the last one."),
@@ -47,14 +47,14 @@ macro_rules! both {
 
 both! { HALF_SPACE_2D, HALF_SPACE_3D, "half_space", &[Role::HalfSpace],
     "everything behind a line (2D) or plane (3D): floor, wall, incline",
-    "Solid where (x − point)·normal < 0. The normal may have any length above zero.";
+    "The region with (x − point)·normal < 0 is solid. The normal may have any length above zero.";
     Field::new("point", Allowed::Vector, "m", Default::Origin, "A point of the surface."),
     Field::new("normal", Allowed::Direction, "", Default::Required, "Direction out of the solid."),
 }
 
-const BOX_TEXT: &str = "Solid inside, or (`inside = true`) a container that keeps bodies within its walls. The box is given by two opposite corners, \
-or by its centre and size; in the second case, it can also be rotated. A node inside leaves through the nearest face; a node that moves by more than \
-a quarter of the smallest side in a step leaves through the face by which it came in.";
+const BOX_TEXT: &str = "The box is solid; with `inside = true`, it is a container that keeps bodies within its walls. The box is given by two \
+opposite corners, or by its centre and size; in the second case, it can also be rotated. A node inside the solid box leaves through the nearest \
+face. If it has moved by more than a quarter of the smallest side in a step, it leaves through the face by which it entered.";
 const MIN: Field = Field::new(
     "min",
     Allowed::Vector,
@@ -76,7 +76,7 @@ const CENTER: Field = Field::new(
 const SIZE: Field =
     Field::new("size", Allowed::Vector, "m", Default::Absent, "Lengths of the sides.").with(&["center"]);
 const INSIDE_BOX: Field =
-    Field::new("inside", Allowed::Boolean, "", NO, "Whether bodies are kept inside instead of outside.");
+    Field::new("inside", Allowed::Boolean, "", NO, "Whether the obstacle keeps bodies inside instead of outside.");
 
 collider! {
     /// The parameters of `box` in 2D.
@@ -96,15 +96,15 @@ centre."),
 
 both! { BALL_2D, BALL_3D, "ball", &[],
     "a disc (2D) or ball (3D): solid, or a container",
-    "Solid where |x − center| < radius, or everywhere else (`inside = true`). A node exactly at the centre leaves along +y.";
+    "The region with |x − center| < radius is solid; with `inside = true`, everything else is solid. A node exactly at the centre leaves along +y.";
     Field::new("center", Allowed::Vector, "m", Default::Origin, "The centre."),
     Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
-    Field::new("inside", Allowed::Boolean, "", NO, "Whether bodies are kept inside instead of outside."),
+    Field::new("inside", Allowed::Boolean, "", NO, "Whether the obstacle keeps bodies inside instead of outside."),
 }
 
 both! { CAPSULE_2D, CAPSULE_3D, "capsule", &[],
     "all points within a given distance of a segment",
-    "Solid where the distance to the segment from a to b is less than the radius. A node exactly on the segment leaves at a right angle to it.";
+    "The region closer than `radius` to the segment from `a` to `b` is solid. A node exactly on the segment leaves at a right angle to it.";
     Field::new("a", Allowed::Vector, "m", Default::Required, "One end of the segment."),
     Field::new("b", Allowed::Vector, "m", Default::Required, "The other end, a different point from `a`."),
     Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
@@ -112,13 +112,13 @@ both! { CAPSULE_2D, CAPSULE_3D, "capsule", &[],
 
 both! { CONVEX_2D, CONVEX_3D, "convex", &[],
     "the convex hull of points",
-    "Solid inside the hull of the points; points within the hull do not matter. A node inside leaves through the nearest face.";
+    "The convex hull of the points is solid; points inside the hull have no effect. A node inside the hull leaves through the nearest face.";
     Field::new("points", Allowed::Points, "m", Default::Required, "Points whose hull has an area (2D) or a volume (3D)."),
 }
 
 const THIN: &str = "An infinitely thin surface that stops nodes from either side: a node stays on the side on which it was before the step, however \
-fast it is. Nodes keep a distance of at least a hundred-millionth of the size of the surface. A node that starts exactly on it goes to the side of \
-the normal (in 2D, to the left of the direction in which the points run, in 3D by the right-hand rule).";
+fast it is. Nodes keep a distance of at least a hundred-millionth of the size of the surface. A node that starts exactly on the surface goes to the \
+side of the normal (in 2D, to the left of the direction in which the points run; in 3D, by the right-hand rule).";
 
 collider! {
     /// The parameters of `polyline` (2D).
@@ -130,7 +130,7 @@ collider! {
     /// The parameters of `triangle_mesh` (3D).
     TRIANGLE_MESH, "triangle_mesh", 3, Allowed::Vector, &[], "a thin surface of triangles, open or closed", THIN;
     Field::new("points", Allowed::Points, "m", Default::Required, "The corners of the triangles."),
-    Field::new("triangles", Allowed::Integers, "", Default::Required, "Three point numbers per triangle, counted from 0."),
+    Field::new("triangles", Allowed::Integers, "", Default::Required, "The numbers of the three points of each triangle, counted from 0."),
 }
 
 /// The specification of every kind of collider that exists in a dimension.

@@ -29,8 +29,8 @@ pub fn markdown(catalogue: &Catalogue) -> String {
             kinds(&mut out, "Models", "models = [ { … } ]", &catalogue.models);
         }
     }
-    out.push_str("## Selectors\n\nA selector is a table with exactly one of these keys. A selector that selects nothing is an error. Positions are \
-those at the start.\n\n| key | selects | form |\n|---|---|---|\n");
+    out.push_str("## Selectors\n\nA selector is a table with exactly one of these keys. A selector that selects nothing is an error. Selectors refer \
+to the positions at the start.\n\n| key | selects | form |\n|---|---|---|\n");
     for spec in SELECTORS {
         let _ = writeln!(out, "| `{}` | {} | {} |", spec.kind, spec.summary, spec.documentation);
     }
@@ -46,7 +46,7 @@ const PATHS: &str = "\n## Paths of parameters\n\n`--set PATH=VALUE` and `do = \"
 `world.gravity`, `integrator.kind`, `collider.0.friction`, `body.ball.mass`, `body.0.models.mass_spring.stiffness`. An entry of a list is named by \
 its number from 0, its `name` or its `kind`. `--set` changes the scene before it is read, so it may name any field, and numbers refer to the order \
 of the tables in the file. `do = \"set\"` changes the running world, so it may name only `time.substeps` and fields of `world`, of `[contact]`, of \
-the integrator, of colliders and of models. The name of a body with copies then means all of them.\n";
+the integrator, of colliders and of models. In this case, the name of a body with copies means all copies.\n";
 
 fn heading(out: &mut String, title: &str, section: &'static Section) {
     let _ = writeln!(out, "## {title}\n\n{}\n", sentence(section.spec));

@@ -19,7 +19,7 @@ pub enum Language {
 }
 
 impl Language {
-    /// All of them.
+    /// All languages.
     pub const EVERY: [Language; 2] = [Language::English, Language::Croatian];
 
     /// The translation of the engine's texts; none for English, which is the language of the engine.
@@ -30,12 +30,13 @@ impl Language {
         }
     }
 
-    /// A message of the engine in full: what it says, what is allowed and what would help; in English if there is no translation.
+    /// The full text of a message of the engine: the message itself, the allowed values and a hint. If there is no translation, the text is in
+    /// English.
     pub fn in_full(self, message: &dyn Message) -> String {
         self.translation().and_then(|known| known.in_full(message)).unwrap_or_else(|| message.in_full())
     }
 
-    /// Its two-letter code in ISO 639.
+    /// The two-letter code of the language in ISO 639.
     pub fn code(self) -> &'static str {
         match self {
             Language::English => "en",
@@ -104,9 +105,9 @@ words! {
     push: "Push", "Guraj";
     push_hint: "Press a body and drag: the force grows with the distance that you drag", "Pritisni tijelo: sila raste s pomakom pokazivača";
     pin: "Pin", "Pribodi";
-    pin_hint: "Press a body to pin a point. Drag a pinned point to move it; double-click to free it", "Pritisni tijelo da se točka drži; pridržanu točku pomakni, dvostrukim klikom oslobodi";
+    pin_hint: "Press a body to pin a point. Drag a pinned point to move it; double-click the point to free it", "Pritisni tijelo da se točka drži; pridržanu točku pomakni, dvostrukim klikom oslobodi";
     shift: "Move", "Pomakni";
-    shift_hint: "Drag a body to another position, or turn and scale it with its handles; it starts from there, at rest", "Odvuci tijelo drugamo ili ga ručkama zakreni i povećaj: ondje se postavlja u mirovanju";
+    shift_hint: "Drag a body to another position, or turn and scale it with its handles; the body then starts there, at rest", "Odvuci tijelo drugamo ili ga ručkama zakreni i povećaj: ondje se postavlja u mirovanju";
     draw: "Draw", "Crtaj";
     draw_hint: "Draw a closed outline: it becomes a body", "Nacrtaj zatvoreni obris: postaje tijelo";
     add: "Add", "Dodaj";
@@ -146,7 +147,7 @@ words! {
     grey: "Grey, without colours", "Sivo, bez boja";
     diverging: "Blue to red", "Plavo do crveno";
     elastic_force_hint: "The force of springs, bending or finite elements on each node [N]", "Sila opruga, savijanja ili konačnih elemenata na svaki čvor [N]";
-    von_mises_hint: "Stress in solids [Pa]; springs have none: see the elastic force", "Naprezanje u čvrstim tijelima [Pa]; opruge ga nemaju: vidi elastičnu silu";
+    von_mises_hint: "Stress in solids [Pa]; springs have no such stress, but they have an elastic force", "Naprezanje u čvrstim tijelima [Pa]; opruge ga nemaju: vidi elastičnu silu";
     pressure_hint: "Pressure of the gas in each body [Pa]; bodies without gas have no value", "Plina u cijelom tijelu [Pa]; tijela bez plina ga nemaju";
     compare: "Side by side", "Usporedi";
     compare_hint: "Run the same scene twice, side by side in lock step. The right side has another model, integrator or parameter", "Isti prizor dvaput, korak po korak: desno s drugim modelom, integratorom ili parametrom";
@@ -228,7 +229,7 @@ words! {
     frame_would_take: "With that many substeps, a frame takes about {} s", "S toliko podkoraka sličica traje oko {} s";
     computing: "computing this frame: {} s so far", "sličica se računa {} s";
     nothing_has_it: "no body here has this quantity: {}", "ovdje nema veličine: {}";
-    again: "recomputing to t = {} s", "ponovno računanje do {} s";
+    again: "recomputing up to t = {} s", "ponovno računanje do {} s";
     on_the_right: "right", "desno";
     crossing: "The outline crosses itself: draw it without crossings", "Obris siječe sam sebe: nacrtaj ga bez križanja";
     too_small: "The outline is too small to be a body", "Obris je premalen da bude tijelo";

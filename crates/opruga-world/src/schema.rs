@@ -121,7 +121,13 @@ pub const SCENE: Section = Section {
                 Default::Integer(1),
                 "The seed of all random numbers; the same seed gives the same results, bit for bit.",
             ),
-            Field::new("title", Allowed::Text, "", Default::Text(""), "A sentence for lists and pictures."),
+            Field::new(
+                "title",
+                Allowed::Text,
+                "",
+                Default::Text(""),
+                "The title of the scene in lists and pictures, in one sentence.",
+            ),
             Field::new(
                 "length_unit",
                 Allowed::Text,
@@ -141,7 +147,7 @@ every picture and film of the scene.",
     ),
     children: &[
         child("time", Holds::Table(&TIME), true, "How time passes."),
-        child("world", Holds::Table(&WORLD), false, "What acts everywhere."),
+        child("world", Holds::Table(&WORLD), false, "Forces and limits that apply everywhere."),
         child("integrator", Holds::Integrator, true, "How the equations of motion are integrated."),
         child("body", Holds::List(&BODY), false, "The deformable bodies."),
         child("collider", Holds::Colliders, false, "The rigid obstacles."),
@@ -151,7 +157,7 @@ every picture and film of the scene.",
             "command",
             Holds::Tagged { tag: "do", sections: COMMANDS },
             false,
-            "What is done to the bodies while they move.",
+            "Actions on the bodies while they move.",
         ),
         child("probe", Holds::List(&PROBE), false, "Columns of `diagnostics.csv` that follow nodes."),
         child("picture", Holds::Table(&PICTURE), false, "What pictures of the scene show."),
@@ -190,30 +196,30 @@ pub const PICTURE: Section = Section {
     spec: &section(
         "picture",
         "What pictures of the scene show",
-        "Fields that are not given are chosen from what can be seen in the run. No physical result depends on these fields.",
+        "If a field is not given, its value is chosen from what is visible in the run. No physical result depends on these fields.",
         &[
             Field::new(
                 "panels",
                 Allowed::Integer { least: 1, greatest: 60 },
                 "",
                 Default::Absent,
-                "The number of moments that `strip.png` shows. By default, this number is as large as possible while bodies remain large enough to \
-see.",
+                "The number of moments that `strip.png` shows. By default, there are as many moments as possible, provided that bodies remain large \
+enough to see.",
             ),
             Field::new(
                 "low",
                 Allowed::Vector,
                 "m",
                 Default::Absent,
-                "With `high`: the corner with the smallest coordinates of the part that `strip.png` shows. By default, it shows everything that \
-bodies reach, as in films.",
+                "The corner with the smallest coordinates of the region that `strip.png` shows; give it with `high`. By default, `strip.png` shows \
+everything that bodies reach, as films do.",
             ),
             Field::new(
                 "high",
                 Allowed::Vector,
                 "m",
                 Default::Absent,
-                "With `low`: the corner with the largest coordinates of the part that `strip.png` shows.",
+                "The corner with the largest coordinates of the region that `strip.png` shows; give it with `low`.",
             ),
             Field::new(
                 "azimuth",
@@ -238,9 +244,9 @@ bodies reach, as in films.",
 pub const WORLD: Section = Section {
     spec: &section(
         "world",
-        "What acts everywhere",
+        "Forces and limits that apply everywhere",
         "Gravity and drag act on every node. `largest_force` and `largest_velocity` stabilise a scene; `largest_distance` removes bodies that would \
-fall for ever. All three are off by default; warnings report how often they act. `unfold` is not physical and is also off by default.",
+fall for ever. These three limits are off by default; warnings report how often they act. `unfold` is not physical and is also off by default.",
         &[
             Field::new("gravity", Allowed::Vector, "m/s²", Default::Origin, "Acceleration of gravity."),
             Field::new(
@@ -264,8 +270,8 @@ fall for ever. All three are off by default; warnings report how often they act.
                 Allowed::Boolean,
                 "",
                 Default::Boolean(false),
-                "Whether a body that is stuck is displaced at random. A body is stuck if it is at rest with degenerate or inverted cells, or if it \
-is at rest and strained although nothing acts on it. The first displacement is 1e-4 of the size of the body. If the body stays in this shape, \
+                "Whether stuck bodies are displaced at random. A body is stuck if it is at rest with degenerate or inverted cells, or if it is at \
+rest and strained although nothing acts on it. The first displacement is 1e-4 of the size of the body. If the body stays in this shape, \
 displacements of a hundredth and of a tenth of its size follow. A warning reports the number of displacements.",
             ),
         ],
@@ -278,10 +284,10 @@ pub const BODY: Section = Section {
     spec: &section(
         "body",
         "A deformable body",
-        "Exactly one of `mass`, `density`, `density_of_cells` and `node_mass` gives its mass. Its shape is scaled, then rotated about the origin of \
-the shape's own coordinates, then moved to `position`.",
+        "Exactly one of `mass`, `density`, `density_of_cells` and `node_mass` gives the mass of the body. The shape is scaled, then rotated about \
+the origin of its own coordinates, and then moved to `position`.",
         &[
-            Field::new("name", Allowed::Text, "", Default::Required, "Its name, unique in the scene."),
+            Field::new("name", Allowed::Text, "", Default::Required, "The name of the body, unique in the scene."),
             Field::new("mass", Allowed::POSITIVE, "kg", Default::Absent, "Mass of the whole body."),
             Field::new("density", Allowed::POSITIVE, "kg/m³", Default::Absent, "Mass per volume."),
             Field::new(
@@ -304,37 +310,37 @@ the shape's own coordinates, then moved to `position`.",
                 Allowed::POSITIVE,
                 "m",
                 Default::Number(1.0),
-                "Depth out of the plane in 2D, also for gas, loads and bending. In 3D, the thickness of a sheet or the width of a square wire, which \
-only `density` uses. `density` requires `thickness` for sheets in 3D, and for wires in 2D and 3D.",
+                "In 2D, the depth out of the plane, also for gas, loads and bending. In 3D, the thickness of a sheet or the width of a square wire; \
+only `density` uses it. `density` requires `thickness` for sheets in 3D, and for wires in 2D and 3D.",
             ),
             Field::new(
                 "position",
                 Allowed::Vector,
                 "m",
                 Default::Origin,
-                "The position of the origin of its shape at the start.",
+                "Where the origin of the shape's own coordinates lies at the start.",
             ),
             Field::new(
                 "scale",
                 Allowed::POSITIVE,
                 "",
                 Default::Number(1.0),
-                "The factor that multiplies all lengths of its shape.",
+                "The factor that multiplies all lengths of the shape.",
             ),
             Field::new(
                 "simplices",
                 Allowed::Boolean,
                 "",
                 Default::Boolean(false),
-                "Whether its quadrilaterals are cut into two triangles each, and its hexahedra into tetrahedra.",
+                "Whether quadrilaterals are cut into two triangles each, and hexahedra into tetrahedra.",
             ),
             Field::new(
                 "tetrahedra_per_hexahedron",
                 Allowed::Integer { least: 5, greatest: 6 },
                 "",
                 Default::Integer(6),
-                "The number of tetrahedra into which `simplices` cuts a hexahedron: six around a diagonal, or five (one inscribed, four at corners), \
-which alternate from cell to cell and favour no direction.",
+                "The number of tetrahedra into which `simplices` cuts a hexahedron: six around a diagonal, or five (one inscribed, four at corners). \
+The pattern of five alternates from cell to cell and favours no direction.",
             )
             .applies(&[Condition::Dimension(3), Condition::Given("simplices")]),
             Field::new(
@@ -350,8 +356,8 @@ and are refused above ν = 0.45 unless `locking` accepts them.",
         ],
     ),
     children: &[
-        child("shape", Holds::Shape, true, "Its shape at rest."),
-        child("rotation", Holds::Turn, false, "The rotation of its shape at rest [rad], up to 1e6 in magnitude."),
+        child("shape", Holds::Shape, true, "The shape of the body at rest."),
+        child("rotation", Holds::Turn, false, "The rotation of the shape at rest [rad], up to 1e6 in magnitude."),
         child(
             "velocity",
             Holds::VectorOr(&VELOCITY),
@@ -364,15 +370,15 @@ and are refused above ν = 0.45 unless `locking` accepts them.",
             false,
             "Angular velocity at the start about the centre of mass [rad/s].",
         ),
-        child("integrator", Holds::Integrator, false, "Its own integrator; the default is that of the scene."),
-        child("models", Holds::Models, false, "The models that compute its forces."),
+        child("integrator", Holds::Integrator, false, "The integrator of the body; the default is that of the scene."),
+        child("models", Holds::Models, false, "The models that compute the forces of the body."),
         contact::OF_BODY,
         child("pin", Holds::List(&PIN), false, "Nodes that are held in place, or moved along a given path."),
         child(
             "copies",
             Holds::Table(&COPIES),
             false,
-            "Rows, columns and layers of the same body, called `name[0]`, `name[1]`, …",
+            "Copies of the body in rows, columns and layers, called `name[0]`, `name[1]`, …",
         ),
     ],
 };
@@ -398,8 +404,8 @@ start.",
                 Allowed::Text,
                 "",
                 Default::Absent,
-                "The name of the vectors in the mesh file that give the velocity of each node [m/s]. `rotation` rotates them; `scale` does not \
-change them.",
+                "The name of the vectors in the mesh file that give the velocity of each node [m/s]. `rotation` also rotates these vectors; `scale` \
+does not change them.",
             ),
         ],
     ),
@@ -417,10 +423,10 @@ pub const PIN: Section = Section {
         "pin",
         "Nodes that are held in place, or moved along a given path",
         "Between the rows of `motion` the displacement is linear; before the first row and after the last one it is constant. A pinned node follows \
-its pin, even through obstacles: these stop its neighbours, but not the node. The work of the pin against springs and obstacles counts as work of \
-the user. If a pin catches a moving node, or if `motion` has a corner, the pin changes the velocity of that node by an impulse. With `mass = \
-\"consistent\"`, a node shares its inertia with its neighbours, so the impulse makes the neighbours recoil, by the same amount with every \
-integrator. To accelerate the nodes gradually instead, give `motion` many rows.",
+its pin, even through obstacles: an obstacle stops the neighbours of the node, but not the node itself. The work of the pin against springs and \
+obstacles counts as work of the user. If a pin catches a moving node, or if `motion` has a corner, the pin changes the velocity of that node by an \
+impulse. With `mass = \"consistent\"`, a node shares its inertia with its neighbours, so the impulse makes the neighbours recoil, by the same amount \
+with every integrator. To accelerate the nodes gradually instead, give `motion` many rows.",
         &[
             Field::new(
                 "axes",
@@ -429,7 +435,13 @@ integrator. To accelerate the nodes gradually instead, give `motion` many rows."
                 Default::Absent,
                 "The axes along which nodes are held; the default is all axes.",
             ),
-            Field::new("motion", Allowed::Path, "s, m", Default::Absent, "Displacement from the start over time."),
+            Field::new(
+                "motion",
+                Allowed::Path,
+                "s, m",
+                Default::Absent,
+                "Displacement from the position at the start, over time.",
+            ),
         ],
     ),
     children: &[child("select", Holds::Selector, true, "The nodes that are pinned.")],
@@ -439,7 +451,7 @@ integrator. To accelerate the nodes gradually instead, give `motion` many rows."
 pub const COPIES: Section = Section {
     spec: &section(
         "copies",
-        "Rows, columns and layers of the same body",
+        "Copies of a body in rows, columns and layers",
         "With `count = [nx, ny, nz]`, copy k = i + nx·(j + ny·l) is called `name[k]` and lies at `position + first + (i, j, l)·spacing + jitter`. \
 Copies share one mesh.",
         &[

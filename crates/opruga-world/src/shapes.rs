@@ -15,9 +15,14 @@ const fn count(least: i64) -> Allowed {
     Allowed::Integer { least, greatest: MAXIMUM_NODES as i64 }
 }
 
-const CENTER: Field = Field::new("center", Allowed::Vector, "m", Default::Origin, "The position of its centre.");
-const CORNER: Field =
-    Field::new("corner", Allowed::Vector, "m", Default::Origin, "Its corner with the lowest coordinates.");
+const CENTER: Field = Field::new("center", Allowed::Vector, "m", Default::Origin, "The position of the centre.");
+const CORNER: Field = Field::new(
+    "corner",
+    Allowed::Vector,
+    "m",
+    Default::Origin,
+    "The corner from which the sides extend; in a grid or a box, the corner with the lowest coordinates.",
+);
 const START_ANGLE: Field = Field::new(
     "start_angle",
     Allowed::Number { least: Bound::Closed(-LARGEST_ANGLE), greatest: Bound::Closed(LARGEST_ANGLE) },
@@ -29,7 +34,7 @@ const START_ANGLE: Field = Field::new(
 static RING: Spec = Spec {
     kind: "ring",
     summary: "a round outline",
-    documentation: "Vertices on a circle, counter-clockwise; edge i runs from node i to node i + 1.",
+    documentation: "The vertices lie on a circle, counter-clockwise; edge i runs from node i to node i + 1.",
     dimensions: &[2],
     fields: &[
         Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the circle."),
@@ -43,9 +48,9 @@ static RING: Spec = Spec {
 static RINGS: Spec = Spec {
     kind: "rings",
     summary: "several round outlines in one body: chambers, and holes in them",
-    documentation: "Circles of `vertices` nodes each, one after the other. A ring with a negative radius is a hole: it runs clockwise, and the gas \
-of the ring around it does not fill it. Rings must not cross or touch. A ring may contain only holes, a hole may contain only rings, and every hole \
-must lie in a ring.",
+    documentation: "Circles of `vertices` nodes each; the nodes are numbered one circle after another. A ring with a negative radius is a hole: it \
+runs clockwise, and the gas of the ring around it does not fill it. Rings must not cross or touch. A ring may contain only holes, a hole may contain \
+only rings, and every hole must lie in a ring.",
     dimensions: &[2],
     fields: &[
         Field::new("centers", Allowed::Points, "m", Default::Required, "The centre of each ring."),
@@ -64,7 +69,7 @@ must lie in a ring.",
 static REGULAR_POLYGON: Spec = Spec {
     kind: "regular_polygon",
     summary: "an outline of equal sides",
-    documentation: "Corners on a circle, counter-clockwise; each side is divided into equal edges.",
+    documentation: "The corners lie on a circle, counter-clockwise; each side is divided into equal edges.",
     dimensions: &[2],
     fields: &[
         Field::new("sides", count(3), "", Default::Required, "The number of sides."),
@@ -79,7 +84,8 @@ static REGULAR_POLYGON: Spec = Spec {
 static POLYGON: Spec = Spec {
     kind: "polygon",
     summary: "an outline through points",
-    documentation: "Node i is point i. The points may run in either direction; edges run counter-clockwise. Edges must not cross or touch.",
+    documentation: "Node i is point i. The points may run in either direction; the edges always run counter-clockwise. Edges must not cross or \
+touch.",
     dimensions: &[2],
     fields: &[Field::new(
         "points",
@@ -94,11 +100,11 @@ static POLYGON: Spec = Spec {
 static LINE: Spec = Spec {
     kind: "line",
     summary: "a straight chain",
-    documentation: "Equal edges from one point to another. A line encloses nothing.",
+    documentation: "Edges of equal length from one point to another. A line encloses nothing.",
     dimensions: &[2, 3],
     fields: &[
-        Field::new("from", Allowed::Vector, "m", Default::Required, "Its first node."),
-        Field::new("to", Allowed::Vector, "m", Default::Required, "Its last node."),
+        Field::new("from", Allowed::Vector, "m", Default::Required, "The position of the first node."),
+        Field::new("to", Allowed::Vector, "m", Default::Required, "The position of the last node."),
         Field::new("segments", count(1), "", Default::Required, "The number of edges."),
     ],
     roles: &[],
@@ -129,7 +135,7 @@ static GRID: Spec = Spec {
 in space back and front.",
     dimensions: &[2, 3],
     fields: &[
-        Field::new("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
+        Field::new("size", Allowed::Vector, "m", Default::Required, "The lengths of the sides along the axes."),
         Field::new("cells", Allowed::Integers, "", Default::Required, "The number of cells along each axis."),
         CORNER,
     ],
@@ -139,17 +145,17 @@ in space back and front.",
 static QUADRILATERAL: Spec = Spec {
     kind: "quadrilateral",
     summary: "a filled quadrilateral of cells between four corners",
-    documentation: "A grid stretched over a convex quadrilateral. With n cells along the side from corner 0 to 1, node (i, j) has number i + \
-(n+1)·j. Groups: bottom from corner 0 to 1, right from 1 to 2, top from 3 to 2, left from 0 to 3.",
+    documentation: "A grid stretched over a convex quadrilateral. With n cells along the side from corner 0 to corner 1, node (i, j) has number i + \
+(n+1)·j. Groups: bottom (from corner 0 to 1), right (1 to 2), top (3 to 2) and left (0 to 3).",
     dimensions: &[2],
     fields: &[
-        Field::new("corners", Allowed::Points, "m", Default::Required, "Its four corners, counter-clockwise."),
+        Field::new("corners", Allowed::Points, "m", Default::Required, "The four corners, counter-clockwise."),
         Field::new(
             "cells",
             Allowed::Integers,
             "",
             Default::Required,
-            "The number of cells along the side from corner 0 to 1, and along the side from 1 to 2.",
+            "The number of cells along the side from corner 0 to corner 1, and along the side from corner 1 to corner 2.",
         ),
     ],
     roles: &[],
@@ -159,12 +165,12 @@ static SHEET: Spec = Spec {
     kind: "sheet",
     summary: "an open flat surface: cloth",
     documentation: "A parallelogram of triangles with alternating diagonals. With nu cells along u, node (i, j) has number i + (nu+1)·j. Groups: \
-left, right (along u), bottom, top (along v).",
+left and right (at low and high u), bottom and top (at low and high v).",
     dimensions: &[3],
     fields: &[
         CORNER,
-        Field::new("u", Allowed::Vector, "m", Default::Required, "Its first side, from the corner."),
-        Field::new("v", Allowed::Vector, "m", Default::Required, "Its second side, from the corner."),
+        Field::new("u", Allowed::Vector, "m", Default::Required, "The first side, as a vector from the corner."),
+        Field::new("v", Allowed::Vector, "m", Default::Required, "The second side, as a vector from the corner."),
         Field::new("cells", Allowed::Integers, "", Default::Required, "The number of cells along u and along v."),
     ],
     roles: &[],
@@ -173,11 +179,11 @@ left, right (along u), bottom, top (along v).",
 static BOX: Spec = Spec {
     kind: "box",
     summary: "the closed surface of a box",
-    documentation: "Two triangles per cell of each face. Groups: left, right, bottom, top, back, front. For a box filled with equal cells, use \
-`grid`.",
+    documentation: "Each cell of a face is cut into two triangles. Groups: left, right, bottom, top, back, front. For a box filled with equal cells, \
+use `grid`.",
     dimensions: &[3],
     fields: &[
-        Field::new("size", Allowed::Vector, "m", Default::Required, "Its lengths along the axes."),
+        Field::new("size", Allowed::Vector, "m", Default::Required, "The lengths of the sides along the axes."),
         Field::new("cells", Allowed::Integers, "", Default::Required, "The number of cells along each axis."),
         CORNER,
         FILLING_OF_SURFACES,
@@ -189,7 +195,8 @@ static BOX: Spec = Spec {
 static ICOSPHERE: Spec = Spec {
     kind: "icosphere",
     summary: "a closed ball surface of nearly equal triangles",
-    documentation: "An icosahedron whose faces are cut into four s times, where s is `subdivisions`. The surface has 10·4^s + 2 nodes.",
+    documentation: "An icosahedron whose faces are divided into four triangles again and again, s = `subdivisions` times. The surface has 10·4^s + 2 \
+nodes.",
     dimensions: &[3],
     fields: &[
         Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius."),
@@ -198,7 +205,7 @@ static ICOSPHERE: Spec = Spec {
             Allowed::Integer { least: 0, greatest: MAXIMUM_SUBDIVISIONS as i64 },
             "",
             Default::Required,
-            "The number of times that each face is cut into four.",
+            "How many times each face is divided into four triangles.",
         ),
         CENTER,
         FILLING_OF_SURFACES,
@@ -210,7 +217,7 @@ static ICOSPHERE: Spec = Spec {
 static TORUS: Spec = Spec {
     kind: "torus",
     summary: "a closed tube around a circle",
-    documentation: "Its axis is the z axis. Node (i, j) has number i·`nodes_of_tube` + j.",
+    documentation: "The axis of the torus is the z axis. Node (i, j) has number i·`nodes_of_tube` + j.",
     dimensions: &[3],
     fields: &[
         Field::new("radius", Allowed::POSITIVE, "m", Default::Required, "The radius of the circle."),

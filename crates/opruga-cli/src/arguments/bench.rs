@@ -5,13 +5,13 @@ use std::path::PathBuf;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Bench {
-    /// One ring of 8 to 1,048,576 vertices, and many rings: figure 4 of the thesis
+    /// The speed of one ring of 8 to 1,048,576 vertices, and of many rings: figure 4 of the thesis
     Vertices(BenchVertices),
-    /// A scene, without writing pictures or files: milliseconds per frame, and where they are spent
+    /// The time per frame of a scene [ms], and where it is spent; no pictures or files are written
     Scene(BenchScene),
-    /// Forces and Hessians of finite elements, nanoseconds per element
+    /// The time to compute forces and Hessians of finite elements [ns per element]
     Elements(BenchElements),
-    /// The time that `--record` adds to the frames of a scene, from alternating runs with and without it
+    /// The time that `--record` adds to the frames of a scene, measured in alternating runs with and without recording
     Record(BenchRecord),
     /// The time to read a surface of many triangles, compared with the time to read the bytes of its file
     Load(BenchLoad),

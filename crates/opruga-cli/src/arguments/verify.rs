@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 pub(crate) struct Verify {
-    /// Run only cases whose name contains WORD, or those of a family: statics, materials, pressure, dynamics, integrators, ledgers; may be given
+    /// Run only cases whose name contains WORD, or whose family is WORD (statics, materials, pressure, dynamics, integrators, ledgers); may be given
     /// several times
     #[arg(long, value_name = "WORD")]
     pub(crate) filter: Vec<String>,

@@ -30,9 +30,9 @@ pub const SPEC: Spec = Spec {
     kind: "backward_euler",
     summary: "implicit, first order, stable for every step size; damps fast motion",
     documentation: "x₁ = x₀ + h v₁, M (v₁ − v₀) = h F(x₁, v₁), solved by Newton's method. In each step, the amplitude of an oscillation is \
-multiplied by 1/√(1 + h²ω²); this damping is an error of the integrator, not physics. With `accuracy = \"exact\"`, the equations hold to \
-`tolerance`; with \"real_time\" the step has a fixed budget. Contact with obstacles is a part of the solution: bodies come to rest on them and stick \
-or slip by Coulomb's law. Bodies are not stepped in batches.",
+multiplied by 1/√(1 + h²ω²); this damping is an error of the integrator, not physics. With `accuracy = \"exact\"`, the equations hold within \
+`tolerance`; with `accuracy = \"real_time\"`, the step has a fixed budget. Contact with obstacles is a part of the solution: bodies come to rest on \
+them and stick or slip by Coulomb's law. Bodies are not stepped in batches.",
     dimensions: &[2, 3],
     fields: fields!(of_time),
     roles: &[Role::OfferedImplicit],

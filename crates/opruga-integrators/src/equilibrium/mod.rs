@@ -69,11 +69,11 @@ use opruga_solve::blocks::nodes;
 /// The parameters of `equilibrium`.
 pub const SPEC: Spec = Spec {
     kind: "equilibrium",
-    summary: "statics: every step ends in the equilibrium of all forces; with `arc_length`, it follows a body that snaps through",
+    summary: "statics: every step ends in the equilibrium of all forces; with `arc_length`, the steps follow a body that snaps through",
     documentation: "F(x, 0, t) = 0, solved by Newton's method with a line search that decreases the potential; velocities are zero. The state at the \
 end (`final.csv`) is the equilibrium under the loads at that time. A body that can move freely, as a whole or in one of its pieces, is refused; the \
 error names its rigid modes. With `arc_length`, every step advances by that length along the curve of equilibria, through its limit points, until \
-the whole load is applied; `load_factor` in diagnostics.csv is the fraction of the load that is applied.",
+the whole load is applied. `load_factor` in diagnostics.csv is the fraction of the load that is applied.",
     dimensions: &[2, 3],
     fields: fields!(
         of_statics,

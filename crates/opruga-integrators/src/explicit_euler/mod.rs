@@ -29,7 +29,7 @@ use std::ops::Range;
 /// The description of `explicit_euler`, which has no parameters.
 pub const SPEC: Spec = Spec {
     kind: "explicit_euler",
-    summary: "first order, energy grows: for comparison",
+    summary: "first order, energy grows; for comparison only",
     documentation: "x₁ = x₀ + h v₀, v₁ = v₀ + h a(x₀, v₀). The forces are evaluated once per step. Without damping, no step is stable: the energy of \
 a mode of angular frequency ω grows at the relative rate ω²h.",
     dimensions: &[2, 3],

@@ -66,7 +66,7 @@ pub(crate) const ITERATIONS: Field = Field::new(
     Allowed::Integer { least: 1, greatest: 1000 },
     "",
     Default::Absent,
-    "The largest number of iterations of Newton's method. The default is 100. If `accuracy` is \"real_time\", it is 3, or 10 with a barrier between \
+    "The largest number of iterations of Newton's method. The default is 100; with `accuracy = \"real_time\"`, it is 3, or 10 with a barrier between \
 bodies.",
 );
 /// When the iteration ends.
@@ -81,11 +81,11 @@ pub(crate) const TOLERANCE: Field = Field::new(
 macro_rules! solvers {
     () => {
         "The solver of the linear equations in each iteration. Conjugate gradients, with or without a matrix, give the same bits on every processor. \
-If they would need more than a thousand products with a matrix, for example for a nearly incompressible solid, a complete factor of the matrix \
-replaces them if it fits into 100 MB. This factor is computed in a fixed order, so it also gives the same bits on every processor. The sparse \
-Cholesky factor gives the same bits only on processors of the same class. \"auto\" uses the Cholesky factor for bodies in the plane with 200 nodes \
-or more and for bodies in space with 200 to 3000 nodes. \"matrix_free\" stores no matrix and needs several times as many products; with quadratic \
-cells, these products take dozens of times as long. Use it for bodies whose matrix does not fit into memory."
+If conjugate gradients would need more than a thousand products with a matrix, for example for a nearly incompressible solid, a complete factor of \
+the matrix is used instead, provided that it fits into 100 MB. This factor is computed in a fixed order, so it also gives the same bits on every \
+processor. The sparse Cholesky factor gives the same bits only on processors of the same class. \"auto\" uses the Cholesky factor for bodies in the \
+plane with 200 nodes or more and for bodies in space with 200 to 3000 nodes. \"matrix_free\" stores no matrix and needs several times as many \
+products; with quadratic cells, these products take dozens of times as long. Use \"matrix_free\" for bodies whose matrix does not fit into memory."
     };
 }
 
@@ -103,8 +103,8 @@ pub(crate) const OTHERWISE: Field = Field::new(
     Allowed::Choice(&["error", "halve", "accept"]),
     "",
     Default::Text("error"),
-    "What happens if a step does not converge: \"error\" is an error that leaves the state unchanged, \"halve\" makes two steps of half the length \
-(these are halved again, down to 1/256), \"accept\" accepts the step and counts it in a warning.",
+    "What happens if a step does not converge: \"error\" gives an error and leaves the state unchanged, \"halve\" replaces the step by two steps of \
+half the length (which may be halved again, down to 1/256), and \"accept\" accepts the step and counts it in a warning.",
 );
 
 /// The number of Newton iterations in statics.
@@ -119,16 +119,16 @@ pub(crate) const ITERATIONS_OF_STATICS: Field = Field::new(
 pub(crate) const LINEAR_SOLVER_OF_STATICS: Field = Field {
     documentation: concat!(
         solvers!(),
-        " Without inertia, conjugate gradients need many products for a slender body, most of all without a matrix. `arc_length` factors a matrix \
-and cannot be combined with \"matrix_free\"."
+        " Statics has no inertia, so conjugate gradients need many products for a slender body, most of all with \"matrix_free\". `arc_length` \
+factors a matrix and cannot be combined with \"matrix_free\"."
     ),
     ..LINEAR_SOLVER
 };
 /// What to do in statics if a step does not converge.
 pub(crate) const OTHERWISE_OF_STATICS: Field = Field {
-    documentation: "What happens if no equilibrium is found: \"error\" is an error that leaves the state unchanged, \"halve\" makes two steps with \
-half of the load and half of the motion of pins (these are halved again, down to 1/256), \"accept\" accepts the state and counts it in a warning. \
-With `arc_length` the step along the curve is halved in any case.",
+    documentation: "What happens if no equilibrium is found: \"error\" gives an error and leaves the state unchanged, \"halve\" replaces the step by \
+two steps with half of the load and half of the motion of pins (which may be halved again, down to 1/256), and \"accept\" accepts the state and \
+counts it in a warning. With `arc_length`, the step along the curve is halved regardless of this setting.",
     ..OTHERWISE
 };
 
@@ -153,17 +153,18 @@ pub(crate) const ACCURACY: Field = Field::new(
     Allowed::Choice(&["exact", "real_time"]),
     "",
     Default::Text("exact"),
-    "\"exact\" iterates until the equations of the step hold to `tolerance`. \"real_time\" has a fixed budget: three iterations, which start from \
-the motion of the previous step. Each iteration uses the factor of a matrix, or at most 1000 products with the matrix, which is kept as long as the \
-steps converge with it. Up to a fifth of the unbalanced forces may remain as a residual, and the following steps correct it. `bdf2` damps slow \
-motions little, so it aims at a residual of a thousandth, and at most a twentieth may remain. If the residual would create energy, for example when \
-a soft body strikes the floor, the step is solved exactly, which takes several times as long. With a barrier between bodies, iterations that the \
-barrier cuts short do not count towards the budget, and at most a twentieth may remain. Steps that exceed these bounds on the residual are counted \
-in a warning (`step.cut_off`), which reports the size of the residual. For clamped cubes and beams that swing under their weight, the results agree \
-with those of exact steps of the same length: amplitudes within 3 % and periods within 1 %. The final state of rest agrees with statics within 1 %. \
-Do not use the setting for results that are compared with others, for slender bodies of many thousand nodes, or for motions that depend on small \
-differences, such as buckling. `implicit_midpoint`, which damps nothing, and `newmark`, which remembers the residual in its acceleration, would \
-accumulate residuals, so they refuse the setting.",
+    "\"exact\" iterates until the equations of the step hold within `tolerance`. \"real_time\" has a fixed budget: three iterations, which start \
+from the motion of the previous step. Each iteration solves its equations with the factor of a matrix, or with at most 1000 products with the \
+matrix. The matrix is kept as long as the steps converge with it. Up to a fifth of the unbalanced forces may remain as a residual, and the following \
+steps correct it. `bdf2` damps slow motions little, so it aims at a residual of a thousandth of the unbalanced forces, and at most a twentieth may \
+remain. If the residual would create energy, for example when a soft body strikes the floor, the step is solved exactly, which takes several times \
+as long. With a barrier between bodies, iterations that the barrier cuts short do not count towards the budget, and at most a twentieth of the \
+unbalanced forces may remain. Steps that exceed these bounds on the residual are counted in a warning (`step.cut_off`), which reports the size of \
+the residual. For clamped cubes and beams that swing under their weight, the results agree with those of exact steps of the same length: amplitudes \
+within 3 % and periods within 1 %. The final state of rest agrees with statics within 1 %. Do not use this setting for results that are compared \
+with other results, for slender bodies of many thousand nodes, or for motions that depend on small differences, such as buckling. \
+`implicit_midpoint` and `newmark` refuse this setting, because they would accumulate residuals: `implicit_midpoint` damps nothing, and `newmark` \
+keeps the residual in its acceleration.",
 );
 
 /// Integrators that would accumulate the residuals of steps.

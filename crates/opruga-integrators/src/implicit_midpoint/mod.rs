@@ -37,7 +37,7 @@ pub const SPEC: Spec = Spec {
     kind: "implicit_midpoint",
     summary: "implicit, second order, stable for every step size; conserves momentum, and the energy of linear systems",
     documentation: "M (v₁ − v₀) = h F in the middle of the step, x₁ = x₀ + ½ h (v₀ + v₁), solved by Newton's method. Without damping, amplitudes do \
-not change; linear and angular momentum are conserved to the tolerance. While nodes touch obstacles, the amplitude of motion that is much faster \
+not change; linear and angular momentum are conserved within the tolerance. While nodes touch obstacles, the amplitude of motion that is much faster \
 than the step decreases by a tenth in each step, so that bodies come to rest. Bodies are not stepped in batches.",
     dimensions: &[2, 3],
     fields: fields!(of_time),

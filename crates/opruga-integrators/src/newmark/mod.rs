@@ -40,8 +40,8 @@ pub const SPEC: Spec = Spec {
     summary: "implicit, second order, stable for every step size: average acceleration, or generalised-α with a spectral radius",
     documentation: "x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁), v₁ = v₀ + h ((1 − γ) a₀ + γ a₁), solved by Newton's method. Average acceleration (β = \
 ¼, γ = ½) damps nothing. With `spectral_radius`, the integrator is the generalised-α method, which damps motion that is faster than the step. While \
-nodes touch obstacles, the steps that `implicit_midpoint` makes in contact replace those of average acceleration, so that bodies come to rest. The \
-integrator keeps the acceleration from step to step. Bodies are not stepped in batches.",
+nodes touch obstacles, average acceleration makes the same steps as `implicit_midpoint` does in contact, so that bodies come to rest. The integrator \
+keeps the acceleration from step to step. Bodies are not stepped in batches.",
     dimensions: &[2, 3],
     fields: fields!(
         of_time,

@@ -32,7 +32,7 @@ use std::ops::Range;
 /// The description of `verlet`, which has no parameters.
 pub const SPEC: Spec = Spec {
     kind: "verlet",
-    summary: "second order, energy stays bounded: velocity Verlet, damping at the predicted velocity",
+    summary: "second order, energy stays bounded: velocity Verlet, with damping forces at the predicted velocity",
     documentation: "x₁ = x₀ + h v₀ + ½h² a₀, v₁ = v₀ + ½h (a₀ + a(x₁, v₀ + h a₀)). The forces are evaluated twice per step. Without damping, the \
 integrator is stable if h ω < 2 for the highest angular frequency ω.",
     dimensions: &[2, 3],

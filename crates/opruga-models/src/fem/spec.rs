@@ -7,17 +7,18 @@ use opruga_core::spec::{Allowed, Bound, Condition, Default, Field, Role, Spec};
 /// The parameters of `fem`.
 pub const SPEC: Spec = Spec {
     kind: "fem",
-    summary: "an elastic solid by finite elements, with a choice of materials",
-    documentation: "Energy U = Σ V ψ(F) over the integration points of the cells, F = ∂x/∂X; force −∂U/∂x. The cells are triangles and tetrahedra of \
-first or second order, quadrilaterals and hexahedra. In every material, E and ν are Young's modulus and Poisson's ratio at small strain; μ = E/2(1 + \
-ν), λ = Eν/((1 + ν)(1 − 2ν)). Quadratic triangles and tetrahedra (`order = 2` of the body, the default) lock neither in bending nor near \
-incompressibility. In quadrilaterals and hexahedra, the strains of bending and twisting follow from assumed stresses; they are exact if the cells \
-are rectangular, up to ν = 0.4999. Linear triangles and tetrahedra bend too stiffly and lock above ν = 0.45, where they are refused unless `locking` \
-accepts them; with `nodal_volume`, they do not lock. In the plane, the body is a slice of a long one (plane strain) or a plate that thins freely \
-(plane stress); its depth is the `thickness` of the body. Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1) with Ė the rate of Green's \
-strain; it is zero under rigid motion. Heat: with `thermal_expansion` an unconstrained body expands by the factor g = 1 + α (T − T₀) and has no \
-stress, U = Σ V g³ ψ(F/g) (`linear`: ψ(ε − αΔT 1)); in plane strain it expands by the factor 1 + (1 + ν) α (T − T₀) in the plane. The command `set` \
-can change the temperature while the scene runs. Equations, sources and measurements: docs/finite-elements.md.",
+    summary: "an elastic solid, computed with finite elements; several materials are available",
+    documentation: "Energy U = Σ V ψ(F) over the integration points of the cells, with F = ∂x/∂X; the force is −∂U/∂x. The cells are triangles or \
+tetrahedra of first or second order, quadrilaterals or hexahedra. In every material, E and ν are Young's modulus and Poisson's ratio at small \
+strain; μ = E/2(1 + ν), λ = Eν/((1 + ν)(1 − 2ν)). Quadratic triangles and tetrahedra (`order = 2` of the body, the default) lock neither in bending \
+nor near incompressibility. In quadrilaterals and hexahedra, the strains of bending and twisting follow from assumed stresses; they are exact if the \
+cells are rectangular, up to ν = 0.4999. Linear triangles and tetrahedra bend too stiffly. Above ν = 0.45, they lock and are refused unless \
+`locking` accepts them; with `locking = \"nodal_volume\"`, they do not lock. In the plane, the body is a slice of a long one (plane strain) or a \
+plate that thins freely (plane stress); its depth is the `thickness` of the body. Damping is that of Kelvin and Voigt, S = τ (2μ Ė + λ tr Ė 1), \
+where Ė is the rate of Green's strain; this stress is zero under rigid motion. With `thermal_expansion`, an unconstrained body expands by the factor \
+g = 1 + α (T − T₀) without stress. The energy is then U = Σ V g³ ψ(F/g) (`linear`: ψ(ε − αΔT 1)). In plane strain, the body expands by the factor 1 \
++ (1 + ν) α (T − T₀) in the plane. The command `set` can change the temperature while the scene runs. Equations, sources and measurements: \
+docs/finite-elements.md.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -46,7 +47,7 @@ can change the temperature while the scene runs. Equations, sources and measurem
             Allowed::Number { least: Bound::Open(-1.0), greatest: Bound::Open(0.5) },
             "",
             Default::Number(0.3),
-            "Poisson's ratio ν; rubber has nearly 0.5.",
+            "Poisson's ratio ν; it is nearly 0.5 for rubber.",
         )
         .applies(&[Condition::NotGiven("poissons_ratio_of_cells")]),
         Field::new(
@@ -124,9 +125,9 @@ is 0.",
             Allowed::Choice(&["lumped", "consistent"]),
             "",
             Default::Text("lumped"),
-            "With \"lumped\", every node has a mass of its own. With \"consistent\", the mass matrix is that of the shape functions, ρ∫N_i N_j, \
-which couples the nodes of a cell; waves are then too fast, while lumped masses make them too slow. Consistent masses are for implicit integrators \
-and natural frequencies.",
+            "With \"lumped\", every node has a mass of its own. With \"consistent\", the mass matrix is ρ∫N_i N_j with the shape functions N, which \
+couples the nodes of a cell. Consistent masses make waves too fast, and lumped masses make them too slow. Use consistent masses with implicit \
+integrators and for natural frequencies.",
         ),
         Field::new(
             "plane",
@@ -156,9 +157,9 @@ and natural frequencies.",
             Allowed::Choice(&["refuse", "accept", "nodal_volume"]),
             "",
             Default::Text("refuse"),
-            "What happens with linear triangles and tetrahedra above ν = 0.45: \"refuse\" is an error, \"accept\" accepts them although they lock, \
-and with \"nodal_volume\" they resist changes of the volumes of nodes instead of those of cells, and do not lock. \"nodal_volume\" is allowed only \
-for these cells, and not in plane stress.",
+            "What happens with linear triangles and tetrahedra above ν = 0.45: \"refuse\" gives an error, and \"accept\" accepts them although they \
+lock. With \"nodal_volume\", they resist changes of the volumes of nodes instead of the volumes of cells, so they do not lock; \"nodal_volume\" is \
+allowed only for linear triangles and tetrahedra, and not in plane stress.",
         ),
     ], roles: &[Role::OwnsCells], };
 

@@ -8,10 +8,10 @@ const STIFFNESS: &[&str] = &["stiffness", "modulus"];
 pub const SPEC: Spec = Spec {
     kind: "mass_spring",
     summary: "linear springs along the edges of the mesh, with damping along each spring",
-    documentation: "Energy U = Σ ½ k (|x_a − x_b| − l₀)²; force on node a −k (r − l₀) d/r with d = x_a − x_b, r = |d|; damping −c (ḋ·d/r) d/r. With \
-`modulus` E₂D, k = E₂D ΣA/l₀², where ΣA is the area of the triangles next to the edge. On a regular triangular lattice k is √3/2·E₂D, and half of \
-that on the boundary; the lattice acts as a sheet with Poisson's ratio 1/3. A spring whose ends coincide has no direction, so its force is zero. A \
-ring of springs alone resists neither bending nor a change of its enclosed area. Source: Nealen et al. 2005, §4.",
+    documentation: "Energy U = Σ ½ k (|x_a − x_b| − l₀)². The elastic force on node a is −k (r − l₀) d/r with d = x_a − x_b and r = |d|; the damping \
+force is −c (ḋ·d/r) d/r. With `modulus` E₂D, k = E₂D ΣA/l₀², where ΣA is the area of the triangles next to the edge. On a regular triangular lattice \
+k is √3/2·E₂D, and half of that on the boundary; the lattice acts as a sheet with Poisson's ratio 1/3. A spring whose ends coincide has no \
+direction, so its force is zero. A ring of springs alone resists neither bending nor a change of its enclosed area. Source: Nealen et al. 2005, §4.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -35,7 +35,7 @@ ring of springs alone resists neither bending nor a change of its enclosed area.
             Allowed::NOT_NEGATIVE,
             "N·s/m",
             Default::Number(0.0),
-            "Damping c along every spring; zero under rigid motion.",
+            "Damping constant c of every spring; the damping force is zero under rigid motion.",
         ),
         Field::new(
             "edges",

@@ -11,14 +11,14 @@ pub const SPEC: Spec = Spec {
     summary: "clusters of nodes that are pulled towards their rest shape, which is rotated or fitted to the present positions",
     documentation: "Energy U = (1 − β) U_R + β U_A. Both parts are ½ κ Σ m |x − g|² over the nodes of every cluster, where g is the goal of a node. \
 U_R is the minimum over all rotations and translations of the rest shape, U_A the minimum over all linear or quadratic maps of it. The force is the \
-gradient, and the Hessian is exact. κ is a stiffness per mass. Motions that no map of the cluster can follow oscillate with the angular frequency \
-√κ, and strains that a linear map can follow with √((1 − β)κ). Rotation and translation do not oscillate. This holds for every step size and every \
-number of nodes. Without `region` and `groups` the whole body is one cluster. Where clusters overlap, the mass of a node is shared evenly among \
-them. The model needs no edges and no cells; directions in which a cluster has no extent stay free. `scheme = \"as_published\"` selects the goal of \
-the paper, in which the fitted map is divided by the D-th root of its determinant in D dimensions. The force then has no potential, so only explicit \
-integrators can step the body; with `goal_step` the stiffness α/h² depends on the step of the scene. Limits: κ is not Young's modulus, and stiffness \
-does not increase with smaller cells. Equations and measurements: docs/shape-matching.md. Source: Müller, Heidelberger, Teschner, Gross 2005, \
-Meshless deformations based on shape matching.",
+gradient of U, and the Hessian is exact. κ is a stiffness per mass. Motions that no map of the cluster can follow oscillate with the angular \
+frequency √κ. Strains that a linear map can follow oscillate with √((1 − β)κ). Rotation and translation do not oscillate. These frequencies do not \
+depend on the step or the number of nodes. Without `region` and `groups` the whole body is one cluster. Where clusters overlap, the mass of a node \
+is shared evenly among them. The model needs no edges and no cells. A cluster does not resist motion in directions in which it has no extent. \
+`scheme = \"as_published\"` selects the goal of the paper, in which the fitted map is divided by the D-th root of its determinant in D dimensions. \
+The force then has no potential, so only explicit integrators can step the body. With `goal_step`, the stiffness α/h² depends on the step of the \
+scene. Limits: κ is not Young's modulus, and stiffness does not increase with smaller cells. Equations and measurements: docs/shape-matching.md. \
+Source: Müller, Heidelberger, Teschner, Gross 2005, Meshless deformations based on shape matching.",
     dimensions: &[2, 3],
     fields: &[
         Field::new(
@@ -34,7 +34,7 @@ Meshless deformations based on shape matching.",
             Allowed::Number { least: Bound::Open(0.0), greatest: Bound::Closed(1.0) },
             "",
             Default::OneOf(STIFFNESS),
-            "The fraction α of the distance to its goal that a node moves in a substep h, so κ = α/h² depends on the step.",
+            "The fraction α of its distance from the goal by which a node moves in a substep h; κ = α/h² therefore depends on the step.",
         )
         .starts_at(0.05)
         .applies(&[PUBLISHED]),
@@ -67,7 +67,8 @@ cost none.",
             Allowed::Text,
             "",
             Default::Absent,
-            "Names of groups of nodes of the mesh that are clusters, separated by commas; every node must be in at least one.",
+            "The names of the groups of nodes of the mesh that serve as clusters, separated by commas. Every node must be in at least one of these \
+groups.",
         ),
         Field::new(
             "scheme",

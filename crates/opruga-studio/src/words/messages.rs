@@ -54,7 +54,7 @@ impl Language {
         }
     }
 
-    /// A difference of the right side in a few words, for the picture.
+    /// A few words for the picture that name a difference of the right side.
     pub fn difference(self, difference: &Difference) -> String {
         let named = |field: &str, value: &Value| match value {
             Value::Number(x) => format!("{} {}", self.field_word(field), opruga::draw::format_value(*x)),
@@ -96,7 +96,7 @@ impl Language {
             }
             Report::Exploded(Exploded { body, .. }) => either!(
                 self,
-                "`{body}` exploded: it is more than 100 times as large as the scene was",
+                "`{body}` exploded: it has grown to more than 100 times the initial size of the scene",
                 "Tijelo `{body}` se raspalo: više je od 100 puta veće nego što je bio prizor"
             ),
             Report::Undone(step, time) => format!("{} {}, t = {time:.2} s", self.undone(), self.done(step)),
@@ -209,7 +209,7 @@ impl Language {
             ),
             Report::AddressTooLarge(most) => either!(
                 self,
-                "the scene in the address is too large; allowed: {most} bytes",
+                "the scene in the address is too large; allowed: at most {most} bytes",
                 "prizor u adresi je prevelik; dopušteno: {most} bajtova"
             ),
             Report::WindowLost(file) => either!(

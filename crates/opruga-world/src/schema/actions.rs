@@ -8,14 +8,14 @@ const CURVE: Field = Field::new(
     Allowed::Curve,
     "s, 1",
     Default::Absent,
-    "A factor over time, linear between its rows; the default is 1.",
+    "The factor of the load over time, linear between the rows; the default is 1.",
 );
 const LOAD_CHILDREN: &[Child] = &[
     child(
         "body",
         Holds::BodyReference,
         true,
-        "The body, from the scene or added by a command; the name of a body with copies means all of them, `NAME[i]` means one.",
+        "The body, from the scene or added by a command. The name of a body with copies means all copies; `NAME[i]` means one of them.",
     ),
     child(
         "select",
@@ -59,7 +59,7 @@ pub const LOADS: &[Section] = &[
         spec: &section(
             "traction",
             "A force per area of the boundary at rest",
-            "It is spread over the facets of the boundary whose nodes are all selected.",
+            "The force is spread over the facets of the boundary whose nodes are all selected.",
             &[Field::new("value", Allowed::Vector, "Pa", Default::Required, "The force per area."), CURVE],
         ),
         children: LOAD_CHILDREN,
@@ -68,7 +68,7 @@ pub const LOADS: &[Section] = &[
         spec: &section(
             "pressure",
             "A pressure on the boundary, along its current inward normal",
-            "It acts on the facets of the boundary whose nodes are all selected.",
+            "The pressure acts on the facets of the boundary whose nodes are all selected.",
             &[
                 Field::new(
                     "value",
@@ -86,8 +86,8 @@ pub const LOADS: &[Section] = &[
         spec: &section(
             "body_force",
             "A force per volume at rest",
-            "It is spread over the cells whose nodes are all selected: the force on a node is the value times the integral of the shape function of \
-the node over the volume of these cells. In 2D, the volume is the area times the body's `thickness`.",
+            "The force is spread over the cells whose nodes are all selected. The force on a node is `value` times the integral of the shape \
+function of the node over the volume of these cells. In 2D, the volume is the area times the body's `thickness`.",
             &[Field::new("value", Allowed::Vector, "N/m³", Default::Required, "The force per volume."), CURVE],
         ),
         children: LOAD_CHILDREN,
@@ -99,14 +99,14 @@ const AT: Field = Field::new(
     Allowed::NOT_NEGATIVE,
     "s",
     Default::Required,
-    "When it begins: with the first frame that begins at this time or later.",
+    "The command begins at the start of the first frame that begins at this time or later.",
 );
 const UNTIL: Field = Field::new(
     "until",
     Allowed::NOT_NEGATIVE,
     "s",
     Default::Required,
-    "When it ends: with the first frame that begins at this time or later.",
+    "The command ends at the start of the first frame that begins at this time or later.",
 );
 
 /// `[[command]]`, by `do`.
@@ -123,7 +123,7 @@ pub const COMMANDS: &[Section] = &[
                     Allowed::NOT_NEGATIVE,
                     "s",
                     Default::Absent,
-                    "When it ends: with the first frame that begins at this time or later; the default is the end of the path.",
+                    "The command ends at the start of the first frame that begins at this time or later; the default is the end of the path.",
                 ),
                 Field::new("path", Allowed::Path, "s, m", Default::Required, "The path of the pointer."),
                 Field::new(
@@ -138,13 +138,13 @@ pub const COMMANDS: &[Section] = &[
                     Allowed::POSITIVE,
                     "N",
                     Default::Absent,
-                    "The largest force of the spring; a warning counts how often this limit acts. The default is the force of the spring stretched \
-by ten times the size of the body.",
+                    "The largest force of the spring; a warning counts how often this limit acts. The default is the force of the spring when it is \
+stretched by ten times the size of the body.",
                 ),
             ],
         ),
         children: &[
-            child("body", Holds::BodyReference, true, "The body; for copies, one of them: `NAME[i]`."),
+            child("body", Holds::BodyReference, true, "The body; if it has copies, one of the copies: `NAME[i]`."),
             child(
                 "node",
                 Holds::Node,
@@ -165,7 +165,7 @@ by ten times the size of the body.",
     Section {
         spec: &section(
             "pin",
-            "Hold nodes where they are when the command begins",
+            "Pin nodes where they are when the command begins",
             "",
             &[
                 AT,
@@ -184,7 +184,7 @@ by ten times the size of the body.",
     Section {
         spec: &section(
             "free",
-            "Release nodes that are held",
+            "Release pinned nodes",
             "Pins of the body and of earlier commands no longer hold these nodes.",
             &[AT],
         ),
@@ -202,19 +202,19 @@ by ten times the size of the body.",
                     Allowed::Text,
                     "",
                     Default::Required,
-                    "The parameter: `body.NAME.models.KIND.field` (the `NAME` of a body with copies means all of them), \
-`body.NAME.integrator.field`, `integrator.field`, `world.field`, `contact.field`, `collider.NUMBER.field` or `time.substeps`.",
+                    "The parameter: `body.NAME.models.KIND.field` (the `NAME` of a body with copies means all copies), `body.NAME.integrator.field`, \
+`integrator.field`, `world.field`, `contact.field`, `collider.NUMBER.field` or `time.substeps`.",
                 ),
             ],
         ),
-        children: &[child("value", Holds::AnyValue, true, "Its new value.")],
+        children: &[child("value", Holds::AnyValue, true, "The new value of the parameter.")],
     },
     Section {
         spec: &section(
             "change",
             "Give a body other models or another integrator while it moves",
-            "Positions and velocities do not change. The first new model of a kind takes over what the body's previous model of that kind remembers, \
-such as the amount of its gas. A model of a kind that the body did not have begins as at the start of a scene. Fields that are not given do not \
+            "Positions and velocities do not change. The first new model of a kind inherits the state of the body's previous model of that kind, \
+such as the amount of gas. If the body had no model of that kind, the new model begins as at the start of a scene. Fields that are not given do not \
 change.",
             &[AT],
         ),
@@ -223,10 +223,10 @@ change.",
                 "body",
                 Holds::BodyReference,
                 true,
-                "The body; the name of a body with copies means all of them, `NAME[i]` means one.",
+                "The body. The name of a body with copies means all copies; `NAME[i]` means one of them.",
             ),
-            child("models", Holds::Models, false, "Its models from now on, as in `[[body]]`."),
-            child("integrator", Holds::Integrator, false, "Its own integrator from now on."),
+            child("models", Holds::Models, false, "The models of the body from now on, as in `[[body]]`."),
+            child("integrator", Holds::Integrator, false, "The integrator of the body from now on."),
         ],
     },
     Section {
@@ -245,7 +245,7 @@ change.",
                     Allowed::Text,
                     "",
                     Default::Required,
-                    "The name of the body, from the scene or added before.",
+                    "The name of a body of the scene, or of a body that a command has added.",
                 ),
             ],
         ),
@@ -260,29 +260,30 @@ pub const PROBE: Section = Section {
         "Columns of diagnostics.csv that follow nodes",
         "Positions and velocities are means over the nodes; reactions are sums. A reaction is the force that pins exert on pinned nodes: mass times \
 acceleration, minus the forces of models and loads, minus the weight. The acceleration of a pin is computed from its motion over the previous frame \
-and the next one. The impulse of a pin that catches a moving node is not included. `contact` is the sum of the normal forces and friction of \
-obstacles in the next substep; obstacles exert no such forces on pinned nodes. With `[contact]`, it also contains the forces of other bodies, and of \
-corners and edges of obstacles, in the previous substep. `stress` is Cauchy's stress and `volume_ratio` is J: the value at a node is the mean over \
-the finite elements around it, weighted by their volume at rest. The mean over the nodes is written, together with the von Mises stress of this \
-mean. Columns are NAME.x, NAME.y (position), NAME.vx … (velocity), NAME.rx … (reaction), NAME.cx … (contact), NAME.sxx, syy, szz, sxy, in 3D also \
-syz and szx, and von_mises (stress; in 2D, szz acts across the plane), and NAME.volume_ratio. They are NaN while the body does not exist; stress and \
-volume ratio are also NaN while no model of the body computes them.",
+and the next one. The impulse of a pin that catches a moving node is not included. `contact` is the sum of the normal forces and friction that \
+obstacles exert in the next substep; obstacles exert no such forces on pinned nodes. With `[contact]`, this sum also contains the forces of other \
+bodies, and of corners and edges of obstacles, in the previous substep. `stress` is Cauchy's stress and `volume_ratio` is J: the value at a node is \
+the mean over the finite elements around it, weighted by their volume at rest. The columns contain the mean over the nodes, and the von Mises stress \
+of this mean. The names of the columns are NAME.x, NAME.y, … for the position, NAME.vx, … for the velocity, NAME.rx, … for the reaction, and \
+NAME.cx, … for the contact. For the stress, they are NAME.sxx, NAME.syy, NAME.szz, NAME.sxy, in 3D also NAME.syz and NAME.szx, and NAME.von_mises; \
+in 2D, szz acts across the plane. The volume ratio is NAME.volume_ratio. All columns are NaN while the body does not exist; stress and volume ratio \
+are also NaN while no model of the body computes them.",
         &[Field::new(
             "name",
             Allowed::Text,
             "",
             Default::Required,
-            "The first part of the names of its columns, unique in the scene.",
+            "The first part of the names of the columns; no other probe of the scene has the same name.",
         )],
     ),
     children: &[
-        child("body", Holds::BodyReference, true, "The body; for copies, one of them: `NAME[i]`."),
+        child("body", Holds::BodyReference, true, "The body; if it has copies, one of the copies: `NAME[i]`."),
         child("select", Holds::Selector, false, "The selected nodes; the default is all nodes."),
         child(
             "record",
             Holds::Words(&["position", "velocity", "reaction", "contact", "stress", "volume_ratio"]),
             true,
-            "What is recorded.",
+            "The quantities that are recorded.",
         ),
     ],
 };

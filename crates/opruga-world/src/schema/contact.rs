@@ -55,7 +55,7 @@ surfaces, but at most half of the shortest edge.",
                 "The speed at which bodies that overlap are moved apart. Only positions are changed; the work of these changes against forces is \
 entered in the ledger as `work_correction`.",
             ),
-            Field::new("self", Allowed::Boolean, "", Default::Boolean(true), "Whether bodies touch themselves."),
+            Field::new("self", Allowed::Boolean, "", Default::Boolean(true), "Whether a body touches itself."),
             Field::new(
                 "most_pairs",
                 Allowed::Number { least: Bound::Closed(1.0), greatest: Bound::Closed(1e8) },
@@ -73,8 +73,8 @@ pub const CONTACT_PAIR: Section = Section {
     spec: &section(
         "contact.pair",
         "What happens where two groups of bodies touch",
-        "A body belongs to the group that its `contact` names, or otherwise to the group with its own name, which copies share. If there are several \
-entries for two groups, the last one applies.",
+        "A body belongs to the group that its `contact` names. If it names none, the group has the name of the body, and all copies of the body \
+share it. If there are several entries for two groups, the last one applies.",
         &[
             Field::new("first", Allowed::Text, "", Default::Required, "A group."),
             Field::new(
@@ -84,14 +84,20 @@ entries for two groups, the last one applies.",
                 Default::Required,
                 "Another group, or the same one for contact among its own bodies.",
             ),
-            Field::new("touch", Allowed::Boolean, "", Default::Boolean(true), "Whether they touch at all."),
-            Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Absent, "Coulomb's coefficient µ of these two."),
+            Field::new("touch", Allowed::Boolean, "", Default::Boolean(true), "Whether the two groups touch at all."),
+            Field::new(
+                "friction",
+                Allowed::NOT_NEGATIVE,
+                "",
+                Default::Absent,
+                "Coulomb's coefficient µ between the two groups.",
+            ),
             Field::new(
                 "restitution",
                 Allowed::FRACTION,
                 "",
                 Default::Absent,
-                "Ratio of the normal speeds of these two after and before an impact.",
+                "Ratio of the normal speeds after and before an impact between the two groups.",
             ),
         ],
     ),
@@ -103,28 +109,34 @@ pub const BODY_CONTACT: Section = Section {
     spec: &section(
         "body.contact",
         "How a body touches others, if this differs from `[contact]`",
-        "It has an effect only if the scene has `[contact]`.",
+        "This table has an effect only if the scene has `[contact]`.",
         &[
             Field::new(
                 "group",
                 Allowed::Text,
                 "",
                 Default::Absent,
-                "Its group in `[[contact.pair]]`; the default is its own name.",
+                "The group of the body in `[[contact.pair]]`; the default is the name of the body.",
             ),
             Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Absent, FRICTION),
             Field::new("restitution", Allowed::FRACTION, "", Default::Absent, RESTITUTION),
             Field::new("thickness", Allowed::POSITIVE, "m", Default::Absent, THICKNESS),
-            Field::new("self", Allowed::Boolean, "", Default::Absent, "Whether it touches itself."),
+            Field::new("self", Allowed::Boolean, "", Default::Absent, "Whether the body touches itself."),
             Field::new(
                 "surface",
                 Allowed::Choice(&["skin", "cells"]),
                 "",
                 Default::Text("skin"),
-                "If a lattice fills the body, the surface that touches other bodies: `skin` is the surface that the lattice carries and that is \
-drawn; `cells` is the boundary of its cells, which lies outside the skin.",
+                "For a body filled by a lattice, the surface that touches other bodies: `skin` is the drawn surface, which the lattice carries; \
+`cells` is the boundary of the cells of the lattice, which lies outside the skin.",
             ),
-            Field::new("touch", Allowed::Boolean, "", Default::Boolean(true), "Whether it touches anything at all."),
+            Field::new(
+                "touch",
+                Allowed::Boolean,
+                "",
+                Default::Boolean(true),
+                "Whether the body touches anything at all.",
+            ),
         ],
     ),
     children: &[],
@@ -135,5 +147,5 @@ pub(super) const OF_BODY: Child = child(
     "contact",
     Holds::Table(&BODY_CONTACT),
     false,
-    "How it touches other bodies, if this differs from `[contact]`.",
+    "How the body touches other bodies, if this differs from `[contact]`.",
 );

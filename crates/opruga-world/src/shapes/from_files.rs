@@ -9,12 +9,12 @@ const SPACING: Field = Field::new(
     "m",
     Default::Required,
     "The approximate distance between nodes, before `scale`. An outline has a corner where it turns by more than 45° within this distance. Between \
-corners, it is divided into equal pieces whose length along the outline is as close to `spacing` as possible; a whole outline has at least three \
-pieces. Finer detail is left out; a warning reports the loss if the area changes by more than 5 %, or if the file has more than four points per \
-node. With `filling = \"lattice\"`, `spacing` is the side of the squares, and the outline keeps all of its points.",
+corners, the outline is divided into pieces of equal length, as close to `spacing` as possible; a whole outline has at least three pieces. Finer \
+detail is left out; a warning reports the loss if the area changes by more than 5 %, or if the file has more than four points per node. With \
+`filling = \"lattice\"`, `spacing` is the side of the squares, and the outline keeps all of its points.",
 );
 const SIZE: Field =
-    Field::new("size", Allowed::POSITIVE, "m", Default::Required, "The longer side of its bounding box.");
+    Field::new("size", Allowed::POSITIVE, "m", Default::Required, "The length of the longer side of the bounding box.");
 const FILLING: Field = Field::new(
     "filling",
     Allowed::Choice(&["none", "triangles", "lattice"]),
@@ -22,7 +22,7 @@ const FILLING: Field = Field::new(
     Default::Text("none"),
     "`none`: a skin of edges, for bending and gas. `triangles`: a lattice of nearly equilateral triangles; angles below 25° occur only where the \
 outline has a sharper corner or details finer than the spacing, and they are reported. `lattice`: equal squares that reach a little beyond the \
-outline and carry it for drawing, however fine it is.",
+outline and carry it for drawing, however fine the outline is.",
 );
 pub(super) const FILLING_OF_SURFACES: Field = Field::new(
     "filling",
@@ -30,8 +30,8 @@ pub(super) const FILLING_OF_SURFACES: Field = Field::new(
     "",
     Default::Text("none"),
     "`none`: a skin of triangles, for bending and gas. `lattice`: equal tetrahedra that reach a little beyond the surface and carry it for drawing. \
-`tetrahedra`: tetrahedra whose boundary follows the surface, with angles from 10.7° to 164.8°, for finite elements; sharp edges are cut off within a \
-spacing, and parts thinner than a spacing may be lost. A change of volume above 5 % is reported; above 25 % it is an error.",
+`tetrahedra`: tetrahedra whose boundary follows the surface, with angles from 10.7° to 164.8°, for finite elements. These tetrahedra cut off sharp \
+edges within a spacing, and may lose parts thinner than a spacing. A change of volume above 5 % is reported; above 25 % it is an error.",
 );
 pub(super) const SPACING_OF_FILLINGS: Field = Field::new(
     "spacing",
@@ -46,10 +46,10 @@ const OVERLAP: Field = Field::new(
     Allowed::Choice(&["refuse", "union", "even_odd"]),
     "",
     Default::Text("refuse"),
-    "What happens if outlines cross or touch: \"refuse\" is an error, \"union\" keeps what any part covers, \"even_odd\" keeps what an odd number of \
-outlines enclose; the number of joined outlines is reported. Areas that touch only at points are not joined at these points. An outline inside \
-another one is a hole, and an outline inside a hole is an area again, even if they belong to different elements of a drawing; with \"union\", \
-everything that any element paints is inside.",
+    "What happens if outlines cross or touch: \"refuse\" gives an error, \"union\" keeps what any part covers, and \"even_odd\" keeps what an odd \
+number of outlines enclose. The number of joined outlines is reported. Areas that touch only at points are not joined at these points. An outline \
+inside another one is a hole, and an outline inside a hole is an area again, even if the outlines belong to different elements of a drawing. With \
+\"union\", everything that any element paints is inside.",
 );
 const DROP_BELOW: Field = Field::new(
     "drop_below",
@@ -86,8 +86,8 @@ clip path that cuts nothing off has no effect; one that cuts something off is an
             Allowed::Boolean,
             "",
             Default::Boolean(false),
-            "Whether pictures show the drawing in the fill colours of its parts, painted one over another and carried by the body; a gradient \
-becomes the mean of its stops.",
+            "Whether pictures show the drawing on the body, with its parts painted one over another in their fill colours. A gradient becomes the \
+mean colour of its stops.",
         ),
     ],
     roles: &[],
@@ -97,8 +97,8 @@ static MAP: Spec = Spec {
     kind: "map",
     summary: "a country or any other polygons of a map",
     documentation: "Polygons of GeoJSON or TopoJSON, in degrees, with their holes; islands are parts of one body. Outlines that cross the \
-antimeridian stay in one piece, beyond 180°; outlines around a pole are cut along the antimeridian and closed along the pole. Neighbours that share \
-a border are joined with `overlap = \"union\"`.",
+antimeridian stay in one piece, with longitudes beyond 180°; outlines around a pole are cut along the antimeridian and closed along the pole. With \
+`overlap = \"union\"`, neighbours that share a border are joined.",
     dimensions: &[2],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The map, looked up relative to the scene."),
@@ -107,14 +107,14 @@ a border are joined with `overlap = \"union\"`.",
             Allowed::Text,
             "",
             Default::Absent,
-            "The `id` of a feature, or a text among its properties such as its name; the default is all features.",
+            "The `id` of a feature, or a text among its properties, such as its name; the default is all features.",
         ),
         Field::new(
             "layer",
             Allowed::Text,
             "",
             Default::Absent,
-            "The name of the object to read, for a TopoJSON file that has several.",
+            "The name of the object to read from a TopoJSON file that has several.",
         ),
         Field::new(
             "projection",
@@ -136,7 +136,7 @@ a border are joined with `overlap = \"union\"`.",
 static TEXT: Spec = Spec {
     kind: "text",
     summary: "a word in the letters of a font",
-    documentation: "The outlines of the letters of an OpenType or TrueType font, on one line, one by one from left to right; counters are holes.",
+    documentation: "The outlines of letters from an OpenType or TrueType font, set one by one from left to right on one line; counters are holes.",
     dimensions: &[2],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The font, looked up relative to the scene."),
@@ -170,7 +170,7 @@ static BITMAP: Spec = Spec {
             Allowed::Number { least: Bound::Open(0.0), greatest: Bound::Open(1.0) },
             "",
             Default::Number(0.5),
-            "The least darkness, brightness or opacity of a pixel inside.",
+            "The least darkness, brightness or opacity with which a pixel counts as inside.",
         ),
         SPACING,
         SIZE,
@@ -185,10 +185,10 @@ static BITMAP: Spec = Spec {
 static SURFACE: Spec = Spec {
     kind: "surface",
     summary: "a surface of triangles",
-    documentation: "OBJ, STL (text or binary), PLY (text or binary), glTF (.gltf, .glb), or the triangles of a mesh file (see `mesh`), according to \
-the ending of the file. Polygons, including concave ones, are cut into triangles that lie inside them. Triangles that face inward are flipped and \
-counted; every closed component is a chamber, and a component inside another one is a cavity. The centre of its bounding box lies at `center`. \
-Groups: the named parts of the file.",
+    documentation: "The ending of the file name determines the format: OBJ, STL (text or binary), PLY (text or binary), glTF (.gltf, .glb), or a \
+mesh file (see `mesh`), whose triangles are read. Polygons, including concave ones, are cut into triangles that lie inside them. Triangles that face \
+inward are flipped and counted. Every closed component is a chamber, and a component inside another one is a cavity. The centre of the bounding box \
+lies at `center`. Groups: the named parts of the file.",
     dimensions: &[3],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
@@ -197,7 +197,7 @@ Groups: the named parts of the file.",
             Allowed::POSITIVE,
             "m",
             Default::Absent,
-            "The longest side of its bounding box. If it is not given, the units of the file are metres.",
+            "The length of the longest side of the bounding box. If no size is given, the units of the file are metres.",
         ),
         CENTER,
         Field::new(
@@ -205,7 +205,7 @@ Groups: the named parts of the file.",
             Allowed::Choice(&["y", "z"]),
             "",
             Default::Text("y"),
-            "The axis of the file that points up; it becomes y.",
+            "The axis that points up in the file; it becomes y.",
         ),
         Field::new(
             "weld",
@@ -220,24 +220,24 @@ joined.",
             Allowed::Choice(&["refuse", "cap", "sheet"]),
             "",
             Default::Text("refuse"),
-            "What happens to a surface with free boundaries: \"refuse\" is an error, \"cap\" closes it with fans of triangles, \"sheet\" keeps it as \
-cloth.",
+            "What happens to a surface with free boundaries: \"refuse\" gives an error, \"cap\" closes the surface with fans of triangles, and \
+\"sheet\" keeps it as cloth.",
         ),
         Field::new(
             "overlap",
             Allowed::Choice(&["refuse", "keep"]),
             "",
             Default::Text("refuse"),
-            "What happens if triangles of a closed surface cross, touch or overlap although they share no vertex there: \"refuse\" is an error that \
-names two of them, \"keep\" accepts and counts them.",
+            "What happens if triangles of a closed surface cross, touch or overlap although they share no vertex there: \"refuse\" gives an error \
+that names two of these triangles, and \"keep\" accepts and counts them.",
         ),
         Field::new(
             "remesh",
             Allowed::POSITIVE,
             "m",
             Default::Absent,
-            "If it is given, a closed surface is rebuilt from nearly equilateral triangles with edges of about this length, before `scale`. Edges \
-sharper than 40° are kept, and nodes are renumbered.",
+            "If this length is given, a closed surface is rebuilt from nearly equilateral triangles with edges of about this length, before `scale`. \
+Edges sharper than 40° are kept, and nodes are renumbered.",
         ),
         FILLING_OF_SURFACES,
         SPACING_OF_FILLINGS,
@@ -248,10 +248,10 @@ sharper than 40° are kept, and nodes are renumbered.",
 static MESH: Spec = Spec {
     kind: "mesh",
     summary: "a filled body of cells, meshed by another program",
-    documentation: "Gmsh 2.2 and 4.1 (.msh, text or binary), VTK (.vtk, .vtu), TetGen (.node with .ele), MFEM and Medit (.mesh, .mfem), according to \
-the ending of the file. The cells may be triangles and quadrilaterals in 2D, tetrahedra and hexahedra in 3D; triangles may have 6 nodes and \
-tetrahedra 10. Nodes keep the order of the file, and their coordinates are in metres. Named parts (physical groups, attributes, references, markers) \
-become groups of nodes and of cells, and scalars of elements become values of cells.",
+    documentation: "The ending of the file name determines the format: Gmsh 2.2 and 4.1 (.msh, text or binary), VTK (.vtk, .vtu), TetGen (.node with \
+.ele), MFEM and Medit (.mesh, .mfem). The cells may be triangles and quadrilaterals in 2D, tetrahedra and hexahedra in 3D; triangles may have 6 \
+nodes and tetrahedra 10. Nodes keep the order of the file, and their coordinates are in metres. Named parts (physical groups, attributes, \
+references, markers) become groups of nodes and of cells, and scalars of elements become values of cells.",
     dimensions: &[2, 3],
     fields: &[
         Field::new("file", Allowed::Text, "", Default::Required, "The file, looked up relative to the scene."),
@@ -260,14 +260,14 @@ become groups of nodes and of cells, and scalars of elements become values of ce
             Allowed::Choice(&["refuse", "turn"]),
             "",
             Default::Text("refuse"),
-            "What happens to cells of negative area or volume: \"refuse\" is an error, \"turn\" flips and counts them.",
+            "What happens to cells of negative area or volume: \"refuse\" gives an error, and \"turn\" flips and counts the cells.",
         ),
         Field::new(
             "unreferenced",
             Allowed::Choice(&["refuse", "leave_out"]),
             "",
             Default::Text("refuse"),
-            "What happens to nodes that no cell uses: \"refuse\" is an error, \"leave_out\" leaves them out and counts them.",
+            "What happens to nodes that no cell uses: \"refuse\" gives an error, and \"leave_out\" leaves the nodes out and counts them.",
         ),
     ],
     roles: &[Role::CellsFromFile],
