@@ -14,7 +14,7 @@ opruga::math::messages! {
         "read.not_regular_file" #[error("this is not a regular file")]
         NotARegularFile {},
         "scene.no_scene" #[error("this is the file of a shape, not a scene")]
-        #[hint("a scene names it: shape = {{ kind = \"{kind}\", file = \"{file}\", … }}; `opruga mesh` shows it")]
+        #[hint("name the file in a scene: shape = {{ kind = \"{kind}\", file = \"{file}\", … }}; `opruga mesh` shows it")]
         ShapeFile { kind: &'static str, file: String },
         "material.gradient" #[error("`--F` contains `{word}`, which is not a finite number")] #[value("{word}")]
         #[allowed("4 finite numbers (2D) or 9 (3D), row by row")]
@@ -181,14 +181,14 @@ opruga::math::messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CallNote {
         "run.whole_frames"
-        #[error("a run consists of whole frames: it ends at t = {} s, not at {} s, after {} of {} s",
+        #[error("a run consists of whole frames, so it ends at t = {} s instead of {} s, after {} of {} s",
             number(*reached), number(*asked), counted(*frames, "frame", "frames"), rounded(*frame, 4))]
         WholeFrames { reached: f64, asked: f64, frames: u64, frame: f64 },
         "run.takes_long"
         #[error("the run will take about {duration} more ({} of {} s). To shorten it: {shorter}", counted(*frames, "frame", "frames"), rounded(*each, 2))]
         TakesLong { duration: String, frames: u64, each: f64, shorter: Shorter },
         "pictures.rate"
-        #[error("{} pictures per second, not {} (--fps): the time between two pictures is a whole number of frames of the scene, here {} of {} s each",
+        #[error("there are {} pictures per second, not {} (--fps): the time between two pictures is a whole number of frames of the scene, here {} of {} s each",
             rounded(*rate, 4), rounded(*asked, 4), counted(*every, "frame", "frames"), rounded(*frame, 4))]
         OtherRate { rate: f64, asked: f64, every: u64, frame: f64 },
         "pictures.none" #[error("no plots: {cause}")]

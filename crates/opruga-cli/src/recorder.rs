@@ -344,11 +344,14 @@ mod tests {
         }
         assert_eq!(
             other_rate(11.3, 5, frame).expect("it is told").to_string(),
-            "12 pictures per second, not 11.3 (--fps): the time between two pictures is a whole number of frames of the scene, here \
+            "there are 12 pictures per second, not 11.3 (--fps): the time between two pictures is a whole number of frames of the scene, here \
              5 frames of 0.01667 s each"
         );
         let most = other_rate(240.0, 1, frame).expect("it is told").to_string();
-        assert!(most.starts_with("60 pictures per second, not 240") && most.contains("here 1 frame of"), "{most}");
+        assert!(
+            most.starts_with("there are 60 pictures per second, not 240") && most.contains("here 1 frame of"),
+            "{most}"
+        );
     }
 
     #[test]

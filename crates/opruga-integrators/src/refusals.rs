@@ -56,11 +56,11 @@ messages! {
         Unsymmetric {},
         /// A body that nothing holds.
         "static.rigid_modes" #[error("nothing prevents {motions}: {}; an equilibrium exists only for a body that cannot move freely", modes(*count))]
-        #[hint("pin as many axes of nodes as there are rigid modes, or give it something to rest on")]
+        #[hint("pin as many axes of nodes as there are rigid modes, or give the body something to rest on")]
         Free { motions: AnyMessage, count: usize },
         /// A body that its linear forces let rotate for ever.
         "static.rigid_modes"
-        #[error("nothing prevents {motions}: {}. The forces of this body are linear, so a moment would rotate it for ever, and its weight does not bring it back, unlike that of a pendulum. It has no equilibrium unless it is held", modes(*count))]
+        #[error("nothing prevents {motions}: {}. The forces of this body are linear, so a moment would rotate it for ever, and its weight does not bring it back, unlike the weight of a pendulum. It has no equilibrium unless pins hold it", modes(*count))]
         #[hint("pin as many axes of nodes as there are rigid modes, or use a material for large rotations, such as `neo_hookean`")]
         Endless { motions: AnyMessage, count: usize },
         /// A piece that nothing holds.
@@ -71,7 +71,7 @@ messages! {
         /// A curve of equilibria that begins where nothing holds the body.
         "static.arc_length_and_obstacles"
         #[error("with `arc_length`, pins must hold the body: the load starts at zero, when nothing presses the body onto obstacles")] #[parameters("arc_length")]
-        #[allowed("pins that hold it, or the whole load at once, in as many `load_steps` as needed")]
+        #[allowed("pins that hold the body, or no `arc_length` and as many `load_steps` as needed")]
         LooseByArc {},
         /// A body that can slide on an obstacle.
         "run.model"
@@ -105,7 +105,7 @@ messages! {
         "part.step_hint" #[error("use more substeps, more `iterations`, or `when_not_converged = \"halve\"`")]
         Halve {},
         "part.step_hint"
-        #[error("steps that were accepted although they had not converged have made the body a hundred times as large as it was; use more substeps, or `when_not_converged = \"halve\"`")]
+        #[error("steps that were accepted although they had not converged have made the body a hundred times as large as it was in its first step; use more substeps, or `when_not_converged = \"halve\"`")]
         Grown {},
         "part.step_hint" #[error("use a shorter `arc_length`, or more `iterations`")]
         ShorterArc {},
@@ -120,7 +120,7 @@ messages! {
         "part.step_hint" #[error("use `when_not_converged = \"halve\"`, more `load_steps`, or more `iterations`")]
         LoadSteps {},
         "part.step_hint"
-        #[error("positions have sixteen digits here, so distances of {} m and forces of {} N are within rounding; use a larger `tolerance`, larger cells or a less stiff body, or move the scene closer to the origin", number(*of_positions), number(*of_forces))]
+        #[error("positions have sixteen digits, so rounding errors of {} m in positions and {} N in forces are unavoidable here; use a larger `tolerance`, larger cells or a less stiff body, or move the scene closer to the origin", number(*of_positions), number(*of_forces))]
         Rounding { of_positions: f64, of_forces: f64 },
     }
 }

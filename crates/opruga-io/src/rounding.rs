@@ -11,12 +11,12 @@ opruga_math::messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum Rounded {
         "mesh.rounded"
-        #[error("the file rounds coordinates by up to {rounding} m, {percent} % of the distance between neighbouring nodes: they are stored as numbers of 4 bytes, up to {farthest} m from the origin")]
+        #[error("the file rounds coordinates by up to {rounding} m, {percent} % of the distance between neighbouring nodes: they are stored as numbers of 4 bytes and lie up to {farthest} m from the origin")]
         #[value("{part}")] #[allowed("up to {warned} %; more than {refused} % is an error")]
         #[hint("move the shape to the origin before it is saved, or save it in a format with numbers of 8 bytes")]
         Single { rounding: String, percent: String, farthest: String, part: String, warned: f64, refused: f64 },
         "mesh.rounded"
-        #[error("the file rounds coordinates by up to {rounding} m, {percent} % of the distance between neighbouring nodes: they are stored as numbers of 8 bytes, up to {farthest} m from the origin")]
+        #[error("the file rounds coordinates by up to {rounding} m, {percent} % of the distance between neighbouring nodes: they are stored as numbers of 8 bytes and lie up to {farthest} m from the origin")]
         #[value("{part}")] #[allowed("up to {warned} %; more than {refused} % is an error")]
         #[hint("move the shape to the origin before it is saved")]
         Double { rounding: String, percent: String, farthest: String, part: String, warned: f64, refused: f64 },

@@ -53,7 +53,7 @@ messages! {
         Unit { bare: String },
         "part.text_hint" #[error("texts with spaces need quotes")]
         Quotes {},
-        "part.text_hint" #[error("`opruga sweep` accepts lists (8,16,32) and ranges (0.5..4:log:7), with a run for each value; a vector must be in brackets")]
+        "part.text_hint" #[error("`opruga sweep` accepts lists (8,16,32) and ranges (0.5..4:log:7), and makes one run for each value; a vector must be in brackets")]
         Sweep {},
     }
 

@@ -22,7 +22,7 @@ opruga::math::messages! {
         "recording.no_frame" #[error("the recording contains no frame")]
         Empty {},
         /// The scene in the recording does not lead to the recorded states.
-        "recording.other_program" #[error("the scene of the recording does not produce its first state: another program recorded it")]
+        "recording.other_program" #[error("the recorded scene does not lead to the first recorded state: another program wrote the recording")]
         OtherProgram {},
         /// The end of the recording is damaged.
         "recording.damaged" #[error("after frame {frame}: {cause}")]

@@ -77,7 +77,7 @@ messages! {
         /// largest damping rate \[1/s\], and the smallest stable number of substeps of a frame, which may exceed the limit of a frame.
         "step.unstable"
         #[error("the step h = {} s of `{integrator}` is unstable for body `{body}`", number(*h))]
-        #[allowed("h <= {} s (its fastest motion: {} rad/s{})", number(*limit), number(*omega), damped(*damping))]
+        #[allowed("h <= {} s (the fastest motion of the body: {} rad/s{})", number(*limit), number(*omega), damped(*damping))]
         #[hint("{}", remedy(*substeps))]
         UnstableStep { integrator: &'static str, body: String, h: f64, limit: f64, omega: f64, damping: f64, substeps: u32 },
         /// A number of the motion is not finite, or a position is outside the range in which positions keep their digits. Contains the time at the
@@ -102,7 +102,7 @@ messages! {
         Overflow { last: f64 },
         /// More pairs may touch in a step than the scene allows. Contains the time of the last good frame \[s\].
         "limit.contacts"
-        #[error("more than {most} pairs of vertices, edges and facets could touch in a step ({found} were found) in the frame from t = {} s; the world is at its last good frame", number(*last))]
+        #[error("in the frame from t = {} s, more than {most} pairs of vertices, edges and facets could touch in one step ({found} were found); the world is at its last good frame", number(*last))]
         #[allowed("{most}")] #[hint("use a larger `most_pairs` in `[contact]`, or coarser surfaces")]
         TooManyContacts { found: usize, most: usize, last: f64 },
         /// Surfaces that a barrier should keep apart meet. The second surface belongs to another body, the same body, or an obstacle. Contains the

@@ -24,7 +24,7 @@ messages! {
         Empty {},
         "scene.name" #[error("the name contains `{letter}`")] #[allowed("{NAMES}")]
         Contains { letter: String },
-        "scene.name" #[error("the name is a number, which would be the index of a body")] #[allowed("{NAMES}")]
+        "scene.name" #[error("the name is a number, but a number means the index of a body")] #[allowed("{NAMES}")]
         Number {},
         "scene.duplicate_name" #[error("two bodies are called `{name}`{}", first_in(line))] #[value("{name}")]
         TwoBodies { name: String, line: Option<usize> },
@@ -43,10 +43,10 @@ messages! {
     /// Errors in the numbers of a blueprint, or in the names that its parts refer to.
     #[derive(Clone, Debug, PartialEq)]
     pub enum BlueprintFault {
-        "scene.range" #[error("a step of {} s is lost in rounding at {} s: time would not advance", number(*h), number(*seconds))]
+        "scene.range" #[error("a step of {} s is lost in rounding at t = {} s: time would not advance", number(*h), number(*seconds))]
         #[value("{frame}")] #[allowed("a step that changes the time")]
         LostStep { h: f64, seconds: f64, frame: String },
-        "scene.range" #[error("{} s are {} frames", number(*seconds), number(*frames))] #[value("{frame}")] #[allowed("at most 1e12 frames")]
+        "scene.range" #[error("a run of {} s would have {} frames", number(*seconds), number(*frames))] #[value("{frame}")] #[allowed("at most 1e12 frames")]
         ManyFrames { seconds: f64, frames: f64, frame: String },
         "scene.range" #[error("body `{body}` has no node {node}")] #[value("{node}")] #[allowed("nodes from 0 to {last}")]
         NoNode { body: String, node: u32, last: usize },
@@ -62,11 +62,11 @@ messages! {
         NoBody { index: usize, last: usize },
         "scene.unknown_name" #[error("there is no body {index}")] #[value("{index}")] #[allowed("the scene has no bodies")]
         NoBodies { index: usize },
-        "scene.shape" #[error("it has no nodes")] #[allowed("at least one node")]
+        "scene.shape" #[error("the shape has no nodes")] #[allowed("at least one node")]
         NoNodes {},
         "scene.shape" #[error("node {node} lies at {position}")] #[allowed("coordinates within 1e70 m of the origin of the shape")]
         FarNode { node: usize, position: String },
-        "scene.length" #[error("it has {count} numbers")] #[value("{count}")] #[allowed("one for each of {cells} cells")]
+        "scene.length" #[error("the list has {count} numbers")] #[value("{count}")] #[allowed("one for each of {cells} cells")]
         Densities { count: usize, cells: usize },
         "scene.length" #[error("{count} nodes have a velocity")] #[value("{count}")] #[allowed("none, or each of {nodes} nodes")]
         NodeVelocities { count: usize, nodes: usize },

@@ -64,7 +64,7 @@ messages! {
         NoCommand {},
         "part.path" #[error("only a drag has a path")]
         NoDrag {},
-        "part.path" #[error("each row of its path must contain a time later than that of the row before, and a point; all numbers must be finite")]
+        "part.path" #[error("each row of the path must contain a time that is later than in the row before, and a point; all numbers must be finite")]
         Row {},
         "part.path" #[error("it begins at {at} s and cannot end at {until} s")]
         CannotEnd { at: f64, until: f64 },
@@ -133,7 +133,7 @@ messages! {
         Contact {},
         "part.snapshot" #[error("it has another dimension")]
         Dimension {},
-        "part.snapshot" #[error("it has another number of bodies")]
+        "part.snapshot" #[error("it has a different number of bodies")]
         BodyCount {},
         "part.snapshot" #[error("a body and its slot contradict each other")]
         BodyPlace {},
@@ -143,7 +143,7 @@ messages! {
         OtherShape { body: String },
         "part.snapshot" #[error("body `{body}` has a number that is not finite")]
         NotFinite { body: String },
-        "part.snapshot" #[error("it has another number of commands")]
+        "part.snapshot" #[error("it has a different number of commands")]
         CommandCount {},
         "part.snapshot" #[error("a command refers to something that does not exist")]
         CommandHolds {},
@@ -151,7 +151,7 @@ messages! {
         CommandState {},
         "part.snapshot" #[error("bytes follow its end")]
         GoesOn {},
-        "part.snapshot" #[error("bytes follow the end of its part about the scene")]
+        "part.snapshot" #[error("bytes follow the end of the part about the scene")]
         SceneGoesOn {},
         "part.snapshot" #[error("it does not belong to two scenes side by side")]
         NoPair {},

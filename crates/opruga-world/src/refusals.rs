@@ -29,7 +29,7 @@ messages! {
         #[allowed("every cell in one `{kind}` model")] #[hint("use `cells` to name groups without common cells")]
         CellsTwice { cell: u32, first: usize, second: usize, kind: &'static str },
         "model.uncovered_cells"
-        #[error("{count} of {cells} cells, the first of which is cell {first}, are in none of the groups {groups} of the models: they would have mass but no stiffness")]
+        #[error("{count} of {cells} cells are in none of the groups {groups} of the models and would have mass but no stiffness; the first is cell {first}")]
         #[allowed("every cell in one model")]
         Uncovered { count: usize, cells: usize, first: usize, groups: String },
         "integrator.mass_matrix"
@@ -66,13 +66,13 @@ messages! {
         Indefinite {},
         "contact.implicit" #[error("bodies with `{integrator}` cannot touch bodies with `{other}`: one integrator finds a state of rest, the other follows a motion")]
         #[allowed("integrators that all find states of rest, or all follow motions")]
-        #[hint("`contact.touch = false` in a body lets it pass through the others")]
+        #[hint("`contact.touch = false` of a body lets it pass through the others")]
         RestBesideMotion { integrator: &'static str, other: String },
         "contact.implicit" #[error("`{integrator}` with `arc_length` or `load_steps` applies loads in parts, but bodies that touch are balanced under the whole load")] #[parameters("arc_length", "load_steps")]
         #[allowed("no `arc_length` and no `load_steps` for bodies that touch")]
-        #[hint("`contact.touch = false` in a body lets it pass through the others")]
+        #[hint("`contact.touch = false` of a body lets it pass through the others")]
         RestInParts { integrator: &'static str },
-        "run.model" #[error("no common equilibrium was found for bodies that touch: the steps of the bodies and their contact do not lead to the same state, however short the steps")]
+        "run.model" #[error("no common equilibrium was found for bodies that touch: even very short steps of the bodies and of their contact do not lead to the same state")]
         #[hint("use pins or friction to hold bodies that would slide")]
         NoAgreementAtRest {},
         "run.model" #[error("no common equilibrium was found for bodies that touch: after {steps} steps towards it, they still move by {} m", number(*moved))]
@@ -95,35 +95,35 @@ messages! {
         #[hint("use a coarser mesh, an explicit integrator, or `linear_solver = \"matrix_free\"`")]
         MachineMemory { all: String, body: String, largest: String },
         "scene.range"
-        #[error("it begins {} m from the origin along an axis, where positions are rounded by {} m", rounded(*farthest, 3), rounded(*farthest * f64::EPSILON, 2))]
-        #[allowed("at most {} m, where rounding is a millionth of the distance between its nodes", rounded(*range, 3))]
+        #[error("the body begins {} m from the origin along an axis, where positions are rounded by {} m", rounded(*farthest, 3), rounded(*farthest * f64::EPSILON, 2))]
+        #[allowed("at most {} m, where rounding is a millionth of the distance between the nodes of the body", rounded(*range, 3))]
         #[hint("move the scene to the origin")]
         FarBody { farthest: f64, range: f64 },
         "scene.range"
-        #[error("`velocity` and `angular_velocity` give it {} m/s along an axis at the start, {} m in a step of {} s", rounded(*fastest, 3), rounded(*fastest * *h, 3), number(*h))] #[parameters("velocity", "angular_velocity")]
-        #[allowed("at most {} m/s, so that after a step positions still have enough digits to distinguish its nodes", rounded(*range / *h, 3))]
-        #[hint("are its units mixed (metres, seconds, radians)?")]
+        #[error("`velocity` and `angular_velocity` give the body {} m/s along an axis at the start, which is {} m in a step of {} s", rounded(*fastest, 3), rounded(*fastest * *h, 3), number(*h))] #[parameters("velocity", "angular_velocity")]
+        #[allowed("at most {} m/s, so that after a step the positions of the nodes still have enough digits to differ", rounded(*range / *h, 3))]
+        #[hint("are the units mixed (metres, seconds, radians)?")]
         FastBody { fastest: f64, h: f64, range: f64 },
         "scene.range" #[error("`{word}` is {value}, which gives node {node} a mass of {} kg", number(*mass))] #[value("{value}")] #[parameters(word)]
         #[allowed("values that give every node a mass of at least {} kg and at most {} kg", number(f64::MIN_POSITIVE), number(f64::MAX))]
-        #[hint("are its units mixed (metres, kilograms)?")]
+        #[hint("are the units mixed (metres, kilograms)?")]
         MassOfNode { word: &'static str, value: String, node: usize, mass: f64 },
-        "scene.range" #[error("a weight of {} m/s² takes the energy of the bodies out of the range of finite numbers", number(*weight))]
+        "scene.range" #[error("gravity of {} m/s² takes the energy of the bodies out of the range of finite numbers", number(*weight))]
         #[allowed("at most {} m/s² along an axis", number(*most))]
         Weight { weight: f64, most: f64 },
         "scene.range" #[error("`{word}` is {value}, which takes the energy or the momentum of the body out of the range of finite numbers")] #[value("{value}")] #[parameters(word)]
         #[allowed("numbers whose squares are finite, up to {}", number(*most))]
         BeyondFinite { word: &'static str, value: String, most: f64 },
-        "scene.range" #[error("its energy or its momentum is out of the range of finite numbers")]
-        #[hint("are its units mixed (metres, kilograms, seconds)?")]
+        "scene.range" #[error("the energy or the momentum of the body is out of the range of finite numbers")]
+        #[hint("are the units mixed (metres, kilograms, seconds)?")]
         Sums {},
         "step.not_finite" #[error("{cause}")]
         #[allowed("forces, stiffnesses and their ratios to the masses of nodes below 1e300")]
-        #[hint("its lightest node has {} kg", number(*lightest))]
+        #[hint("the lightest node of the body has a mass of {} kg", number(*lightest))]
         NoEstimate { cause: AnyMessage, lightest: f64 },
         "step.not_finite" #[error("{cause}")]
         #[allowed("forces, stiffnesses and their ratios to the masses of nodes below 1e300")]
-        #[hint("the largest number of its models is `{field}` = {} of `{kind}`, and its lightest node has {} kg", number(*value), number(*lightest))]
+        #[hint("the largest number in the models of the body is `{field}` = {} of `{kind}`, and its lightest node has a mass of {} kg", number(*value), number(*lightest))]
         NoEstimateOf { cause: AnyMessage, field: String, value: f64, kind: String, lightest: f64 },
         "run.model" #[error("obstacles push nodes through surfaces, although a barrier should prevent this")] #[hint("use smaller steps, or finer surfaces")]
         Pushed {},

@@ -83,8 +83,8 @@ terms! {
     /// What reduces the error of an integrator.
     pub enum ErrorHint = "part.error_hint" {
         Implicit = "with implicit integrators, it comes from the residual of their equations; use a smaller `tolerance`, or `accuracy = \"exact\"`",
-        Contact = "bodies met obstacles, where this error is proportional to the step with every integrator; use more substeps",
-        ContactOfOthers = "bodies met obstacles, where this error is proportional to the step with every integrator; it is smallest with `verlet`",
+        Contact = "bodies met obstacles; at obstacles, this error is proportional to the step with every integrator, so use more substeps",
+        ContactOfOthers = "bodies met obstacles; at obstacles, this error is proportional to the step with every integrator, but smallest with `verlet`",
         Explicit = "use more substeps, or an integrator of higher order",
     }
 }
@@ -93,8 +93,8 @@ terms! {
     /// Measures against inverted cells.
     pub enum CellHint = "part.cell_hint" {
         Smaller = "smaller cells, or less compression",
-        Farther = "smaller cells, or a material that pushes cells back from a stronger inversion (`fixed_corotated`)",
-        Material = "or a material that pushes such cells back (`stable_neo_hookean`, `fixed_corotated`)",
+        Farther = "smaller cells, or a material that restores cells even after a stronger inversion (`fixed_corotated`)",
+        Material = "or a material that restores such cells (`stable_neo_hookean`, `fixed_corotated`)",
     }
 }
 
@@ -179,7 +179,7 @@ messages! {
         #[error("a real-time step used up its budget, or needed so many products with the matrix that slow motions may have a large residual: the residual forces would move single nodes by up to {} m. The body is too stiff or too slender for the step; use more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`", number(*left))]
         CutOff { left: f64 },
         "statics.blurred"
-        #[error("an equilibrium was found in which forces are as small as their rounding errors, but the residual could still move nodes by up to {} m. Positions have sixteen digits, which is too few for a body so slender, for cells so thin or for positions so far from the origin. Smaller details of the result are meaningless", number(*error_estimate))]
+        #[error("an equilibrium was found in which forces are as small as their rounding errors, but the residual could still move nodes by up to {} m. Positions have sixteen digits, which is too few for a body so slender, for cells so thin or for positions so far from the origin. Details of the result that are smaller than this are meaningless", number(*error_estimate))]
         #[hint("use cells that are shorter relative to their thickness, or move the scene to the origin")]
         Estimated { error_estimate: f64 },
         "conditioning"
@@ -192,12 +192,12 @@ messages! {
         Disturbed {},
         "step.odd_rest"
         #[error("a body stayed at rest in a degenerate, inverted or folded shape, in an equilibrium that disturbances of up to a tenth of its size did not end{}", if_any(worst))]
-        #[hint("use another initial state, or a material that pushes such cells back (`fixed_corotated`)")]
+        #[hint("use another initial state, or a material that restores such cells (`fixed_corotated`)")]
         DegenerateRest { worst: Option<WorstCell> },
         "restore.no_force" #[error("a snapshot does not contain forces that the program defines, and a body had one: add it again (`World::add_force`)")]
         NoForce {},
         "statics.load_left"
-        #[error("the run ends before the whole load is applied: the last state of body `{body}` is the equilibrium under {} of it (`load_factor`)", number(*part))]
+        #[error("the run ends before the whole load is applied: the last state of body `{body}` is the equilibrium under {} of the load (`load_factor`)", number(*part))]
         #[hint("use more frames, or a longer `arc_length`")]
         LoadLeft { body: String, part: f64 },
         "units.sag"
@@ -211,7 +211,7 @@ messages! {
         #[hint("a section `[contact]` keeps bodies apart")]
         NoContact { time: f64, pairs: u64, first: String, second: String },
         "contact.mixed"
-        #[error("at t = {} s, body `{first}` ({first_rule}) touches body `{second}` ({second_rule}): contact is solved for both together, but each body is stepped by its own integrator, so the pair has the order and the damping of neither (counted once per frame and pair of bodies)", number(*time))]
+        #[error("at t = {} s, body `{first}` ({first_rule}) touches body `{second}` ({second_rule}): contact is solved for both together, but each body is stepped by its own integrator, so neither the order nor the damping of either integrator applies to the pair (counted once per frame and pair of bodies)", number(*time))]
         #[hint("use the same integrator for bodies that touch")]
         Mixed { time: f64, first: String, first_rule: String, second: String, second_rule: String },
         "cells.slender"

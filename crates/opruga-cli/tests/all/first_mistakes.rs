@@ -120,7 +120,7 @@ fn a_rotation_that_is_none_is_explained() {
         write(folder.path(), &scene(3, &format!("{cube}rotation = {wrong}"), ""));
         let output = opruga(folder.path(), &["check", "s.toml"]);
         assert_eq!(code(&output), 2, "{wrong}");
-        for part in ["the axis times the angle about it in radians", "[0, 0, 1.5708] turns by 90° about z"] {
+        for part in ["the axis multiplied by the angle about it in radians", "[0, 0, 1.5708] turns by 90° about z"] {
             assert!(said(&output).contains(part), "{wrong}: {}", said(&output));
         }
     }

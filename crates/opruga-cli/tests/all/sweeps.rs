@@ -162,7 +162,7 @@ fn bad_calls_are_refused_before_anything_is_written() {
         (vec!["sweep", "ball", "--set=body.ball.mass=1,2", "--metric=bounce_hight", "--out=o"], "did you mean"),
         (
             vec!["sweep", "ball", "--set=body.ball.mass=1..2", "--metric=energy_drift", "--out=o"],
-            "has no number of values",
+            "does not give the number of values",
         ),
         (
             vec!["sweep", "ball", "--set=body.ball.mass=1..2", "--sample=0", "--metric=energy_drift", "--out=o"],

@@ -74,8 +74,9 @@ fn a_run_whose_last_frame_ends_elsewhere_than_asked_for_says_when() {
     let run = |seconds: &str| opruga(folder.path(), &["run", "ball", "--no-pictures", "--force", "--seconds", seconds]);
     let output = run("0.04");
     assert!(
-        said(&output)
-            .contains("note[run.whole_frames]: a run consists of whole frames: it ends at t = 0.05 s, not at 0.04 s"),
+        said(&output).contains(
+            "note[run.whole_frames]: a run consists of whole frames, so it ends at t = 0.05 s instead of 0.04 s"
+        ),
         "{}",
         said(&output)
     );
@@ -104,7 +105,7 @@ fn a_sweep_whose_last_frames_end_elsewhere_than_asked_for_says_when() {
         opruga(folder.path(), &call)
     };
     let output = sweep("0.04");
-    let says = "note[run.whole_frames]: a run consists of whole frames: it ends at t = 0.05 s, not at 0.04 s";
+    let says = "note[run.whole_frames]: a run consists of whole frames, so it ends at t = 0.05 s instead of 0.04 s";
     assert!(said(&output).contains(says), "{}", said(&output));
     assert!(!said(&sweep("0.05")).contains("whole frames"));
 }

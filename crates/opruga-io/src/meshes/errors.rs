@@ -146,7 +146,7 @@ messages! {
         "mesh.dimension" #[error("node {node} lies outside the plane of the first node")] #[value("{z}")]
         #[allowed("z = {plane}")] #[hint("write `dimension = 3` at the top of the scene")]
         OutOfPlane { node: u64, z: String, plane: String },
-        "mesh.dimension" #[error("the file contains cells that fill a body, not a surface")] #[value("3")]
+        "mesh.dimension" #[error("the file contains the cells of a filled body, not a surface")] #[value("3")]
         #[allowed("triangles and quadrilaterals")] #[hint("`kind = \"mesh\"` reads filled bodies")]
         NoSurface {},
         "shape.too_large" #[error("the mesh has {nodes} nodes")] #[value("{nodes}")] #[allowed("at most {most}")]

@@ -17,7 +17,7 @@ messages! {
         "msh.syntax" #[error("there is a second section ${section}")] #[value("${section}")] #[allowed("one")]
         SecondSection { section: String },
         "msh.version" #[error("version `{version}` cannot be read")] #[value("{version}")] #[allowed("2.2 or 4.1")]
-        #[hint("Gmsh writes another version with `-format msh41` or `-format msh22`")]
+        #[hint("with `-format msh41` or `-format msh22`, Gmsh writes a version that can be read")]
         Version { version: String },
         "msh.syntax" #[error("{kind} is not a file type")] #[value("{kind}")] #[allowed("0 (text) or 1 (binary)")]
         FileKind { kind: u32 },
@@ -52,7 +52,7 @@ messages! {
         "msh.syntax" #[error("two entities of {dimension} dimensions have the number {entity}")] #[value("{entity}")]
         #[allowed("a different number for every entity of a dimension")]
         EntityTwice { dimension: usize, entity: i32 },
-        "msh.size" #[error("numbers of {what} from {lowest} to {highest} are declared, but the file has those from {low} to {high}")]
+        "msh.size" #[error("the header declares {what} numbered from {lowest} to {highest}, but the file numbers them from {low} to {high}")]
         #[value("{lowest}, {highest}")] #[allowed("{low}, {high}")]
         #[hint("the header of the section is wrong, or a part of its content is missing")]
         Bounds { what: Expected, lowest: u64, highest: u64, low: u64, high: u64 },

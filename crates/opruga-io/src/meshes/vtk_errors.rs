@@ -45,7 +45,7 @@ messages! {
         FirstOffset { offset: i128, wanted: i128 },
         "vtk.size" #[error("the last cell ends at {offset}")] #[value("{offset}")] #[allowed("{wanted}")]
         LastOffset { offset: i128, wanted: i128 },
-        "vtk.size" #[error("a cell reaches from {start} to {end}")] #[value("{end}")] #[allowed("{start} to {most}")]
+        "vtk.size" #[error("the nodes of a cell begin at offset {start} and end at offset {end}")] #[value("{end}")] #[allowed("{start} to {most}")]
         Reach { start: i128, end: i128, most: i128 },
         "vtk.size" #[error("a cell has {nodes} nodes, but only {there} follow")] #[value("{nodes}")] #[allowed("at most {there}")]
         Follow { nodes: i128, there: usize },
@@ -59,7 +59,7 @@ messages! {
         ValuesOfPoints { values: u64, points: usize },
         "vtk.syntax" #[error("a field of texts cannot be read")] #[value("string")] #[allowed("numbers")]
         Texts {},
-        "vtk.syntax" #[error("`{word}` comes before CELL_DATA and POINT_DATA")] #[value("{word}")] #[allowed("CELL_DATA or POINT_DATA before it")]
+        "vtk.syntax" #[error("`{word}` comes before CELL_DATA and POINT_DATA")] #[value("{word}")] #[allowed("after CELL_DATA or POINT_DATA")]
         BeforeData { word: String },
         "vtk.syntax" #[error("`{word}` is not a number of components")] #[value("{word}")] #[allowed("1 to 4")]
         Components { word: String },
@@ -95,7 +95,7 @@ messages! {
         NotFinitePoint { point: usize, number: f64 },
         "vtu.size" #[error("the last cell ends at {offset}")] #[value("{offset}")] #[allowed("0 or more")]
         LastOffset { offset: i128 },
-        "vtu.size" #[error("cell {cell} reaches from {start} to {end}")] #[value("{end}")] #[allowed("{start} to {most}")]
+        "vtu.size" #[error("the nodes of cell {cell} begin at offset {start} and end at offset {end}")] #[value("{end}")] #[allowed("{start} to {most}")]
         Reach { cell: usize, start: i128, end: i128, most: usize },
         "vtu.syntax" #[error("`{number}` is not a whole number")] #[value("{number}")] #[allowed("a whole number")]
         NotWhole { number: f64 },

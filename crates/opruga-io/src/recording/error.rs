@@ -13,7 +13,7 @@ opruga_math::messages! {
         NotOne {},
         /// Another version of the program wrote it.
         "recording.version" #[error("the recording has version {found}; this program reads version {VERSION}")] #[value("{found}")]
-        #[allowed("a recording of version {VERSION}")] #[hint("use the version of the program that wrote it")]
+        #[allowed("a recording of version {VERSION}")] #[hint("use the version of the program that wrote the recording")]
         Version { found: u32 },
         /// It ends within its header: the run that wrote it did not begin.
         "recording.cut_off" #[error("the recording is cut off in its header: it has {found} of {expected} bytes")]

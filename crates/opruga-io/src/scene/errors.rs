@@ -42,7 +42,7 @@ terms! {
         Selectors = "a list of selectors",
         Node = "the number of a node, \"nearest\" or \"nearest_facet\"",
         Counts = "a list of whole numbers such as [10, 5]",
-        Recorded = "a list of position, velocity, reaction, contact, stress, volume_ratio",
+        Recorded = "a list of any of position, velocity, reaction, contact, stress, volume_ratio",
         Body = "the name of a body or its number",
     }
 }
@@ -91,9 +91,9 @@ messages! {
         Angle {},
         "part.scene_allowed" #[error("the angular velocity in rad/s, counter-clockwise")]
         Spin {},
-        "part.scene_allowed" #[error("the axis times the angle about it in radians: three numbers")]
+        "part.scene_allowed" #[error("three numbers: the axis multiplied by the angle about it in radians")]
         AngleInSpace {},
-        "part.scene_allowed" #[error("the axis times the angular speed about it in rad/s: three numbers")]
+        "part.scene_allowed" #[error("three numbers: the axis multiplied by the angular speed about it in rad/s")]
         SpinInSpace {},
         "part.scene_allowed" #[error("1 to {dimension} whole numbers, each at least 1")]
         Counts { dimension: usize },
@@ -122,7 +122,7 @@ messages! {
         Purpose { field: FieldOf },
         "part.scene_hint" #[error("write it without quotes")]
         NoQuotes {},
-        "part.scene_hint" #[error("write a larger number with a decimal point")]
+        "part.scene_hint" #[error("write larger numbers with a decimal point")]
         DecimalPoint {},
         "part.scene_hint" #[error("`{word}` is misspelt")]
         Misspelt { word: String },
@@ -184,16 +184,16 @@ messages! {
         "scene.range" #[error("t does not increase: {time} follows {before}")] #[value("{value}")]
         NotRising { time: f64, before: f64, value: String },
         "scene.type" #[error("`{field}` is a list of lists")] #[value("{value}")]
-        #[hint("write the numbers of all of them one after another, in one list")]
+        #[hint("write the numbers of all lists one after another, in a single list")]
         Lists { field: String, value: String },
         "scene.range" #[error("`rotation` is {value}: rounding loses the direction of so large an angle")] #[value("{value}")]
         #[allowed("angles within 1e6 radians")] #[hint("whole turns of 6.283185307179586 radians change nothing")]
         Angle { value: String },
-        "scene.missing" #[error("{fields} {} missing in `{table}`", are(*count))]
+        "scene.missing" #[error("{fields} {} missing from `{table}`", are(*count))]
         Missing { fields: String, count: usize, table: &'static str },
-        "scene.missing" #[error("{fields} {} missing in the scene", are(*count))]
+        "scene.missing" #[error("{fields} {} missing from the scene", are(*count))]
         MissingInScene { fields: String, count: usize },
-        "scene.missing" #[error("`{tag}` is missing in `{table}`")]
+        "scene.missing" #[error("`{tag}` is missing from `{table}`")]
         NoTag { tag: String, table: Part },
         "scene.dimension" #[error("`{kind}` does not exist in {dimension}D")] #[value("{kind}")] #[allowed("dimension {dimensions}")]
         KindDimension { kind: &'static str, dimension: usize, dimensions: String },
@@ -240,7 +240,7 @@ messages! {
         "scene.range" #[error("`{field}` is {value}: products of such lengths overflow")] #[value("{value}")]
         #[allowed("coordinates within 1e70 m of the origin of the shape")]
         Vast { field: String, value: String },
-        "scene.range" #[error("`{field}` makes it too large: products of such lengths overflow")] #[value("{value}")]
+        "scene.range" #[error("`{field}` makes the shape too large: products of such lengths overflow")] #[value("{value}")]
         #[allowed("coordinates within 1e70 m of the origin of the shape")]
         MadeVast { field: &'static str, value: String },
         "scene.missing" #[error("`density` of a wire needs its width, which `thickness` gives")] #[allowed("a number > 0")]
@@ -251,7 +251,7 @@ messages! {
         SheetThickness {},
         "scene.shape" #[error("a coordinate of the shape is {value}")] #[allowed("finite coordinates")]
         NotFiniteShape { value: f64 },
-        "shape.flipped" #[error("the points of `{body}` run clockwise")] #[hint("its edges run counter-clockwise, against the order of the points")]
+        "shape.flipped" #[error("the points of `{body}` run clockwise")] #[hint("the edges of the outline run counter-clockwise, against the order of the points")]
         Clockwise { body: String },
         "scene.conflict" #[error("the body has `angular_velocity` and `velocity.angular`")] #[value("{value}")] #[allowed("one of them")]
         TwoSpins { value: String },
@@ -259,7 +259,7 @@ messages! {
         #[allowed("{dimension} rows of {dimension} finite numbers: the derivatives of each component of the velocity along the axes")]
         Gradient { count: usize, dimension: usize, value: String },
         "scene.no_values" #[error("the nodes of the mesh have no vectors `{name}`")] #[value("{name}")]
-        #[hint("vectors of nodes are `$NodeData` of Gmsh, `POINT_DATA` of VTK and `<PointData>` of VTU files")]
+        #[hint("vectors of nodes come from `$NodeData` in Gmsh files, `POINT_DATA` in VTK files and `<PointData>` in VTU files")]
         NoNodeVectors { name: String },
         "scene.no_values" #[error("`{name}` must come from a mesh file, but the shape is a `{kind}`")] #[value("{name}")]
         #[hint("`kind = \"mesh\"` reads one")]
@@ -278,7 +278,7 @@ messages! {
         LeavesPlane { name: String, node: usize, z: f64 },
         "scene.range" #[error("{problem}")]
         Rotation { problem: MeshError },
-        "scene.range" #[error("`{name}`, rotated with the body, is {value}")] #[value("{value}")] #[allowed("finite numbers")]
+        "scene.range" #[error("`{name}` becomes {value} when it is rotated with the body")] #[value("{value}")] #[allowed("finite numbers")]
         Turned { name: String, value: f64 },
         "scene.conflict"
         #[error("node {node} of body `{body}` is also held by `{pin}`{}, which moves it elsewhere along {axis} at t = {time} s", in_line(line))]
@@ -293,7 +293,7 @@ messages! {
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum CommandError {
         "scene.missing" #[error("`until` is missing: a path of one point does not define when the drag ends")]
-        #[allowed("a time after {at}")] #[hint("a path of several points ends the drag with its last one")]
+        #[allowed("a time after {at}")] #[hint("a path of several points ends the drag at its last point")]
         NoEnd { at: f64 },
         "scene.range" #[error("the command ends at {until} s, before it begins at {at} s")] #[value("{until}")] #[allowed("a time from {at}")]
         EndsBefore { until: f64, at: f64 },
@@ -352,7 +352,7 @@ messages! {
         NoBoundary { body: String },
         "scene.selects_nothing" #[error("the load acts on the volume of cells, and `{body}` has no cells")] #[value("\"body_force\"")]
         #[allowed("filled bodies: `grid`, shapes with a `filling`, volume meshes")]
-        #[hint("`kind = \"force\"` acts on nodes; `world.gravity` on whatever has a mass")]
+        #[hint("`kind = \"force\"` acts on nodes; `world.gravity` acts on everything that has mass")]
         NoCellsToLoad { body: String },
         "scene.selects_nothing" #[error("no cell of `{body}` has all of its nodes selected by the load")]
         #[allowed("all nodes of at least one cell")]

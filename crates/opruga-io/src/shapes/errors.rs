@@ -48,11 +48,11 @@ messages! {
         LargerOrLattice { spacing: Setting, lattice: Setting },
         "part.shape_hint" #[error("use a smaller {spacing}, a larger {size}, {drop_below}, or {lattice}")]
         FinerOutline { spacing: Setting, size: Setting, drop_below: Setting, lattice: Setting },
-        "part.shape_hint" #[error("{union} keeps what any of them covers, {parity} keeps what an odd number of them encloses")]
+        "part.shape_hint" #[error("{union} keeps the area that any outline covers, {parity} keeps the area that an odd number of outlines encloses")]
         Overlap { union: Setting, parity: Setting },
-        "part.shape_hint" #[error("maybe the file is in millimetres: {scale}; {size} sets the length")]
+        "part.shape_hint" #[error("if the file is in millimetres, use {scale}; {size} sets the length")]
         Millimetres { scale: Setting, size: Setting },
-        "part.shape_hint" #[error("maybe the file is in kilometres: {scale}; {size} sets the length")]
+        "part.shape_hint" #[error("if the file is in kilometres, use {scale}; {size} sets the length")]
         Kilometres { scale: Setting, size: Setting },
         "part.shape_hint" #[error("{size} sets the length")]
         Size { size: Setting },
@@ -75,10 +75,10 @@ messages! {
         Encoding { byte: String },
         "scene.dimension" #[error("this shape does not exist in {dimension}D")]
         Dimension { dimension: usize },
-        "scene.shape" #[error("edges of {length} m make the surface cross itself")] #[value("{length}")]
+        "scene.shape" #[error("with edges of {length} m, the surface would cross itself")] #[value("{length}")]
         #[allowed("a length smaller than the finest details of the surface")]
         RemeshCrosses { length: f64 },
-        "scene.shape" #[error("edges of {length} m make the surface enclose {part} of its volume")] #[value("{length}")]
+        "scene.shape" #[error("with edges of {length} m, the surface would enclose {part} of its original volume")] #[value("{length}")]
         #[allowed("a length that keeps the volume within {percent} %")]
         RemeshEncloses { length: f64, part: String, percent: f64 },
         "shape.no_area" #[error("the file contains no closed outline")] #[value("{extent}")]
@@ -106,7 +106,7 @@ messages! {
         #[hint("a smaller {finer} keeps finer detail, {lattice} keeps all of it")]
         Coarse { nodes: usize, spacing: f64, change: Change, kept: String, finer: Setting, lattice: Setting },
         "shape.nested" #[error("{}", counted(*count as u64, "outline lies within an outline of another element and is a hole there", "outlines lie within outlines of other elements and are holes there"))]
-        #[value("{count}")] #[hint("{union} keeps what any element paints, {parity} confirms that holes are intended")]
+        #[value("{count}")] #[hint("{union} keeps everything that any element paints, {parity} confirms that the holes are intended")]
         Nested { count: usize, union: Setting, parity: Setting },
         "shape.thin_triangles"
         #[error("{count} of {} {} angles below {least}°, the smallest {angle}° at ({x}, {y}): {cause}", counted(*triangles as u64, "triangle", "triangles"), if *count == 1 { "has" } else { "have" })]
@@ -118,11 +118,11 @@ messages! {
         #[value("{count}")]
         Dropped { count: usize, outlines: usize, least: f64 },
         "shape.overlap"
-        #[error("{}: {overlap} keeps what any of them covers; {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
+        #[error("{}: {overlap} keeps the area that any of them covers; {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
         #[value("{count}")]
         Union { count: usize, left: usize, overlap: Setting },
         "shape.overlap"
-        #[error("{}: {overlap} keeps what an odd number of them encloses; {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
+        #[error("{}: {overlap} keeps the area that an odd number of them encloses; {}", counted(*count as u64, "outline crosses, covers or touches others or itself", "outlines cross, cover or touch others or themselves"), counted(*left as u64, "outline is left", "outlines are left"))]
         #[value("{count}")]
         EvenOdd { count: usize, left: usize, overlap: Setting },
     }

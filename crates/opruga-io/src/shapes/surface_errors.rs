@@ -244,7 +244,7 @@ messages! {
         NoFacet { line: String },
         "stl.syntax" #[error("`{line}` does not belong here")] #[value("{line}")] #[allowed("{wanted}")]
         Other { line: String, wanted: &'static str },
-        "stl.syntax" #[error("the file ends in the middle")] #[value("end of file")] #[allowed("{wanted}")]
+        "stl.syntax" #[error("the file ends too early")] #[value("end of file")] #[allowed("{wanted}")]
         Ends { wanted: &'static str },
     }
 

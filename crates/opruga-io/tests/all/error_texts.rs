@@ -100,7 +100,7 @@ scene.toml:14:10: error[scene.unknown_field]: there is no field `selct` in `pin`
  12 | pin = [{ select = { nodes = [[0, 1], [2, 3]] } }]
     |                             ^^^^^^^^^^^^^^^^
   = allowed: a list of whole numbers from 0
-  = hint: write the numbers of all of them one after another, in one list"#,
+  = hint: write the numbers of all lists one after another, in a single list"#,
         ),
         (
             model("stiffness = -5"),
@@ -141,7 +141,7 @@ scene.toml:14:10: error[scene.unknown_field]: there is no field `selct` in `pin`
         ),
         (
             format!("{HEAD}[[body]]\nmass = 1\n"),
-            r#"scene.toml:7:1: error[scene.missing]: `name`, `shape` are missing in `body`
+            r#"scene.toml:7:1: error[scene.missing]: `name`, `shape` are missing from `body`
  7 | [[body]]
    | ^^^^^^^^"#,
         ),
@@ -331,7 +331,7 @@ scene.toml:20:8: error[scene.unknown_name]: there is no body `bell`
         ),
         (
             HEAD.replace("seconds = 1", "seconds = 1\nframe = 1e-18"),
-            r#"scene.toml:5:9: error[scene.range]: a step of 6.25e-20 s is lost in rounding at 1 s: time would not advance
+            r#"scene.toml:5:9: error[scene.range]: a step of 6.25e-20 s is lost in rounding at t = 1 s: time would not advance
  5 | frame = 1e-18
    |         ^^^^^
   = allowed: a step that changes the time"#,

@@ -191,7 +191,7 @@ fn spot_is_remeshed_where_the_length_keeps_its_shape() {
         assert_eq!((mesh.euler_characteristic(), mesh.crossing_facets().pairs.len()), (2, 0), "{length}");
     }
     let error = &of(0.3).expect_err("its legs vanish")[0];
-    assert!(error.code == "scene.shape" && error.message.contains("of its volume"), "{error}");
+    assert!(error.code == "scene.shape" && error.message.contains("of its original volume"), "{error}");
     assert!(error.hint.as_deref().is_some_and(|hint| hint.contains("remesh")), "{error}");
 }
 

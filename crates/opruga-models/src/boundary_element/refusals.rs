@@ -11,7 +11,7 @@ terms! {
     pub enum NoSolution = "part.no_solution" {
         Singular = "the matrix of the tractions is singular",
         NotFinite = "the stiffness is not finite",
-        NegativeOfMany = "the stiffness has negative eigenvalues, which can be removed only with at most 1000 vertices",
+        NegativeOfMany = "the stiffness has negative eigenvalues, and the program can remove them only from boundaries of at most 1000 vertices",
         ManyNegative = "the negative eigenvalues make up more than a twentieth of the stiffness",
     }
 }
@@ -61,7 +61,7 @@ messages! {
         "model.several_solids"
         #[error("the boundary encloses {solids} solids that do not touch")]
         #[allowed("one, with cavities")]
-        #[hint("make a body for each of them")]
+        #[hint("make a body for each solid")]
         SeveralSolids { solids: usize },
         /// A boundary inside another one, while the solid is the exterior.
         "model.nested_exterior"
@@ -77,7 +77,7 @@ messages! {
         /// The web page cannot solve dense systems.
         "model.not_on_the_page"
         #[error("the web page does not compute boundary elements")]
-        #[hint("the studio and the command line do")]
+        #[hint("use the studio or the command line")]
         Page {},
         /// The preparation was stopped on request.
         "run.broken_off"

@@ -39,7 +39,7 @@ messages! {
         #[hint("use `order = 2` for the body, or `locking = \"nodal_volume\"`")]
         LinearCellsLock { ratio: f64, cells: Simplices, most: f64 },
         /// Nodal volumes together with thermal expansion.
-        "model.locking" #[error("`locking` is \"nodal_volume\", which does not support thermal expansion, but the body has it")] #[value("\"nodal_volume\"")] #[parameters("locking")]
+        "model.locking" #[error("`locking` is \"nodal_volume\", which does not support the thermal expansion of the body")] #[value("\"nodal_volume\"")] #[parameters("locking")]
         #[allowed("\"refuse\" or \"accept\"")] #[hint("bodies with `order = 2`, quadrilaterals and hexahedra do not lock either")]
         NodalVolumeAndHeat {},
         /// Nodal volumes in plane stress.

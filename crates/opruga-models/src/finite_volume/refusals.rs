@@ -29,7 +29,7 @@ messages! {
         "model.locking"
         #[error("`poissons_ratio` is {} for triangles or tetrahedra, which lock near incompressibility", number(*ratio))] #[value("{}", number(*ratio))] #[parameters("poissons_ratio")]
         #[allowed("at most {}", number(*most))]
-        #[hint("`locking = \"accept\"` accepts them; `fem` also has `order = 2` and `locking = \"nodal_volume\"`")]
+        #[hint("`locking = \"accept\"` accepts cells that lock; `fem` also has `order = 2` and `locking = \"nodal_volume\"`")]
         Locks { ratio: f64, most: f64 },
         /// An unknown material.
         "scene.unknown_name"

@@ -170,12 +170,12 @@ fn the_warning_is_counted_by_kinds_and_goes_when_its_cause_goes() {
     assert_eq!(counts(&world), []);
 }
 
-/// A law that pushes cells back is not suggested for a body that already has it; a law that pushes them back from farther away is.
+/// A law that restores inverted cells is not suggested for a body that already has it; a law that restores them from a stronger inversion is.
 #[test]
 fn the_hint_of_inverted_cells_names_no_law_that_the_body_has() {
     for (law, hint) in [
-        ("linear", "a material that pushes such cells back (`stable_neo_hookean`, `fixed_corotated`)"),
-        ("stable_neo_hookean", "back from a stronger inversion (`fixed_corotated`)"),
+        ("linear", "a material that restores such cells (`stable_neo_hookean`, `fixed_corotated`)"),
+        ("stable_neo_hookean", "even after a stronger inversion (`fixed_corotated`)"),
         ("fixed_corotated", "smaller cells, or less compression"),
     ] {
         let mesh = Mesh::<2>::grid([0.0; 2], [1.0; 2], [1; 2]).expect("a square");

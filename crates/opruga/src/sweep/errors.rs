@@ -38,7 +38,7 @@ messages! {
     pub enum SweepError {
         "sweep.values" #[error("a value contains a control character")] #[value("{text}")] #[allowed("values on one line")]
         ControlCharacter { text: String },
-        "sweep.values" #[error("a value is missing in the list")] #[value("{text}")] #[allowed("values with single commas between them")]
+        "sweep.values" #[error("a value is missing from the list")] #[value("{text}")] #[allowed("values with single commas between them")]
         NoValue { text: String },
         "sweep.range" #[error("{fault}")] #[value("{text}")]
         #[allowed("LOW..HIGH:COUNT, with :log for equal ratios and :whole for whole numbers")]
@@ -49,9 +49,9 @@ messages! {
         NothingVaries {},
         "sweep.axes" #[error("the parameter varies twice")]
         VariesTwice {},
-        "sweep.range" #[error("with a sample, the range must not have a number of values")] #[value("{range}")] #[allowed("{range}")]
+        "sweep.range" #[error("the range must not give the number of values, because --sample gives the number of points")] #[value("{range}")] #[allowed("{range}")]
         SampleWithCount { range: String },
-        "sweep.range" #[error("the range has no number of values")] #[value("{range}")] #[allowed("{range}:COUNT, or --sample COUNT")]
+        "sweep.range" #[error("the range does not give the number of values")] #[value("{range}")] #[allowed("{range}:COUNT, or --sample COUNT")]
         NoCount { range: String },
         "sweep.range" #[error("a sample of 0 points is empty")] #[value("--sample 0")] #[allowed("1 to {most}")]
         #[hint("for example --sample 20")]
@@ -75,7 +75,7 @@ messages! {
         #[hint("--force starts again, --out uses another folder")]
         OtherQuestion { difference: QuestionDifference },
         "write.failed" #[error("a row of the table cannot be written: {reason}")]
-        #[hint("the rows before it are kept; the same call continues the sweep")]
+        #[hint("the rows before it are kept; repeat the call to continue the sweep")]
         RowNotWritten { reason: String },
         "sweep.metric" #[error("the sweep measures nothing")] #[allowed("--metric {words}, and PROBE.COLUMN.min, .max, .mean, .last")]
         #[hint("for example --metric bounce_height --metric settling_time")]

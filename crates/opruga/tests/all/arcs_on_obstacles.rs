@@ -190,8 +190,10 @@ fn a_run_that_ends_before_the_whole_load_is_on_is_warned_of() {
     let part = load(&mut short);
     let (count, message) = warned(&short).expect("a part of the load is left");
     assert!(part < 1.0 && count == 1, "{part}");
-    let said =
-        format!("the last state of body `roof` is the equilibrium under {} of it", opruga::math::words::number(part));
+    let said = format!(
+        "the last state of body `roof` is the equilibrium under {} of the load",
+        opruga::math::words::number(part)
+    );
     assert!(message.contains(&said) && message.contains("use more frames, or a longer `arc_length`"), "{message}");
     let mut whole = built(plane(&text(0.2)));
     frames(&mut whole, 8);

@@ -281,7 +281,7 @@ fn refusals_say_what_is_wrong_and_what_helps() {
     // Without load, at the beginning of the curve, nothing presses a body onto an obstacle.
     let error = refused(&(format!("{arc}{BLOCK}") + &floor(-5.0, 0.5, 0.0)));
     assert_eq!(error.code(), "static.arc_length_and_obstacles");
-    assert!(error.in_full().contains("allowed: pins that hold it, or the whole load at once"), "{error}");
+    assert!(error.in_full().contains("allowed: pins that hold the body, or no `arc_length`"), "{error}");
 
     let published = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 100.0, vertices = 20 }\nnode_mass = 1.0\n\
         models = [ { kind = \"as_published\" } ]\n";

@@ -315,7 +315,7 @@ fn a_rate_of_pictures_that_frames_do_not_have_is_told() {
         said(&output)
     };
     let told = said_of(&["--fps", "11.3"]);
-    assert!(told.contains("note[pictures.rate]: 12 pictures per second, not 11.3 (--fps)"), "{told}");
+    assert!(told.contains("note[pictures.rate]: there are 12 pictures per second, not 11.3 (--fps)"), "{told}");
     for more in [&["--fps", "12"][..], &[], &["--fps", "11.3", "--no-pictures"], &["--fps", "11.3", "--json"]] {
         assert!(!said_of(more).contains("pictures per second"), "{more:?}");
     }

@@ -67,7 +67,7 @@ fn the_file_of_a_shape_is_not_read_as_a_scene() {
             let output = opruga(folder.path(), &[command, file]);
             assert_eq!(code(&output), 2, "{}", said(&output));
             let text = format!(
-                "error[scene.no_scene]: this is the file of a shape, not a scene\n  = hint: a scene names it: shape = {{ kind = \"{kind}\", file = \"{file}\""
+                "error[scene.no_scene]: this is the file of a shape, not a scene\n  = hint: name the file in a scene: shape = {{ kind = \"{kind}\", file = \"{file}\""
             );
             assert!(said(&output).contains(&text), "{}", said(&output));
         }

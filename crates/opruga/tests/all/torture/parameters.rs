@@ -70,8 +70,8 @@ fn parameters_that_make_no_sense() {
         (
             ring(16, "{ kind = \"mass_spring\", stiffness = 1e300 }", ""),
             "step.not_finite: body `b`: stability: the forces near the present state are not finite, so no stable step can be computed; allowed: \
-             forces, stiffnesses and their ratios to the masses of nodes below 1e300; hint: the largest number of its models is `stiffness` = 1e300 \
-             of `mass_spring`, and its lightest node has 0.0416667 kg",
+             forces, stiffnesses and their ratios to the masses of nodes below 1e300; hint: the largest number in the models of the body is \
+             `stiffness` = 1e300 of `mass_spring`, and its lightest node has a mass of 0.0416667 kg",
         ),
         // 58: pins that prescribe two positions of a node
         (
@@ -93,14 +93,14 @@ fn parameters_that_make_no_sense() {
         // 63: so far away that an element is a few rounding units wide
         (
             ring(64, BALL, "").replace("center = [0, 0.6]", "center = [1e12, 0.6]"),
-            "scene.range: body `b`: position: it begins 1e12 m from the origin along an axis",
+            "scene.range: body `b`: position: the body begins 1e12 m from the origin along an axis",
         ),
         // so fast that it leaves that region within a step
         (
             ring(64, BALL, "velocity = [1e300, 0]"),
-            "scene.range: body `b`: velocity: `velocity` and `angular_velocity` give it 1e300 m/s along an axis at the start, ",
+            "scene.range: body `b`: velocity: `velocity` and `angular_velocity` give the body 1e300 m/s along an axis at the start, ",
         ),
-        (ring(64, BALL, "angular_velocity = 1e200"), "hint: are its units mixed (metres, seconds, radians)?"),
+        (ring(64, BALL, "angular_velocity = 1e200"), "hint: are the units mixed (metres, seconds, radians)?"),
         (
             ring(64, BALL, "rotation = 1e200"),
             "error[scene.range]: `rotation` is 1e200: rounding loses the direction of so large an angle",
