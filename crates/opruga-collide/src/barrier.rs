@@ -8,8 +8,8 @@
 //! two continuous derivatives and grows without bound as g falls to zero. The factor m fades out pairs of nearly parallel
 //! edges, whose closest points jump. κ [N/m] is the stiffness of the bodies at the pair, so the user need not give one.
 //!
-//! Of the second derivatives, only the part κ m b″ ∇g ∇gᵀ is used, because this matrix has no negative eigenvalue. The next
-//! iteration accounts for the curvature of the distance, which is left out.
+//! Of the second derivatives, only the part κ m b″ ∇g ∇gᵀ is used, because this matrix has no negative eigenvalue. The curvature of the distance is
+//! left out; the next iteration accounts for it.
 //!
 //! The friction of a pair with the normal force N = −κ m b′ depends on its slip s in the step, perpendicular to the normal:
 //!
@@ -96,7 +96,7 @@ pub struct Rubbing<const D: usize> {
 }
 
 impl<const D: usize> Pressed<D> {
-    /// Returns the friction of the pair. Of the multiplier, only the part perpendicular to the normal counts, up to µ N.
+    /// Returns the friction of the pair. Only the part of the multiplier that is perpendicular to the normal counts, up to µ N.
     pub fn rubbing(&self, multiplier: [f64; D]) -> Rubbing<D> {
         let Pressed { id, points, weights, normal, .. } = *self;
         let across = subtract(&multiplier, &scaled(&normal, dot(&multiplier, &normal)));
@@ -238,8 +238,8 @@ impl<const D: usize> Barrier<D> {
         Err(Trouble::TooMany { found: most + 1 })
     }
 
-    /// Whether the boxes of a pair come within reach on the paths examined last. A pair that was found only because of the
-    /// margin does not.
+    /// Whether the boxes of a pair come within reach on the paths examined last. A pair that was found only because of the margin does not come
+    /// within reach.
     fn comes_close(&self, surface: &Surface<D>, distances: [f64; 2], [a, b]: [u32; 2], with_facet: bool) -> bool {
         let at = |p: u32| self.boxes[p as usize];
         let (first, second, points) = if with_facet {
@@ -253,7 +253,7 @@ impl<const D: usize> Barrier<D> {
         (0..D).all(|d| first[0][d] <= second[1][d] + distance && second[0][d] - distance <= first[1][d])
     }
 
-    /// Returns the pairs that the search has found: their features, and whether these are a vertex and a facet.
+    /// Returns every pair that the search has found, with its two features and whether these are a vertex and a facet.
     fn pairs(&self) -> impl Iterator<Item = ([u32; 2], bool)> + '_ {
         let Candidates { vertex_facet, edge_edge, .. } = &self.candidates;
         vertex_facet.iter().map(|pair| (*pair, true)).chain(edge_edge.iter().map(|pair| (*pair, false)))

@@ -7,10 +7,9 @@ use opruga_math::Lane;
 use opruga_mesh::winding_number;
 
 impl<const D: usize> Touching<D> {
-    /// Finds the points inside the closed boundary of another body. The pairs of a step do not include them, because a point deep
-    /// inside touches nothing. A point is examined if it is behind the nearest of the facets with which it forms candidates.
-    /// Candidates extend only to a margin, so deeper points are not found. A nearer facet may be missing among the candidates.
-    /// Therefore, the whole boundary decides whether the point is inside.
+    /// Finds the points inside the closed boundary of another body. The pairs of a step do not include them, because a point deep inside touches
+    /// nothing. A point is examined if it is behind the nearest of the facets with which it forms candidates. Candidates extend only to a margin, so
+    /// deeper points are not found. The candidates may lack a nearer facet. Therefore, the whole boundary decides whether the point is inside.
     pub(crate) fn find_began_inside(&mut self) {
         self.began_inside.clear();
         self.entangled.clear();

@@ -13,9 +13,9 @@ use opruga_math::Lane;
 /// The fraction of every bound by which the time advances: the value of the source.
 const PART: f64 = 0.9;
 
-/// The fraction of the initial distance at which features count as meeting. The source uses a tenth, so that the features stay
-/// apart. Here the distance ξ keeps them apart, and a tenth would stop features that only pass: 79 of them in the test queries,
-/// instead of 10 (14 with a millionth).
+/// The fraction of the initial distance at which features count as meeting. The source uses a tenth, so that the features stay apart. Here the
+/// distance ξ keeps features apart, and a fraction of a tenth would stop features that only pass: 79 of them in the test queries, instead of 10 (or
+/// 14 with a millionth).
 const LEFT: f64 = 1e-9;
 
 /// The number of steps after which features count as meeting. Features that approach head-on need about ten steps, because each
@@ -27,7 +27,7 @@ const MOST_STEPS: usize = 1000;
 /// fraction; none if the vertex stays farther away. All points move in straight lines from the positions `[0]` to the positions
 /// `[1]`.
 ///
-/// There are no false negatives. Features that are this close at the start meet at 0.
+/// There are no false negatives. Features that are already this close at the start meet at the fraction 0.
 ///
 /// # Source
 /// M. Li, D. M. Kaufman, C. Jiang, Codimensional Incremental Potential Contact, ACM Trans. Graph. 40, 170 (2021), algorithm 1.

@@ -1,4 +1,4 @@
-//! Lower bounds on the distances of candidates. They make it unnecessary to examine most candidates in a step.
+//! Lower bounds on the distances of candidates. Because of these bounds, most candidates need not be examined in a step.
 
 use crate::candidates::Candidates;
 use crate::reach::{MOST_WIDTHS, beyond};
@@ -38,9 +38,8 @@ pub(crate) struct Clearance<const D: usize> {
     merged: Vec<Known>,
 }
 
-/// The motion of a body in a step: the sum and the number of the displacements of its points; their mean in the previous step;
-/// the square of the largest displacement relative to that mean; and the largest relative displacement of the previous step
-/// [m].
+/// The motion of a body in a step. The fields are the sum of the displacements of its points, the number of these points, the mean displacement of
+/// the previous step, the square of the largest displacement relative to that mean, and the largest relative displacement of the previous step [m].
 #[derive(Clone, Copy, Debug)]
 struct Motion<const D: usize> {
     sum: [f64; D],

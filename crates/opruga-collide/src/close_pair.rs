@@ -1,4 +1,4 @@
-//! A pair that comes close in a step. Whether its impulse is solved for is decided later.
+//! A pair that comes close in a step. A later step decides whether to solve for the impulse of the pair.
 
 use crate::row::Row;
 use crate::spread::Spread;

@@ -163,7 +163,7 @@ impl<const D: usize> Collider<D> {
     pub(crate) fn is_static(&self) -> bool {
         self.still.is_some()
     }
-    /// How far it may move from its placement within an interval of time.
+    /// How far the collider may move from its placement within an interval of time.
     pub(crate) fn reach(&self, from: f64, to: f64) -> Reach<D> {
         Reach { shifts: if self.is_static() { [[0.0; D]; 2] } else { self.motion.shifts(from, to) }, bend: 0.0 }
     }

@@ -9,9 +9,8 @@ use core::ops::Range;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use opruga_math::{Simd, WIDTH};
 
-/// The features of two bodies are compared directly, eight at a time, if the second body has at most this many features or if
-/// there are at most this many packs of pairs. Otherwise, features are sorted into cells. To find the cells of a feature takes as
-/// long as a thousand comparisons.
+/// The features of two bodies are compared directly, eight at a time, if the second body has at most this many features or if there are at most this
+/// many packs of pairs. Otherwise, features are sorted into cells. Finding the cells of a feature takes as long as a thousand comparisons.
 const FEW: usize = 1024;
 
 /// One part of the pairs of bodies, and the pairs of features found in it.
@@ -31,7 +30,7 @@ pub(crate) struct Comparison<const D: usize> {
 /// Pairs of bodies whose features are compared.
 pub(crate) struct Comparisons<'a, O, const D: usize> {
     pub(crate) surface: &'a Surface<D>,
-    /// The boxes of points [m]; and the boxes of points for pairs within one body.
+    /// The boxes of points for pairs of two bodies [m], and those for pairs within one body.
     pub(crate) boxes: &'a [Bounds<D>],
     pub(crate) own: O,
     /// The boxes around the points of every body [m].

@@ -82,8 +82,8 @@ impl<const D: usize> Colliders<D> {
     pub fn any_moves(&self) -> bool {
         self.all.iter().any(|collider| !collider.is_static())
     }
-    /// Whether any collider may touch something that stays within the box with the corners `min` and `max` [m] from `time0` to
-    /// `time1` [s]. It may return true although none does, but never false if one does.
+    /// Whether any collider may touch something that stays within the box with the corners `min` and `max` [m] from `time0` to `time1` [s]. If a
+    /// collider may touch it, the function returns true. It may also return true although no collider does.
     pub fn reach(&self, time0: f64, time1: f64, min: &[f64; D], max: &[f64; D]) -> bool {
         (0..self.len()).any(|collider| self.one_reaches(collider, time0, time1, min, max))
     }
@@ -128,7 +128,7 @@ impl<const D: usize> Colliders<D> {
         }
         count > 1 && edges
     }
-    /// Whether there is only one half-space. In this case one pass over all nodes is enough, and no bounds are needed.
+    /// Whether there is only one half-space. With a single half-space, one pass over all nodes is enough, and no bounds are needed.
     fn is_simple(&self) -> bool {
         matches!(&*self.all, [one] if matches!(&*one.parts, [Part::HalfSpace(_)]))
     }

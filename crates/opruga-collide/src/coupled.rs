@@ -31,16 +31,15 @@ pub struct Coupled<const D: usize> {
 #[derive(Clone, Debug)]
 struct Body<const D: usize> {
     points: Range<usize>,
-    /// The number of the matrix with which the body responds in this solution, if already known; and the number of the matrix
-    /// to which the columns belong.
+    /// The number of the matrix with which the body responds in this solution, if it is already known. Also the number of the matrix to which the
+    /// columns belong.
     matrix: Option<u64>,
     matrix_of_columns: Option<u64>,
     /// The column of each point; `NONE` if it is not known.
     column: Vec<u32>,
     /// The columns, one after the other.
     values: Vec<[[f64; D]; D]>,
-    /// The points on which contacts act, in the order of requests, and the impulses on them [N s]; the index of each point in
-    /// this list.
+    /// The points on which contacts act, in the order of requests; the impulses on these points [N s]; and, for every point, its index in this list.
     known: Vec<u32>,
     impulses: Vec<[f64; D]>,
     number: Vec<u32>,

@@ -40,7 +40,7 @@ fn add_rows<P: Pack>(from: &[f64], factor: f64, to: &mut [f64]) {
 ///
 /// The products are subtracted from every entry in the order of columns, as if columns were eliminated one by one.
 pub(crate) struct Eliminate<'a> {
-    /// Rows of `stride` numbers, a multiple of eight: `size` columns and the right-hand side.
+    /// The rows of the equations. Each has `size` coefficients and the right-hand side, and takes `stride` numbers, a multiple of eight.
     pub(crate) matrix: &'a mut [f64],
     pub(crate) size: usize,
     pub(crate) stride: usize,

@@ -18,7 +18,7 @@ impl<const D: usize> Found<D> {
     }
 }
 
-/// The numbers of a register, followed by zeros.
+/// The numbers of a register; the rest of the array is zero.
 #[inline(always)]
 pub(crate) fn numbers<R: Register>(register: R) -> [f64; WIDTH] {
     let mut out = [0.0; WIDTH];
@@ -40,8 +40,8 @@ pub(crate) fn arrays<R: Register, const D: usize>(registers: &[R; D]) -> [[f64; 
 pub(crate) struct NodePaths<const D: usize> {
     /// Their start, carried along with the shape, and their end [m].
     pub(crate) ends: [[[f64; WIDTH]; D]; 2],
-    /// Numbers above 0 for nodes that are to be processed, and for nodes at which another contact is already active in this
-    /// step.
+    /// Numbers above 0 for nodes that are to be processed (`asked`), and for nodes at which another contact is already active in this step
+    /// (`active`).
     pub(crate) asked: [f64; WIDTH],
     pub(crate) active: [f64; WIDTH],
     /// Distances below this size are rounding errors [m].

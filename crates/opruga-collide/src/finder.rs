@@ -178,7 +178,7 @@ impl<const D: usize> Finder<'_, D> {
         }
     }
 
-    /// The largest distance that the surface of a point keeps from that of a body [m].
+    /// The largest distance that the surface of a point keeps from the surface of another body [m].
     fn thickest_at(&self, point: u32) -> f64 {
         self.touching.thickest[usize::from(self.touching.surface.is_of_obstacle(point))]
     }
@@ -289,9 +289,8 @@ impl<const D: usize> Finder<'_, D> {
         16.0 * dot(&travel, &travel) > dot(&edge, &edge)
     }
 
-    /// Keeps the relevant rows of one vertex. If the vertex is outside a body, these are the rows of all facets that it is in
-    /// front of, one row for each closest point. If the vertex is inside, it is the row of the nearest facet, through which the
-    /// vertex leaves.
+    /// Keeps the relevant rows of one vertex. If the vertex is outside a body, these are the rows of all facets that have the vertex in front of
+    /// them, one row for each closest point. If the vertex is inside, it is the row of the nearest facet, through which the vertex leaves.
     fn keep_the_nearest(&mut self) {
         if self.found.around.len() < 2 {
             return;
@@ -329,9 +328,8 @@ impl<const D: usize> Finder<'_, D> {
         around.retain(|_| keep.next() == Some(&true));
     }
 
-    /// For each body in which a vertex began, takes the gap through which the vertex leaves. Among the given candidates of the
-    /// vertex, it is the gap of the nearest facet that faces the surface at the vertex. If no facet does, the nearest facet
-    /// counts.
+    /// For each body in which a vertex began, takes the gap through which the vertex leaves. Among the given candidates of the vertex, it is the gap
+    /// of the nearest facet that faces the surface at the vertex. If no facet faces it, the nearest facet counts.
     fn take_exit(&mut self, candidates: Range<usize>) {
         let x = &self.touching.before[0];
         let normal = |facet: u32| {

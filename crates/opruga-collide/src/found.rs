@@ -23,7 +23,7 @@ pub(crate) struct Found<const D: usize> {
     /// Candidates of a vertex and a facet that were examined again, and lower bounds on their distances at the start of the
     /// step [m].
     pub(crate) notes: Vec<(usize, f64)>,
-    /// The pairs of one vertex, or of two edges, and whether they meet in the free motion; and which of them are kept.
+    /// The pairs of one vertex, or of two edges, and whether each meets in the free motion. Also which of these pairs are kept.
     pub(crate) around: Vec<(ClosePair<D>, bool)>,
     pub(crate) keep: Vec<bool>,
     /// Positions at an impact within a step.

@@ -54,8 +54,8 @@ impl<const D: usize> Gap<D> {
         out
     }
 
-    /// The gap of two edges with the points at `x` [m]; none if a closest point is an end of its edge, or if the edges are
-    /// parallel: pairs of a vertex and a facet are then sufficient.
+    /// The gap of two edges with the points at `x` [m]; none if a closest point is an end of its edge, or if the edges are parallel. Pairs of a
+    /// vertex and a facet are sufficient in these cases.
     pub fn of_edges(surface: &Surface<D>, x: &[[f64; D]], a: u32, b: u32) -> Option<Gap<D>> {
         let (ea, eb) = (surface.edges[a as usize], surface.edges[b as usize]);
         let (xa, xb) = (ea.map(|p| x[p as usize]), eb.map(|p| x[p as usize]));

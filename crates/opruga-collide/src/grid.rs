@@ -29,8 +29,8 @@ struct Level<const D: usize> {
     count: usize,
 }
 
-/// The last cell along an axis, which contains everything beyond it. The indices of cells are exact up to this one and would
-/// overflow beyond it (`boxes_far_beyond_all_others_are_found`).
+/// The last cell along an axis, which contains everything beyond it. The indices of cells are exact up to this cell and would overflow beyond it
+/// (`boxes_far_beyond_all_others_are_found`).
 const FARTHEST: f64 = 1e15;
 
 /// The largest number of levels; the last one contains all larger boxes.

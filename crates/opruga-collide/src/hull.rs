@@ -1,4 +1,4 @@
-//! Convex hulls of points in the plane and in space. Points on a face (within rounding) do not divide it.
+//! Convex hulls of points in the plane and in space. A point that lies on a face (within rounding) does not divide this face.
 
 use crate::vector::{dot, length, scaled, subtract};
 
@@ -66,8 +66,8 @@ struct Face<const D: usize> {
     alive: bool,
 }
 
-/// Returns the faces of the convex hull in space, to which one point after the other is added. If a point is outside the
-/// present hull, the faces that are visible from it are replaced by faces between the point and the rim of the visible faces.
+/// Returns the faces of the convex hull in space. The hull is built by adding one point after the other. If a point is outside the present hull, the
+/// faces that are visible from it are replaced by faces between the point and the rim of the visible faces.
 fn polyhedron<const D: usize>(points: &[[f64; D]]) -> Option<Vec<[usize; 3]>> {
     let tolerance = 1e-10 * size(points);
     let farthest = |score: &dyn Fn(&[f64; D]) -> f64| {

@@ -44,7 +44,7 @@ pub(crate) struct Problem<'a, const D: usize> {
     pub(crate) coupled: &'a mut Coupled<D>,
     pub(crate) v: &'a mut Vec<[f64; D]>,
     pub(crate) turns: &'a mut Turns<D>,
-    /// For bodies at rest, the velocity of an approach by a whole thickness [m/s]. Their sweeps also end at the fraction
+    /// For bodies at rest, the approach velocity that would cross a whole thickness in the step [m/s]. Their sweeps also end at the fraction
     /// [`COUPLED_TOLERANCE`] of this velocity.
     pub(crate) at_rest: Option<f64>,
     /// Whether the steps of coupled bodies have a fixed budget.
@@ -142,9 +142,9 @@ fn solve<const D: usize>(problem: Problem<'_, D>) -> usize {
     count
 }
 
-/// Finds displacements that separate overlapping pairs by at most `most` [m] without causing other overlaps. The same sweeps
-/// are applied to positions. `wanted` is the required increase of the gap of every row [m], and `masses` is the mass of its
-/// points if each moves by itself [kg].
+/// Finds displacements that separate overlapping pairs by at most `most` [m] without causing other overlaps. The sweeps are the same as for
+/// velocities, but act on positions. `wanted` is the required increase of the gap of every row [m]. `masses` contains the effective mass of every row
+/// along its normal [kg] if its points respond independently.
 pub(crate) fn part<const D: usize>(
     rows: &[Row<D>],
     spread: &Spread,

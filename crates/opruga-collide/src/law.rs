@@ -9,7 +9,7 @@ pub struct PairLaw {
     pub friction: f64,
     /// Ratio of the normal speeds after and before an impact.
     pub restitution: f64,
-    /// The distance of the surfaces in contact [m].
+    /// The distance that contact keeps between the surfaces [m].
     pub thickness: f64,
 }
 
@@ -81,7 +81,7 @@ impl Laws {
         }
     }
 
-    /// Adds an obstacle. All bodies touch it with its law; half of the thickness of the body is added to the distance.
+    /// Adds an obstacle. All bodies touch the obstacle with its law, and half of the thickness of the body is added to the contact distance.
     /// Obstacles do not touch one another.
     pub fn add_obstacle(&mut self, law: PairLaw) {
         let (before, bodies) = (self.classes, self.classes - self.obstacles);

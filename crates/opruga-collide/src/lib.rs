@@ -35,11 +35,11 @@
 //! back to the surface. A node at rest exchanges no energy. F is the mean force of the step, m (v − v₀)/h with the velocity v
 //! before contact.
 //!
-//! **Walking.** On a slope only a little less steep than the angle of friction, a vibrating soft body creeps down: it slips where
-//! it presses less, and gravity supplies the energy that damping dissipates. This is not an error of the step. A block of 1 m ×
-//! 0.5 m is placed suddenly on a slope of tan θ = ½ with µ = 0.6. It walks at 0.0682, 0.0683, 0.0683 and 0.0683 m/s with steps of
-//! 1/3840 s to 1/30720 s. With velocity Verlet and Runge–Kutta it walks at 0.0681 m/s, and with cells of half the size at 0.0654
-//! m/s. With µ = 0.65 it comes to rest. Once at rest, it stays at rest with any damping.
+//! **Walking.** On a slope only a little less steep than the angle of friction, a vibrating soft body creeps down: it slips where it presses less,
+//! and gravity supplies the energy that damping dissipates. This is not an error of the step. A block of 1 m × 0.5 m is placed suddenly on a slope of
+//! tan θ = ½ with µ = 0.6. It walks at 0.0682, 0.0683, 0.0683 and 0.0683 m/s with steps of 1/3840 s to 1/30720 s. With velocity Verlet and
+//! Runge–Kutta the block walks at 0.0681 m/s. With cells of half the size it walks at 0.0654 m/s. With µ = 0.65 it comes to rest. Once at rest, it
+//! stays at rest with any damping.
 //!
 //! **Fast nodes.** A half-space has no far side. A node that could cross a ball, box, capsule or convex body within a step is
 //! stopped where it entered. Polylines and triangle meshes are thin and act on both sides. The segment from the previous to the
@@ -53,9 +53,8 @@
 //! may touch, [`Gap`] is the distance of a pair, and [`vertex_meets_facet`] and [`edge_meets_edge`] find whether and when a pair
 //! meets within a step.
 //!
-//! **Whole obstacles.** If bodies meet one another, corners and edges of obstacles ([`Outline`]) are part of the surfaces, with
-//! zero inverse mass. They meet the facets and edges of bodies as the corners and edges of another body do. Nodes meet
-//! obstacles as above.
+//! **Whole obstacles.** If bodies meet one another, corners and edges of obstacles ([`Outline`]) are part of the surfaces, with zero inverse mass.
+//! These corners and edges meet the facets and edges of bodies in the same way as those of another body do. Nodes meet obstacles as above.
 //!
 //! **Limits.** If bodies do not meet one another, only nodes meet colliders, so an obstacle finer than the mesh can pass
 //! between two nodes. A tilted or curved surface is evaluated at the end of the step. This is an approximation of first order

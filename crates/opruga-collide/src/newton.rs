@@ -6,14 +6,13 @@
 //! friction  F = the point of the disc |F| ≤ µ max(0, a) that is nearest to b = F − r uₜ
 //! ```
 //!
-//! G maps the velocities of points to the velocities u of gaps, and Y contains the responses of the bodies to impulses (see
-//! [`Coupled`]). N and F are the impulses along and across a normal, and ρ and r are the inverse mobilities of the contact in
-//! these directions. A contact that is apart (a ≤ 0) has no impulse, one that sticks (|b| ≤ µ a) does not move, and one that
-//! slides has the full friction along b. The residuals of these laws are linear except at the borders between the cases. So
-//! Newton's method converges even if sweeps let contacts alternate between sticking and sliding. Contacts are redundant, so W
-//! has no inverse. A fraction of its diagonal is added, which acts on the change of the impulses and makes the solution unique
-//! (a proximal point). The next attempt removes the error of this term, with a smaller fraction if the present attempt has
-//! converged and with a larger one if not.
+//! G maps the velocities of points to the velocities u of gaps, and Y contains the responses of the bodies to impulses (see [`Coupled`]). N and F are
+//! the impulses along and across a normal, and ρ and r are the inverse mobilities of the contact in these directions. A contact that is apart (a ≤ 0)
+//! has no impulse, one that sticks (|b| ≤ µ a) does not move, and one that slides has the full friction along b. The residuals of these laws are
+//! linear except at the borders between the cases. So Newton's method converges even if sweeps let contacts alternate between sticking and sliding.
+//! Contacts are redundant, so W has no inverse. A fraction of its diagonal is added, which acts on the change of the impulses and makes the solution
+//! unique (a proximal point). The next attempt removes the error of this term. It uses a smaller fraction if the present attempt has converged, and a
+//! larger one if not.
 //!
 //! Source: P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, Computer Methods in
 //! Applied Mechanics and Engineering 92 (1991) 353–375; V. Acary, M. Brémond, O. Huber, On solving contact problems with Coulomb friction:
@@ -26,14 +25,13 @@ use crate::spread::Spread;
 use crate::vector::{across, add, dot, scaled, subtract};
 use opruga_math::{Lane, Simd, WIDTH};
 
-/// The largest number of unknowns. An elimination needs ⅓ n³ products for n unknowns. For this many, these are 0.2 · 10⁹, as
-/// many as a hundred sweeps need for bodies with as many points.
+/// The largest number of unknowns. An elimination needs ⅓ n³ products for n unknowns. For this many unknowns, it needs 0.2 · 10⁹ products, as many as
+/// a hundred sweeps need for bodies with as many points.
 pub(crate) const MOST_UNKNOWNS: usize = 900;
 
-/// The fraction of the diagonal of W that restrains changes of impulses: its initial value, which is also its smallest one, and
-/// its largest value. It is increased if Newton's method did not converge, which makes the problem easier, and decreased if it
-/// did, so that the next impulses are closer to the solution. With a constant fraction,
-/// `a_cube_of_space_comes_to_its_balance_on_a_slab` does not converge.
+/// Limits for the fraction of the diagonal of W that restrains changes of impulses: its initial value, which is also the smallest, and its largest
+/// value. It is increased if Newton's method did not converge, which makes the problem easier, and decreased if it did, so that the next impulses are
+/// closer to the solution. With a constant fraction, `a_cube_of_space_comes_to_its_balance_on_a_slab` does not converge.
 const LEAST_PROXIMAL: f64 = 1e-7;
 const MOST_PROXIMAL: f64 = 1.0;
 const FIRMER: f64 = 10.0;
@@ -75,7 +73,7 @@ struct Contact<const D: usize> {
 enum Case<const D: usize> {
     Apart,
     Sticks,
-    /// It slides along a direction; also contains the ratio of the radius of the disc to the length of b.
+    /// It slides along this direction. The number is the ratio of the radius of the disc to the length of b.
     Slides([f64; D], f64),
 }
 
@@ -86,8 +84,7 @@ struct Equations<const D: usize> {
     stride: usize,
     /// Velocities without impulses, relative to the targets [m/s].
     free: Vec<f64>,
-    /// The impulses from which changes are counted [N s]; the diagonal of W [1/kg], and the fraction of it that restrains these
-    /// changes.
+    /// The impulses from which changes are counted [N s], the diagonal of W [1/kg], and the fraction of this diagonal that restrains the changes.
     center: Vec<f64>,
     diagonal: Vec<f64>,
     proximal: f64,
@@ -418,8 +415,8 @@ impl<const D: usize> Equations<D> {
         out.iter().all(|x| x.is_finite()).then_some(out)
     }
 
-    /// Finds impulses along a correction with a smaller residual by halving the correction. If there are none, takes a tenth of
-    /// the correction, with a larger residual.
+    /// Finds impulses along a correction with a smaller residual by halving the correction. If no such impulses are found, takes a tenth of the
+    /// correction, which has a larger residual.
     fn search(&self, from: &Trial, correction: &[f64]) -> (Trial, bool) {
         let change = self.by_changes(correction);
         let along = |x: &[f64], c: &[f64], part: f64| x.iter().zip(c).map(|(x, c)| x + part * c).collect();
@@ -467,8 +464,8 @@ mod tests {
         row
     }
 
-    /// A column of points of 1 kg on a pinned point, with two equal contacts between neighbours. The share of each of the two in
-    /// the force is not unique.
+    /// A column of points of 1 kg on a pinned point, with two equal contacts between neighbours. The force can be divided between two such contacts
+    /// in more than one way.
     fn column(points: usize, friction: f64) -> (Vec<Row<3>>, Vec<[f64; 3]>) {
         let mut inverse_mass = vec![[1.0; 3]; points];
         inverse_mass[0] = [0.0; 3];

@@ -12,8 +12,8 @@ use opruga_core::threads;
 const LEAST_POINTS: usize = 256;
 
 impl<const D: usize> Touching<D> {
-    /// Adds the contacts between obstacles and the points of all present contacts from an index on: bodies must not push these points
-    /// through obstacles.
+    /// Adds the contacts of obstacles with the points of all present contacts from the index `first` on. These contacts prevent bodies from pushing
+    /// the points through obstacles.
     pub(crate) fn hold_points(&mut self, first: usize, h: f64, obstacles: Option<Obstacles<'_, D>>) {
         let Some(obstacles) = obstacles else { return };
         self.asks.resize(self.surface.points(), false);

@@ -19,7 +19,7 @@ pub struct Outline<const D: usize> {
     /// Corners, edges and faces of the collider as placed in the scene, before any motion [m]. The first points are inside
     /// faces and are not corners.
     pub mesh: Mesh<D>,
-    /// The number of points inside plane faces; in the plane, inside straight lines. These belong only to faces.
+    /// The number of points inside plane faces; in the plane, inside straight lines. Such points belong only to faces.
     pub within_faces: usize,
     /// In space, the edges, ascending. Edges between two coplanar faces are omitted.
     pub edges: Vec<[u32; 2]>,

@@ -3,7 +3,7 @@
 use crate::vector::Bounds;
 use opruga_math::{Lane, Pack, WIDTH, Work, lanes};
 
-/// Boxes by coordinates: the lowest ones along every axis, then the highest ones, padded to whole packs.
+/// The coordinates of boxes, padded to whole packs: first the lowest along every axis, then the highest.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Columns {
     coordinates: Vec<f64>,
@@ -17,7 +17,7 @@ pub(crate) struct Columns {
 
 /// Lists of more boxes than this are sorted along an axis, so that a box is compared only with those that overlap it along this axis. With lists of
 /// 1,024 boxes (two rings on one another), a frame takes 39 ms instead of 66 ms. A frame of 27 cubes takes the same time as without sorting. This
-/// number changes only times, and other numbers were not tried.
+/// number changes only the run time; other values were not tried.
 const UNSORTED: usize = 128;
 
 impl Columns {

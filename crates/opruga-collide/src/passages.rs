@@ -167,9 +167,9 @@ impl<const D: usize> Touching<D> {
         self.rows.sort_by_key(|row| row.id);
     }
 
-    /// Makes the points of pairs that still pass move rigidly together: x = x₀ + h (c + ω × r), with the velocity c of their
-    /// centre, the angular velocity ω and the position r relative to the centre. In this motion no two features pass. It has
-    /// the momentum and the angular momentum of the points.
+    /// Makes the points of pairs that still pass move rigidly together: x = x₀ + h (c + ω × r), with the velocity c of their centre, the angular
+    /// velocity ω and the position r relative to the centre. In this motion no two features pass. The rigid motion keeps the momentum and the angular
+    /// momentum of the points.
     ///
     /// # Errors
     /// [`Trouble::LedThrough`] if pins and obstacles prevent such a motion.

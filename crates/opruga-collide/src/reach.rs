@@ -24,19 +24,18 @@ pub(crate) struct Reach<const D: usize> {
     stale: Vec<bool>,
     /// For every body, whether it will soon be stale. The next search covers all such bodies at once.
     due: Vec<bool>,
-    /// What the points of bodies need in this step, by parts of the points.
+    /// The results for the points of bodies in this step, one list for each part of the points.
     began: Vec<Vec<Began>>,
 }
 
-/// A box whose margin is this many times as wide as it would be now is computed anew. Otherwise bodies that come to rest after
-/// an impact would keep the candidates of their flight (`candidates_of_a_flight_are_dropped_at_rest`). The number is above 2
-/// because a point that moves straight ahead has up to twice the margin behind it.
+/// If the margin of a box is this many times as wide as it would be now, the box is computed anew. Otherwise bodies that come to rest after an impact
+/// would keep the candidates of their flight (`candidates_of_a_flight_are_dropped_at_rest`). The number is above 2 because a point that moves
+/// straight ahead has up to twice the margin behind it.
 pub(crate) const MOST_WIDTHS: f64 = 4.0;
 
-/// Returns how far beyond the box of a step candidates are searched for [m], for a point or body that moves by `moves` in the
-/// step. This is as far as it moves in `steps` more steps, but at least half a margin and at most a whole one. Without the
-/// upper limit, long steps of fast bodies would make everything around them a candidate (ten times as many candidates for eight
-/// falling cubes).
+/// Returns how far beyond the box of a step candidates are searched for [m], for a point or body that moves by `moves` in the step. This distance is
+/// what the point or body covers in `steps` more steps, but at least half a margin and at most a whole one. Without the upper limit, long steps of
+/// fast bodies would make everything around them a candidate (ten times as many candidates for eight falling cubes).
 pub(crate) fn beyond(moves: f64, steps: f64, margin: f64) -> f64 {
     (0.5 * margin).larger((steps * moves).smaller(margin))
 }

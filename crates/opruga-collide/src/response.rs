@@ -75,7 +75,7 @@ pub(crate) struct Parting<S, const D: usize> {
 
 /// The distance [m] below which a gap consists of rounding errors.
 ///
-/// It has an upper bound that does not depend on the node, so that a whole tile can be skipped with one comparison.
+/// It has the same upper bound for all nodes, so that one comparison can skip a whole tile.
 #[inline(always)]
 pub(crate) fn rounding<S: Lane, const D: usize>(law: &Law, x: &[S; D]) -> S {
     if law.rest_speed == 0.0 {
@@ -95,7 +95,7 @@ pub(crate) fn largest_rounding(law: &Law) -> f64 {
 
 /// Whether there is contact: the node is inside, or on the surface and approaching, in both cases by more than rounding.
 ///
-/// So a node that reaches the surface exactly meets it in this step, and not in the next step as a node at rest.
+/// Therefore, a node that just reaches the surface meets it in this step, and not in the next step as a node at rest.
 #[inline(always)]
 pub(crate) fn meets<S: Lane, const D: usize>(law: &Law, node: &Meeting<S, D>) -> S::Mask {
     // A node at the origin has the rounding error of its previous position.

@@ -38,11 +38,10 @@ pub(crate) struct Row<const D: usize> {
     pub(crate) coupled: bool,
 }
 
-/// The mobility below which a pair counts as immovable, as a fraction of the mobility that it would have if each of its points
-/// moved by itself. If obstacles hold all of its points, a fraction of about 1e-16 remains, which is rounding. Half-spaces and
-/// round obstacles can hold the nodes of bodies with implicit integrators in this way. In contrast, a stiff body of a million
-/// nodes, which moves as a whole, has a fraction of 1e-6. The limit was introduced for corners of polylines, which form their
-/// own pairs now. No test of contact changes if it is 0.
+/// The mobility below which a pair counts as immovable, as a fraction of the mobility that it would have if its points moved independently. If
+/// obstacles hold all of its points, a fraction of about 1e-16 remains, which is rounding. Half-spaces and round obstacles can hold the nodes of
+/// bodies with implicit integrators in this way. In contrast, a stiff body of a million nodes, which moves as a whole, has a fraction of 1e-6. The
+/// limit was introduced for corners of polylines, which form their own pairs now. No test of contact changes if it is 0.
 const IMMOBILE: f64 = 1e-12;
 
 impl<const D: usize> Row<D> {
@@ -65,7 +64,7 @@ impl<const D: usize> Row<D> {
         }
     }
 
-    /// The mass of its points along the normal if each moves by itself [kg]; 0 if nothing moves.
+    /// The effective mass of the row along its normal [kg] if its points respond independently; 0 if no point can move.
     pub(crate) fn mass_apart(&self, spread: &Spread, inverse_mass: &[[f64; D]]) -> f64 {
         if !self.coupled || self.mass[0] == 0.0 {
             return self.mass[0];

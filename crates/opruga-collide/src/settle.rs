@@ -6,8 +6,8 @@ use crate::vector::{dot, subtract};
 use opruga_core::threads;
 use opruga_math::Lane;
 
-/// The fraction of the thickness by which pairs may be too close before they are separated. Within this fraction, the surfaces
-/// themselves do not overlap. The errors that sweeps leave are smaller, so they do not move points.
+/// The fraction of the thickness by which pairs may be too close before they are separated. Pairs that are too close by no more than this fraction do
+/// not overlap with their surfaces themselves. The errors that sweeps leave are smaller, so they do not move points.
 pub(crate) const OVERLAP: f64 = 0.01;
 
 /// The least number of points that a thread moves in one piece. This many points take about ten microseconds.

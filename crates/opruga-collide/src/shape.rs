@@ -25,7 +25,7 @@ pub(crate) struct Met<const D: usize> {
     /// The height of the node above the face [m].
     pub(crate) height: f64,
     pub(crate) normal: [f64; D],
-    /// The depth of the end of the path behind a face [m], the smallest one of all faces that the node is on.
+    /// The depth of the end of the path behind a face [m]: the smallest depth behind any face that the node is on.
     pub(crate) behind: f64,
     /// The number of faces that the node is on.
     pub(crate) faces: usize,
@@ -67,7 +67,7 @@ pub(crate) struct HalfSpace<const D: usize> {
     pub(crate) offset: f64,
 }
 
-/// Solid inside a sphere (`sign` 1) or outside (−1).
+/// A sphere that is solid inside (`sign` 1) or outside (`sign` −1).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ball<const D: usize> {
     pub(crate) center: [f64; D],
@@ -292,9 +292,9 @@ pub(crate) fn is_on_edge<T: Shape<D>, const D: usize>(shape: &T, margin: f64, x:
     Met::of(shape, margin, x, &[0.0; D], close_to(shape, margin)).faces > 1
 }
 
-/// Returns the contact of a node that was on a surface at `a`, to within `small` [m], and moves to `b`: the distance of `b`
-/// behind the tangent plane (negative) and the normal. None if the node was not on the surface or does not enter. Also none on
-/// an edge if more than one face is in its way, or if another contact that is already `active` moves it along one of the faces.
+/// Returns the contact of a node that moves to `b` from a position `a` on a surface, to within `small` [m]. The contact consists of the distance of
+/// `b` behind the tangent plane (negative) and the normal. None if the node was not on the surface or does not enter. It is also none on an edge if
+/// more than one face is in the way of the node, or if another contact that is already `active` moves the node along one of the faces.
 #[inline(never)]
 pub(crate) fn support<T: Shape<D>, const D: usize>(
     shape: &T,

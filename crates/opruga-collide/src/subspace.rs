@@ -57,11 +57,11 @@ struct Subspace<const D: usize> {
     matrix: Dense,
     /// The remaining velocities [m/s].
     left: Vec<f64>,
-    /// Which unknowns are solved for.
+    /// Whether each unknown is free; the equations determine only free unknowns.
     is_free: Vec<bool>,
 }
 
-/// Finds the impulses with which all active contacts keep their velocities.
+/// Finds the impulses with which all pressing contacts keep their normal velocity and no sticking contact slides.
 pub(crate) fn step<const D: usize>(
     rows: &mut [Row<D>],
     spread: &Spread,

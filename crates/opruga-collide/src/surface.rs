@@ -11,8 +11,8 @@ use opruga_mesh::{Carrier, Mesh, TouchingSurface};
 pub struct Surface<const D: usize> {
     /// The body of every point.
     pub body: Vec<u32>,
-    /// The corners of every facet. Those of a closed boundary have the inside to their left (2D) or on the side from which they
-    /// appear clockwise (3D).
+    /// The corners of every facet. The facets of a closed boundary have the inside to their left (2D) or on the side from which they appear clockwise
+    /// (3D).
     pub facets: Vec<[u32; D]>,
     /// Whether a facet is part of a closed boundary and so has an inside; others act on both sides.
     pub closed: Vec<bool>,
@@ -41,8 +41,7 @@ impl<const D: usize> Surface<D> {
         self.body.len()
     }
 
-    /// The points of a body, given its number in the order of addition: first those that are nodes, then those that nodes
-    /// carry.
+    /// The points of a body, given its number in the order of addition. The points that are nodes come before the points that nodes carry.
     pub fn points_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 0, self.points())
     }
@@ -111,8 +110,8 @@ impl<const D: usize> Surface<D> {
         self.sides.extend(sides);
     }
 
-    /// Lets a body touch faces of obstacles with its vertices, given its number in the order of addition. Otherwise obstacles
-    /// hold its nodes directly.
+    /// Lets the vertices of a body touch faces of obstacles. `number` is the number of the body in the order of addition. Otherwise obstacles hold
+    /// its nodes directly.
     pub fn touch_faces(&mut self, number: usize) {
         self.touch_faces.resize(self.touch_faces.len().max(number + 1), false);
         self.touch_faces[number] = true;
@@ -134,7 +133,7 @@ impl<const D: usize> Surface<D> {
         self.obstacles.is_some_and(|[_, first]| point >= first)
     }
 
-    /// Finds the edges of the facets from a given one on, and the facets around every point.
+    /// Finds the edges of all facets from `first_facet` on, and the facets around every point.
     fn join(&mut self, first_facet: usize, wires: Vec<[u32; 2]>, points: usize) {
         let mut edges: Vec<([u32; 2], u32)> = Vec::new();
         for (number, facet) in self.facets.iter().enumerate().skip(first_facet) {

@@ -14,8 +14,7 @@ use opruga_math::Lane;
 pub(crate) struct NodePath<'a, const D: usize> {
     pub(crate) from: &'a [f64; D],
     pub(crate) to: &'a [f64; D],
-    /// The end position that the node has if the surfaces that it was on hold it. This position determines which face of
-    /// another solid the node meets.
+    /// The end position of the node if the surfaces that it was on hold it. This position determines which face of another solid the node meets.
     pub(crate) kept: [f64; D],
     /// The faces of solids that the position `to` is on. Where two solids adjoin, these include opposite faces.
     pub(crate) faces: Faces<D>,
@@ -59,7 +58,7 @@ struct Seen<'a, const D: usize> {
     to: &'a [f64; D],
     kept: &'a [f64; D],
     faces: &'a Faces<D>,
-    /// The start of the node, carried along with the collider.
+    /// The position of the node at the start of the step, carried along with the collider [m].
     carried: [f64; D],
     law: &'a Law,
     reach: f64,

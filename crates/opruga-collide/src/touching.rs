@@ -50,12 +50,13 @@ pub struct Touching<const D: usize> {
     /// For every changed point, four energies [J]: those that contact and friction took, the one that obstacles and pins gave
     /// by their motion, and the one that moving the point gave.
     pub losses: Vec<[f64; 4]>,
-    /// Whether overlaps are removed by impulses within the step and not by positions: for bodies at rest, which have no velocity.
+    /// Whether overlaps are removed by impulses within the step, and not by changes of positions. This is so for bodies at rest, which have no
+    /// velocity.
     pub(crate) at_once: bool,
     /// Whether the steps of coupled bodies have a fixed budget. Impulses are then found only as accurately as those of
     /// uncoupled bodies.
     pub has_budget: bool,
-    /// The largest displacement of points of bodies at rest [m]: impulses that exceed it are rejected.
+    /// The largest allowed displacement of points of bodies at rest [m]; impulses that exceed it are rejected.
     pub farthest: f64,
     /// The impulses on points of coupled bodies that the free motion already contains [N s]. The solution still gives the total
     /// impulses, and [`Coupled::impulses_on`] gives the difference.
@@ -83,12 +84,13 @@ pub struct Touching<const D: usize> {
     /// Pairs that would not meet in the free motion, and their points; pairs that were activated leave an empty entry.
     pub(crate) watched: Vec<Row<D>>,
     pub(crate) heads: Vec<[u32; 4]>,
-    /// Pairs that would meet in the free motion, but are solved for only if they still approach too fast after the others have
-    /// been solved for.
+    /// Pairs that would meet in the free motion but are left out at first. They join the rows only if they still approach too fast after the other
+    /// rows have been solved.
     pub(crate) inactive: Vec<Row<D>>,
     /// Features and impulses of the previous substep, ascending.
     pub(crate) last: Vec<(u64, f64, [f64; D])>,
-    /// Whether the obstacles of a point are among the rows, or are requested; and the points whose obstacles are requested, ascending.
+    /// Whether the obstacles of a point are among the rows (`known`), whether they are requested (`asks`), and the points whose obstacles are
+    /// requested, ascending (`asked`).
     pub(crate) known: Vec<bool>,
     pub(crate) asks: Vec<bool>,
     pub(crate) asked: Vec<u32>,
@@ -100,7 +102,7 @@ pub struct Touching<const D: usize> {
     pub(crate) impact: Vec<[f64; D]>,
     /// The positions of the points at the end of the step [m].
     pub(crate) end: Vec<[f64; D]>,
-    /// Pairs that would pass through one another, ascending, and the gap with which each is solved for.
+    /// Pairs that would pass through one another, ascending, each with the gap that the solution uses.
     pub(crate) passing: Vec<(u64, Gap<D>)>,
     /// The passing pairs that the last check has found.
     pub(crate) fresh: Vec<u64>,
@@ -109,7 +111,7 @@ pub struct Touching<const D: usize> {
     /// The pairs of a vertex and a facet, and of two edges, that may meet in the step, and their distances at its start [m].
     pub(crate) close: [Vec<([u32; 2], f64)>; 2],
     pub(crate) zones: Zones<D>,
-    /// Whether the points inside other bodies still have to be found in this frame; and these points, ascending.
+    /// Whether the points inside other bodies still have to be found in this frame, and the points found, ascending.
     pub(crate) looks_inside: bool,
     pub(crate) began_inside: Vec<u32>,
     /// Pairs of bodies, one of which has points inside the other; ascending.
@@ -120,10 +122,10 @@ pub struct Touching<const D: usize> {
     pub(crate) masses: Vec<f64>,
     pub(crate) multipliers: Vec<f64>,
     pub(crate) touched: Vec<bool>,
-    /// The index of every changed point among the changed points.
+    /// The index of every changed point in the list of changed points.
     pub(crate) number: Vec<u32>,
     pub(crate) turns: Turns<D>,
-    /// Counts since they were last taken.
+    /// The counts that have accumulated since they were last taken.
     pub counts: Counts,
 }
 
@@ -142,8 +144,8 @@ pub struct Counts {
     pub contacts: u64,
     /// The number of turns in which these were solved.
     pub turns: u64,
-    /// The number of rounds of gaps and solutions: one in each substep, and another one whenever contact pushes points beyond
-    /// their boxes.
+    /// The number of rounds, each of which computes gaps and solves for impulses. Every substep has one round, and another whenever contact pushes
+    /// points beyond their boxes.
     pub rounds: u64,
 }
 
@@ -204,7 +206,7 @@ impl<const D: usize> Touching<D> {
         self.candidates.simd = simd;
     }
 
-    /// Discards the impulses of the previous step, for the case that the state is no longer their result.
+    /// The caller needs this if the state is no longer the result of these impulses.
     pub fn forget_impulses(&mut self) {
         self.rows.clear();
     }
@@ -373,8 +375,8 @@ impl<const D: usize> Touching<D> {
         self.coupled.body_of(point).is_some()
     }
 
-    /// Checks whether pairs pass through one another when bodies with implicit integrators move to their present positions.
-    /// Passing pairs are solved for next.
+    /// Checks whether pairs pass through one another when bodies with implicit integrators move to their present positions. The next solution
+    /// includes the passing pairs.
     pub fn passes(&mut self, h: f64) -> bool {
         for p in (0..self.coupled.count()).flat_map(|body| self.coupled.points_of(body)) {
             self.end[p] = self.after[0][p];
@@ -460,8 +462,7 @@ impl<const D: usize> Touching<D> {
         true
     }
 
-    /// Computes the masses of those rows, from an index on, whose points are coupled; returns whether all of these points
-    /// respond.
+    /// Computes the masses of coupled rows, beginning with the row `first`; returns whether all points of these rows respond.
     fn weigh_coupled(&mut self, first: usize, respond: &mut Option<&mut dyn Respond<D>>) -> bool {
         if self.coupled.count() == 0 || self.coupled.apart {
             return true;

@@ -21,8 +21,8 @@ pub(crate) const TOLERANCE: f64 = 1e-2;
 /// by 2e-4 (the cases `contact-patch-…` of the verification require 1e-6).
 pub(crate) const COUPLED_TOLERANCE: f64 = 1e-9;
 
-/// The sets of rows that points connect. Also the times at which rows were last solved and at which their velocities last changed,
-/// counted in turns of rows. They are stored separately from the rows, which are large.
+/// The sets of rows that points connect. The structure also stores the times at which rows were last solved and at which their velocities last
+/// changed, counted in turns of rows. They are stored separately from the rows, which are large.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns<const D: usize> {
     /// The turn in which the velocity of each point last changed.
@@ -36,16 +36,15 @@ pub(crate) struct Turns<const D: usize> {
     first_alone: Vec<u32>,
     /// For each point, another one to which rows connect it, or the point itself.
     parent: Vec<u32>,
-    /// For the root of each set of points, the number of the set; and the start of the rows of each set. Sets are numbered in
-    /// the order in which they are found.
+    /// For the root of each set of points, the number of this set. Also the start of the rows of each set. Sets are numbered in the order in which
+    /// they are found.
     number: Vec<u32>,
     starts: Vec<u32>,
     joined: Vec<u32>,
     /// The position of every sorted row in the order of features.
     order: Vec<u32>,
     sorted: Vec<Row<D>>,
-    /// The points of every row that can move, in the order of features; and whether some points of a set do not respond by
-    /// themselves.
+    /// The points of every row that can move, in the order of features. Also whether a set has points that do not respond independently.
     movers: Vec<[u32; 4]>,
     mixed: Vec<bool>,
     approach: Approach,
@@ -85,7 +84,7 @@ impl Approach {
         self.parent[high as usize] = low;
     }
 
-    /// The mean approach velocity of the bodies connected to one [m/s].
+    /// The mean approach velocity of all bodies that are connected to the given one [m/s].
     fn of(&self, body: u32) -> f64 {
         self.mean[self.root(body) as usize].0
     }
@@ -340,8 +339,8 @@ impl<const D: usize> Turns<D> {
         alone.inverse_mass.extend(alone.points.iter().map(|(p, _)| inverse_mass[*p as usize]));
     }
 
-    /// A set whose points do not all respond by themselves, with the mean approach velocity of its bodies [m/s]; none for other
-    /// sets. `body` is the body of every point.
+    /// A set whose points do not all respond by themselves, with the mean approach velocity of its bodies [m/s]; none for other sets. `body` gives
+    /// the body of every point.
     pub(crate) fn coupled_set<'a>(
         &'a mut self,
         set: usize,
@@ -360,9 +359,8 @@ impl<const D: usize> Turns<D> {
         Some((Sweeps { rows, heads, inverse_mass, v, stamps, now }, approach))
     }
 
-    /// Solves for the sets whose points respond by themselves, with at most `most` sweeps, on the threads of the pool if there are
-    /// several. Sweeps may leave velocities of `tolerance` times the mean approach velocity; `body` is the body of every point.
-    /// Returns the number of turns.
+    /// Solves for the sets whose points respond by themselves, with at most `most` sweeps, on the threads of the pool if there are several. Sweeps
+    /// may leave velocities of `tolerance` times the mean approach velocity. `body` gives the body of every point. Returns the number of turns.
     pub(crate) fn solve_alone(
         &mut self,
         rows: &mut [Row<D>],
@@ -469,7 +467,7 @@ pub(crate) struct Sweeps<'a, const D: usize> {
 }
 
 impl<const D: usize> Sweeps<'_, D> {
-    /// Sweeps over rows whose points respond by themselves; returns whether any velocity changed by more than `enough` [m/s].
+    /// Sweeps over rows whose points respond independently; returns whether any velocity changed by more than `enough` [m/s].
     fn sweep_alone(&mut self, backward: bool, enough: f64) -> bool {
         let turn = |_: &mut (), row: &mut Row<D>, points: &[u32; 4], inverse_mass: &[_], v: &mut [_]| {
             row.solve(points, inverse_mass, v)
@@ -477,8 +475,7 @@ impl<const D: usize> Sweeps<'_, D> {
         self.sweep(backward, enough, (&mut (), &Spread::default()), turn, |(), _, _| {}).0
     }
 
-    /// Sweeps over rows some of whose points are coupled or carried; returns whether any velocity changed by more than `enough`, and
-    /// the largest change [m/s].
+    /// Sweeps over rows with coupled or carried points; returns whether any velocity changed by more than `enough`, and the largest change [m/s].
     pub(crate) fn sweep_coupled(
         &mut self,
         backward: bool,

@@ -1,8 +1,8 @@
 //! Impulses of contacts of coupled bodies, when far more pairs are examined than press.
 //!
-//! Most pairs of a step are only near one another and have no impulse in the end. So the laws are solved for some contacts only,
-//! the working set. Contacts that approach too fast then join the set, the fastest first, until none is left. Each solution
-//! satisfies the laws of all contacts of the set, so the last solution satisfies those of all contacts.
+//! Most pairs of a step are only near one another and have no impulse in the end. Therefore, the laws are solved for only some of the contacts, the
+//! working set. Contacts that approach too fast then join the set, the fastest first, until none is left. Each solution satisfies the laws of all
+//! contacts of the set, so the last solution satisfies those of all contacts.
 
 use crate::coupled::Coupled;
 use crate::newton::{self, Aim};

@@ -3,7 +3,7 @@
 
 use opruga_math::symmetric;
 
-/// Differences of speeds below this number count as rounding. They are relative to 1 m/s or to the speeds themselves.
+/// Differences of speeds below this number count as rounding. The differences are relative to 1 m/s or to the speeds themselves.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// The points of a pair, and their number: at most four points with at most four nodes each.
@@ -60,7 +60,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 impl<const D: usize> Zone<D> {
-    /// The motion that has the momentum of the points along all axes that are not prescribed and, if no axis is prescribed,
+    /// The rigid motion of a zone. It has the momentum of the points along every axis that is not prescribed. If no axis is prescribed, it also has
     /// their angular momentum.
     pub(crate) fn of(
         points: &[u32],

@@ -32,7 +32,7 @@ impl BreakOff {
         }
     }
 
-    /// Requests the end of the present and all following computations, or withdraws the request.
+    /// Asks the present and all following computations to end, or withdraws the request.
     pub fn ask(&self, wanted: bool) {
         self.asked.store(wanted, Ordering::Relaxed);
     }

@@ -69,8 +69,8 @@ pub trait Contacts<const D: usize>: Send + Sync + Debug {
     /// Applies non-penetration, restitution and friction to the nodes of a tile. Returns the lanes that contain a node on which
     /// it acted, one bit each: lane l contains the indices that are l modulo eight.
     fn resolve(&self, simd: Simd, moved: &mut Moved<D>) -> u8;
-    /// Calls back with every surface that a node reaches when it moves from `from` to `to` [m] in the step of length `h` that
-    /// ends at `time` [s]: those whose gap at the end is at most `reach` [m], and those that it has crossed.
+    /// Visits every surface that a node reaches when it moves from `from` to `to` [m] in the step of length `h` that ends at `time` [s]: surfaces
+    /// whose gap at the end is at most `reach` [m], and surfaces that the node has crossed.
     ///
     /// Implicit integrators call this method, because they constrain nodes while they solve for the end of the step.
     fn touch(

@@ -1,7 +1,7 @@
 //! Dense symmetric matrices, of which one half is stored.
 //!
-//! A matrix of 6000 rows does not fit into any cache, so a product takes as long as reading its numbers from memory. Of two equal
-//! entries only one is stored, and each entry read is used twice. The order of sums is the same for every set of instructions.
+//! A matrix of 6000 rows does not fit into any cache, so a product takes as long as reading its numbers from memory. Only one of two equal entries is
+//! stored; a product reads it once and uses it twice. The order of sums is the same for every set of instructions.
 
 use core::fmt;
 use opruga_math::{Column, Pack, Simd, WIDTH, Work};
@@ -195,8 +195,8 @@ struct Products<'a> {
     y: &'a mut [f64],
 }
 
-/// The number of rows of a tile that are summed together: their x and their sums stay in registers. With AVX2, a product with
-/// two rows at a time takes equally long, and one with eight takes a third longer.
+/// A product sums this many rows of a tile together, so that their x and their sums stay in registers. With AVX2, a product with two rows at a time
+/// takes the same time, and one with eight takes a third longer.
 const ROWS: usize = 4;
 
 impl Work for Products<'_> {

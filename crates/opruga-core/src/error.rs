@@ -86,9 +86,9 @@ messages! {
     /// Why a substep could not be made.
     #[derive(Clone, Debug, PartialEq)]
     pub enum StepError {
-        /// A position or velocity is no longer finite, or a position is so far from the origin that rounding dominates. The
-        /// fields are the index of the body in the island, the node, the time at the start of the substep \[s\], and, if the node
-        /// is too far from the origin, the limit: the distance along an axis up to which positions keep their digits \[m\].
+        /// A position or velocity is no longer finite, or a position is so far from the origin that rounding dominates. The fields are the index of
+        /// the body in the island, the node, the time at the start of the substep \[s\], and, if the node is too far from the origin, the limit. The
+        /// limit is the distance along an axis up to which positions keep their digits \[m\].
         "part.step" #[error("node {node} of body {body} left {} at t = {} s", what_was_left(*range), number(*time))]
         Diverged { body: usize, node: u32, time: f64, range: Option<f64> },
         /// An implicit integrator has not found the end of the step. The fields are the number of Newton iterations, the largest

@@ -167,7 +167,7 @@ impl<const D: usize> History<D> {
     pub fn channels_mut(&mut self) -> impl ExactSizeIterator<Item = (Channel, &mut Content<D>)> {
         self.channels.iter_mut().map(|(channel, content)| (*channel, content))
     }
-    /// Whether this owner has declared these channels as the first ones. Others may have been added after them.
+    /// Whether the channels belong to this owner and begin with the given ones. Channels that were added later may follow them.
     pub fn is_of(&self, owner: &str, channels: &[Channel]) -> bool {
         let declared = self.channels.iter().map(|(channel, _)| channel);
         self.owner == owner && self.channels.len() >= channels.len() && declared.zip(channels).all(|(a, b)| a == b)

@@ -10,7 +10,7 @@ use crate::tile::{Tile, Weight};
 use opruga_math::{WIDTH, sum_in_fixed_order};
 
 impl<const D: usize> System<D> {
-    /// Computes the force of all models and the weight on every node in a state, at a time after the start of the step [N].
+    /// Computes the force of all models and the weight on every node [N], for a state and a time after the start of the step.
     ///
     /// `weight` [s] is the part of the step that this evaluation represents when power is integrated to work; zero for a trial.
     ///
@@ -28,7 +28,7 @@ impl<const D: usize> System<D> {
         self.gather_forces(stage, time, weight, out);
     }
 
-    /// Prepares only some models, given by their numbers, in a state. [`System::evaluate`] prepares all of them.
+    /// Prepares only the models with the given numbers in a state. [`System::evaluate`] prepares all of them.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the state.

@@ -74,7 +74,7 @@ impl Inertia {
         sum_in_fixed_order(&parts)
     }
 
-    /// The matrix with the entries of this one, followed by others.
+    /// The matrix made from the entries of this matrix, followed by other entries.
     pub(crate) fn with(&self, others: Vec<(u32, u32, f64)>) -> Inertia {
         let own = (0..self.nodes()).flat_map(|a| self.row(a).map(move |(b, mass)| (a as u32, b as u32, mass)));
         Inertia::new(self.nodes(), own.chain(others).collect())

@@ -48,7 +48,7 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn part_of_load(&self, _system: &System<D>) -> Option<f64> {
         None
     }
-    /// Whether it gives the same bits on processors of all classes, and not only on those of one class.
+    /// Whether it gives the same bits on processors of all classes, rather than only within one class.
     fn same_bits_everywhere(&self, _system: &System<D>) -> bool {
         true
     }

@@ -14,7 +14,7 @@ pub struct Need {
     pub couplings: f64,
 }
 
-/// The counts that determine memory. Sides that cells share are counted by their mean number in large meshes.
+/// The counts that determine memory. Edges and pairs of nodes that cells share are counted by their mean number per cell in large meshes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
     /// The number of nodes.

@@ -30,8 +30,8 @@ pub trait OpenStep<const D: usize>: Send {
     fn potential(&self, system: &System<D>) -> Option<[f64; 2]>;
     /// The rounding error of the terms of Φ that models compute [J].
     fn rounding(&self, system: &System<D>) -> f64;
-    /// The part of r that is due to rounding of positions, as the root of the sum of squares [N]. It is computed in the free
-    /// directions, with the last derivatives.
+    /// The part of r that is due to rounding of positions, as the root of the sum of squares [N]. It is computed from the last derivatives, in the
+    /// free directions only.
     fn rounding_of_forces(&self, system: &System<D>) -> f64;
     /// The residual r in the last evaluated state [N].
     fn residual(&self) -> &[f64];
@@ -39,8 +39,8 @@ pub trait OpenStep<const D: usize>: Send {
     fn advance(&mut self, part: f64);
     /// Searches for the nodes that obstacles hold; returns whether the set of these nodes has changed.
     fn look(&mut self, system: &System<D>) -> bool;
-    /// Assembles the derivatives in the last evaluated state, the exact ones if `exact` is set and they are positive definite,
-    /// and factors them in the free directions; returns whether that was possible.
+    /// Assembles the derivatives in the last evaluated state and factors them in the free directions; returns whether that was possible. The
+    /// derivatives are exact if `exact` is set and the exact ones are positive definite.
     fn factor(&mut self, system: &System<D>, exact: bool) -> bool;
     /// The mean diagonal entry of A at a node [N/m]; 0 if pins hold all of its axes.
     fn stiffness(&self, system: &System<D>, node: usize) -> f64;

@@ -10,10 +10,10 @@ impl<const D: usize> System<D> {
         self.pinned_nodes.learn(&self.pins, self.time, h);
     }
 
-    /// Gives pinned nodes the velocity of their path at the start of a frame if they have another one: at the start of a run, or
-    /// if a command has just pinned them. Otherwise dampers between them and their neighbours would act for one step with a
-    /// velocity that no longer exists, which reduces the order of every integrator. The change of kinetic energy is work of the
-    /// pins. If a mass matrix couples nodes, the change would be an impulse on other nodes too, and is left to the integrator.
+    /// Gives pinned nodes the velocity of their path at the start of a frame if their velocity differs from it. It differs at the start of a run, or
+    /// if a command has just pinned the nodes. Otherwise dampers between them and their neighbours would act for one step with a velocity that no
+    /// longer exists, which reduces the order of every integrator. The change of kinetic energy is work of the pins. If a mass matrix couples nodes,
+    /// the change would be an impulse on other nodes too, and is left to the integrator.
     pub fn take_hold(&mut self) {
         if self.inertia.is_some() {
             return;
@@ -30,8 +30,8 @@ impl<const D: usize> System<D> {
         }
     }
 
-    /// Moves pinned nodes to their prescribed positions and gives them the velocity of their path there. If a mass matrix couples
-    /// them to others, they keep the velocity of the step, since changing it would be an impulse on the others too.
+    /// Moves pinned nodes to their prescribed positions and gives them the velocity of their path there. If a mass matrix couples these nodes to
+    /// others, they keep the velocity of the step, because a change would be an impulse on the other nodes too.
     pub(crate) fn hold_pins(&mut self, stage: Stage, time: f64) {
         let (x, v) = match stage {
             Stage::Current => (&mut self.state.x, &mut self.state.v),

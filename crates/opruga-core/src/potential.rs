@@ -20,7 +20,7 @@ pub struct Views {
     pub energy: bool,
     /// There are second derivatives −∂F/∂x, or forces do not depend on positions.
     pub hessian: bool,
-    /// The second derivatives are a symmetric matrix, as those of an energy are.
+    /// The second derivatives form a symmetric matrix, like those of an energy.
     pub symmetric: bool,
     /// The force depends on velocities.
     pub damping: bool,
@@ -165,7 +165,7 @@ pub struct Properties {
     pub scratch_len: usize,
     /// Whether `prepare` and the derivatives use [`View::threads`], for bodies that are large enough.
     pub shares_threads: bool,
-    /// Whether `add_force` itself begins the forces of a tile with the weight if there is `tile.weight`, which saves a pass.
+    /// Whether `add_force` itself begins the forces of a tile with the weight if `tile.weight` is present. This saves a pass.
     pub begins_tiles: bool,
     /// Whether `prepare` reads everything on which forces depend, so that nodes of one stencil may move one after the other.
     pub forces_in_prepare: bool,
@@ -204,9 +204,8 @@ impl Properties {
 pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
     /// Its constant properties.
     fn properties(&self) -> Properties;
-    /// Calls back with the nodes of every term of the energy that couples nodes, in any order, for colours, tiles and drawings of
-    /// the coupling. Terms of one node, or of the whole body (the volume of a gas, for which the facets are given), are not
-    /// included.
+    /// Visits the nodes of every term of the energy that couples nodes, in any order. Colours, tiles and drawings of the coupling are made from these
+    /// nodes. Terms of one node, or of the whole body (the volume of a gas, for which the facets are given), are not included.
     fn stencils(&self, _visit: &mut dyn FnMut(&[u32])) {}
     /// The difference between its consistent mass matrix and the lumped masses, for pairs of nodes (row, column, mass [kg]);
     /// empty if masses are lumped.
@@ -226,8 +225,8 @@ pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
     }
     /// Adds the whole force of the model, −∂U/∂x and damping [N], to every node of the tile.
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>);
-    /// Updates the memory after a substep; returns the energy that this gives to each body [J]. The scratch is that of the
-    /// latest call of `prepare` and may be overwritten.
+    /// Updates the memory after a substep; returns the energy that this gives to each body [J]. The scratch comes from the latest call of `prepare`,
+    /// and the method may overwrite it.
     fn remember(
         &self,
         _simd: Simd,
@@ -290,7 +289,7 @@ pub trait Observe<const D: usize> {
     fn counts(&self, _memory: &[f64]) -> Vec<Count> {
         Vec::new()
     }
-    /// Warnings about the shapes of its bodies in a state, counted anew by every call and not kept in the memory.
+    /// Warnings about the shapes of the bodies in a state. Every call counts them anew, because the memory does not keep them.
     fn shape_counts(&self, _view: &View<D>) -> Vec<Count> {
         Vec::new()
     }
@@ -313,8 +312,8 @@ pub struct CellState {
     pub stress: [[f64; 3]; 3],
     /// Its volume ratio J: its volume divided by its volume at rest.
     pub volume_ratio: f64,
-    /// The smallest J at its integration points: the minimum over the gradients of its shape and those with which its law is
-    /// evaluated. A cell of positive volume may be degenerate or inverted at some of them.
+    /// The smallest J at its integration points: the minimum over the gradients of its shape and those with which its law is evaluated. A cell of
+    /// positive volume may be degenerate or inverted at some integration points.
     pub smallest_volume_ratio: f64,
     /// Its volume at rest [m³], in the plane its area times the thickness.
     pub measure: f64,

@@ -43,7 +43,7 @@ pub enum Role {
     Gas,
     /// A model whose forces act along the edges of the mesh; pictures draw them as lines.
     Edges,
-    /// The model that a world with a drag (`world.drag`) adds to every body. Its first parameter is the rate [1/s].
+    /// The model that a world with a drag (`world.drag`) adds to every body. The first parameter of this model is the rate [1/s].
     WorldDrag,
     /// A model whose readings have the units of the published program: pixels instead of metres.
     Published,

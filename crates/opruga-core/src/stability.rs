@@ -8,11 +8,10 @@
 //! so every model takes part, including the gas as a whole and models without a Hessian, and the same fast code runs as in a
 //! step. Obstacles contribute nothing: explicit integrators treat them by impulses, which have no stiffness.
 //!
-//! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It computes the same products as
-//! a power iteration from the same start vector, but uses the best combination of them. A power iteration is still 2 % off
-//! after 30 products on a long chain of springs, whose spectrum is dense at its upper end. The estimate is the largest Ritz
-//! value plus its residual, and the resulting step is reduced by 2 %. Negative eigenvalues, which a body has when it is about
-//! to buckle, do not affect the step.
+//! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It computes the same products as a power iteration
+//! from the same start vector, but uses the best combination of them. On a long chain of springs, whose spectrum is dense at its upper end, a power
+//! iteration still has an error of 2 % after 30 products. The estimate is the largest Ritz value plus its residual, and the resulting step is reduced
+//! by 2 %. Negative eigenvalues, which a body has when it is about to buckle, do not affect the step.
 //!
 //! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 satisfies μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. So
 //! the pairs (ω², c) of all modes are in the joint numerical range of K and C, whether or not K and C have the same
@@ -79,8 +78,8 @@ pub struct Spectrum {
 /// The spectra of a system, and the resulting limit of the step of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stability {
-    /// The spectra, with each residual added on the safe side. If the smallest damping is below 1 % of the strongest, it is
-    /// replaced by the damping due to the drag on every node, which is known.
+    /// The spectra, with each residual added on the safe side. A smallest damping below 1 % of the strongest is replaced by the damping due to the
+    /// drag on every node, which is known.
     pub spectrum: Spectrum,
     /// The largest step for which no mode grows, reduced by 2 % [s]; infinite for a free body and for integrators without a
     /// limit; `None` if a mode grows at every step.
@@ -222,7 +221,7 @@ impl Spectrum {
 /// integrators that carry many values is smaller than this.
 const SLOWEST: f64 = 1e-12;
 
-/// How far rounding may raise the spectral radius of a stable step above 1.
+/// The amount by which rounding may raise the spectral radius of a stable step above 1.
 const ROUNDING: f64 = 4e-15;
 
 /// The largest spectral radius of an integrator over some points (ω, c); NaN counts as infinite.
@@ -356,7 +355,7 @@ impl<'a, const D: usize> Probe<'a, D> {
         Ok(())
     }
 
-    /// Adds C d, from the difference due to a velocity along d of at most 1 m/s: damping is linear in the velocity.
+    /// Adds C d. Because damping is linear in the velocity, C d follows from the difference due to a velocity along d of at most 1 m/s.
     fn add_damping(&mut self, d: &Columns<D>, out: &mut Columns<D>) -> Result<(), StepError> {
         let step = 1.0 / largest(d);
         self.x.clone_from(&self.system.state.x);

@@ -68,7 +68,7 @@ impl<const D: usize> Columns<D> {
             value[d].store(&mut self.0[d][index..]);
         }
     }
-    /// A piece of every column for a loop over packs.
+    /// The same range of every column, for a loop over packs.
     #[inline(always)]
     pub fn strip_mut(&mut self, start: usize, length: usize) -> StripMut<'_, D> {
         StripMut::new(self.0.each_mut().map(|c| &mut **c), start, length)
@@ -219,7 +219,7 @@ impl Parameter {
 pub enum At<'a> {
     /// From this index on.
     Run(usize),
-    /// One index each; eight of them.
+    /// Eight separate indices.
     Each(&'a [u32]),
 }
 
@@ -272,7 +272,7 @@ impl<P: Pack> OrderedSum<P> {
     pub fn new(layout: Layout) -> Self {
         OrderedSum { layout, lanes: P::zero(), packs: [P::zero(); WIDTH] }
     }
-    /// Adds the values of a pack that starts at `index` of a run of `end` indices.
+    /// Adds the values of a pack that starts at `index`, in a run that ends before the index `end`.
     #[inline(always)]
     pub fn add(&mut self, index: usize, end: usize, value: P) {
         match self.layout {

@@ -34,7 +34,7 @@ pub struct Stencils<L, const N: usize, const K: usize> {
     kernel: PhantomData<L>,
     layout: Layout,
     nodes: usize,
-    /// The nodes of each element; elements are sorted by lowest node, then as rows.
+    /// The nodes of each element. Elements are sorted by their lowest node, and those with the same lowest node in lexicographic order.
     elements: Vec<[u32; N]>,
     parameters: [Parameter; K],
     damped: bool,
@@ -287,7 +287,7 @@ struct Eight<'a, const N: usize> {
     nodes: Nodes<N>,
 }
 
-/// The indices of their nodes: the first of eight consecutive ones, or each.
+/// The indices of the nodes of eight elements: only the first index if they are consecutive, otherwise every index.
 enum Nodes<const N: usize> {
     InARow([usize; N]),
     Scattered([[u32; WIDTH]; N]),

@@ -75,7 +75,7 @@ pub struct Member<const D: usize> {
 pub struct System<const D: usize> {
     /// The vector instructions in use.
     pub simd: Simd,
-    /// Stops a long step, with [`crate::error::StepError::BrokenOff`].
+    /// A request to break off a long step, which then ends with [`crate::error::StepError::BrokenOff`].
     pub break_off: std::sync::Arc<crate::break_off::BreakOff>,
     /// The number of threads over which the work on this system may be distributed; it then runs in a pool of threads. Their
     /// number does not change the bits.
@@ -107,8 +107,8 @@ pub struct System<const D: usize> {
     pub pins: Vec<Pin<D>>,
     /// The obstacles that the nodes may meet in this frame.
     pub contacts: Option<std::sync::Arc<dyn Contacts<D>>>,
-    /// The forces of other bodies on nodes throughout the step, by index [N]; `None` if no body is touched. Implicit integrators
-    /// include them in the balance; explicit ones ignore them.
+    /// The forces of other bodies on nodes throughout the step, by index [N]; `None` if no body is touched. Implicit integrators include these forces
+    /// in the balance; explicit ones ignore them.
     pub pushes: Option<Vec<(usize, [f64; D])>>,
     /// The limits of the thesis.
     pub stabilisers: Stabilisers,

@@ -1,9 +1,9 @@
 //! Pieces of work on several threads. The assignment of pieces to threads does not change the bits, because every piece has its
 //! own memory.
 //!
-//! This module is the only entry point. [`together`] calls the threads of the pool in which the caller runs (that of the
-//! world), and they stay awake until it returns. Work that is submitted to this module in the meantime is distributed to them.
-//! Work is distributed only if `threads` is more than one.
+//! This module is the only entry point. [`together`] wakes the threads of the pool in which the caller runs (that of the world), and they stay awake
+//! until it returns. Work that is submitted to this module in the meantime is distributed to them. Work is distributed only if `threads` is more than
+//! one.
 
 use core::ops::Range;
 use opruga_math::Team;

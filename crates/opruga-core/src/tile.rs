@@ -70,9 +70,9 @@ impl<const D: usize> Work for Settle<'_, '_, D> {
 
 /// The order in which tiles are evaluated and moved.
 ///
-/// The forces of a tile read positions of its neighbours. A tile may move only when the forces of every tile that reads it have
-/// been computed. In a chain of nodes, a tile can move after the forces of the next tile are known, so its forces stay in the
-/// cache. In a mesh whose neighbouring nodes have distant numbers, it moves later, and more buffers are needed.
+/// The forces of a tile read positions of its neighbours. A tile may move only when the forces of every tile that reads it have been computed. In a
+/// chain of nodes, a tile can move after the forces of the next tile are known, so its forces stay in the cache. In a mesh whose neighbouring nodes
+/// have distant numbers, a tile moves later, and more buffers are needed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TilePlan {
     tiles: Vec<Range<usize>>,

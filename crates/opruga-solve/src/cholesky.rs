@@ -1,4 +1,4 @@
-//! The sparse Cholesky factor, by faer; rank-one terms by the Woodbury formula.
+//! The sparse Cholesky factor, computed by faer. The Woodbury formula includes the rank-one terms.
 
 use crate::Indefinite;
 use crate::matrix::BlockMatrix;

@@ -1,4 +1,4 @@
-//! Large dense systems, by the library faer. Results have the same bits only on processors of one class.
+//! Large dense systems, solved by the library faer. Results have the same bits only on processors of one class.
 
 use crate::Indefinite;
 use faer::dyn_stack::{MemBuffer, MemStack};

@@ -137,7 +137,7 @@ mod tests {
         matrix
     }
 
-    /// The complete factor solves at once a system for which an incomplete one needs many products, with the same result.
+    /// The complete factor solves a system at once, although an incomplete factor needs many products for the same result.
     #[test]
     fn the_complete_factor_solves_at_once() {
         let matrix = lattice(20, 0.05);

@@ -36,10 +36,10 @@ pub struct BlockMatrix<const D: usize> {
     beside: Vec<Beside<D>>,
 }
 
-/// The number of orders of calls that are remembered.
+/// The number of sequences of calls that are remembered.
 const SCRIPTS: usize = 2;
 
-/// An order of calls, and the block of each.
+/// A sequence of calls, and the block of each call.
 #[derive(Clone, Debug, Default)]
 struct Script {
     calls: Vec<(u32, u32)>,
@@ -94,8 +94,8 @@ impl<const D: usize> BlockMatrix<D> {
         self.values.capacity() * size_of::<Block<D>>() + (self.column.capacity() + self.start.capacity()) * 4 + scripts
     }
 
-    /// Fills the matrix again: `deliver` is called once, or more often while the pattern is being determined. `script` is the
-    /// number of the order of calls, for models that deliver in different orders.
+    /// Fills the matrix again: `deliver` is called once, or more often while the pattern is being determined. `script` is the number of the sequence
+    /// of calls, for models that deliver in different orders.
     pub fn assemble(&mut self, nodes: usize, script: usize, mut deliver: impl FnMut(&mut BlockMatrix<D>)) {
         if self.rows() != nodes {
             *self = BlockMatrix { generation: self.generation + 1, ..BlockMatrix::default() };
@@ -327,7 +327,7 @@ impl<const D: usize> BlockMatrix<D> {
         }
     }
 
-    /// Copies another matrix, reusing memory; orders of calls are not copied.
+    /// Copies another matrix into the present memory, without its sequences of calls.
     pub fn copy_from(&mut self, other: &BlockMatrix<D>) {
         if self.generation != other.generation || self.rows() != other.rows() {
             self.start.clone_from(&other.start);

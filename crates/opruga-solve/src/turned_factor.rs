@@ -13,8 +13,8 @@ use std::sync::Arc;
 
 /// The factor of a matrix with dense parts, in the frame of the body if there is one such part.
 ///
-/// If everything next to the dense part is the same in every frame (masses, nodes with all axes pinned), the factor does not
-/// depend on the frame, and is kept while the body rotates and moves.
+/// If everything next to the dense part (masses, nodes with all axes pinned) is the same in every frame, the factor does not depend on the frame. The
+/// factor is then kept while the body rotates and moves.
 #[derive(Default)]
 pub(crate) struct TurnedFactor {
     size: usize,
@@ -22,8 +22,8 @@ pub(crate) struct TurnedFactor {
     /// The rotation, row by row.
     frame: Vec<f64>,
     solver: Option<Solver>,
-    /// The bits of the data from which the factor was made, if these data are the same in every frame; and the dense matrix,
-    /// which keeps its address.
+    /// The bits of the data from which the factor was made, if these data are the same in every frame. Also the dense matrix, which keeps its
+    /// address.
     made_of: Vec<u64>,
     matrix: Option<Arc<Dense>>,
     /// The terms of a frame that follows its nodes, and the solutions for the vectors in [`SolvedBase`], which are kept as long

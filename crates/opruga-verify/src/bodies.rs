@@ -196,8 +196,8 @@ pub(crate) fn outward<const D: usize>(world: &World<D>, which: &[u32]) -> f64 {
     which.iter().map(of).sum::<f64>() / which.len() as f64
 }
 
-/// A component of the Cauchy stress of body 0 at a rest position. It is the value there of the quadratic polynomial that best fits the mean stresses
-/// of the nearby cells (patch recovery: Zienkiewicz and Zhu 1992).
+/// A component of the Cauchy stress of body 0 at a rest position. The quadratic polynomial that best fits the mean stresses of the nearby cells gives
+/// its value at this position (patch recovery: Zienkiewicz and Zhu 1992).
 pub(crate) fn stress_at<const D: usize>(world: &World<D>, at: [f64; D], [i, j]: [usize; 2]) -> Result<f64, Trouble> {
     let samples = cell_stresses(world).into_iter().map(|(middle, stress)| {
         let away: Vec<f64> = (0..D).map(|d| middle[d] - at[d]).collect();

@@ -72,8 +72,8 @@ pub enum Scale {
 /// The criterion by which a case passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Check {
-    /// The error at the finest level is within the tolerance. It also decreases from level to level, and over all levels it falls at least at this
-    /// order minus 0.2.
+    /// The error at the finest level is within the tolerance. The error also decreases from level to level, and its order over all levels is at least
+    /// this order minus 0.2.
     Order(f64),
     /// The error at the finest level is within the tolerance. This is used if the reference has too few digits for an order, or belongs to a slightly
     /// different body.

@@ -6,8 +6,8 @@ use opruga::draw::{Axis, Chart, DrawError, Level, Line, Marker, Nothing, Panel};
 /// The value that replaces an error of zero on a logarithmic axis.
 const NOTHING: f64 = 1e-17;
 
-/// The plot of a row as the text of an SVG file: its error over the size of cells or steps with the theoretical slope and the limit, or its values
-/// over a parameter beside the expected ones.
+/// The plot of a row as the text of an SVG file. The plot shows the error over the size of cells or steps, with the theoretical slope and the limit,
+/// or the values over a parameter beside the expected values.
 ///
 /// # Errors
 /// [`DrawError`] for a row without numbers.

@@ -15,8 +15,8 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Runs cases on several threads, each case on one thread, and returns their rows in the order of the cases.
 ///
 /// `done` is called for every row as it arrives. If `stop` is set, unfinished cases are omitted: no further case begins, and the function does not
-/// wait for running cases, because a case may take minutes. The results of running cases are discarded. These cases write nothing, and they end at
-/// the latest with the program.
+/// wait for running cases, because a case may take minutes. The results of cases that are still running are discarded. These cases write nothing, and
+/// they end at the latest with the program.
 pub fn run_all(cases: &[&'static Case], lab: &Lab, threads: usize, stop: &AtomicBool, done: &dyn Fn(&Row)) -> Vec<Row> {
     // Long cases begin first.
     let mut order: Vec<(usize, &'static Case)> = cases.iter().copied().enumerate().collect();

@@ -36,7 +36,7 @@ pub trait AnyScene {
     fn colliders(&self) -> &[ColliderBlueprint];
     /// The contact settings of the bodies; none if bodies pass through one another.
     fn contact(&self) -> Option<&ContactBlueprint>;
-    /// The length of the list of bodies. All body numbers are below it; a number may belong to a body that was removed.
+    /// The length of the list of bodies. All body numbers are below this length; a number may belong to a body that was removed.
     fn body_count(&self) -> usize;
     /// The body with a number, if there is one.
     fn body(&self, number: usize) -> Option<&dyn AnyBody>;

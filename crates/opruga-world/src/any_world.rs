@@ -67,7 +67,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     /// # Errors
     /// The errors of [`World::act`]; also if the command adds a body.
     fn act(&mut self, command: &CommandBlueprint<3>) -> Result<usize, WorldError>;
-    /// Gives the world a command of another scene: the last one that adds a body and has already begun. Returns its number.
+    /// Finds the last command of another scene that adds a body and has already begun, and gives this command to the world. Returns its number.
     ///
     /// # Errors
     /// The errors of [`World::act`]; also if the scene has no such command or has another dimension.

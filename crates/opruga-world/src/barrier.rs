@@ -55,8 +55,8 @@ impl<const D: usize> Meeting<D> {
         outcome
     }
 
-    /// Makes a step of length h that ends at a given time [s]. If the search does not find its end and the scene allows it, makes two steps of half
-    /// the length.
+    /// Makes a step of length h that ends at a given time [s]. If the search does not converge and the scene allows it, makes two steps of half the
+    /// length.
     fn advance_as_one(
         &mut self,
         islands: &mut [&mut Island<D>],

@@ -1,4 +1,4 @@
-//! The line search for bodies that a barrier keeps apart. It determines how long a correction may be.
+//! The line search for bodies that a barrier keeps apart. This search determines how long a correction may be.
 //!
 //! A correction ends before any pair meets, and the sum of all energies falls along it.
 
@@ -39,8 +39,8 @@ impl<const D: usize> Search<'_, '_, D> {
         slope
     }
 
-    /// Moves along the correction as far as the pairs allow and the sum of all energies falls. Returns the fraction of the correction that was
-    /// applied.
+    /// Moves along the correction as far as the pairs allow and as long as the sum of all energies falls. Returns the fraction of the correction that
+    /// was applied.
     pub(crate) fn go(&mut self, slope: f64) -> Result<f64, Refused> {
         for (p, of_point) in self.coordinates.iter().enumerate() {
             let from = &self.x[p];

@@ -194,8 +194,8 @@ impl<const D: usize> Search<'_, '_, D> {
         StepError::of(name, Refusal::NoFactor {}).into()
     }
 
-    /// Finds the common end, including friction. With a budget, friction depends on the normal forces at the start, and its multipliers converge over
-    /// several steps.
+    /// Finds the common end of the step, including friction. With a budget, friction depends on the normal forces at the start, and its multipliers
+    /// converge over several steps.
     pub(crate) fn find_end(&mut self, h: f64, multipliers: Vec<(u64, [f64; D])>) -> Result<(), Refused> {
         let mut before = Vec::new();
         self.look_ahead(h)?;
@@ -263,9 +263,9 @@ impl<const D: usize> Search<'_, '_, D> {
         changed <= SETTLED * most
     }
 
-    /// Minimises the sum at given friction by Newton's method. If `precise` is set, continues to the tolerance of the bodies. Otherwise makes a
-    /// single correction. Returns whether a minimum was found. After a single correction, this means that the bodies were in equilibrium before it,
-    /// to a fraction of their forces.
+    /// Minimises the sum at given friction by Newton's method. If `precise` is set, continues until the residual is below the tolerance of the
+    /// bodies. Otherwise makes a single correction. Returns whether a minimum was found. After a single correction, this means that the forces on the
+    /// bodies were in balance before it, to within a fraction of these forces.
     fn find_minimum(&mut self, precise: bool) -> Result<bool, Refused> {
         let (mut first, mut counted) = (0.0, 0);
         self.stretch = if precise { 1.0 } else { self.stretch };
@@ -327,7 +327,7 @@ impl<const D: usize> Search<'_, '_, D> {
         }
     }
 
-    /// The largest number of iterations of a body, and whether a search that has not converged by then is accepted.
+    /// The largest number of iterations of any body, and whether all bodies accept a search that has not converged by then.
     fn most_iterations(&self) -> (u32, bool) {
         let each = self.opened.iter().map(|open| open.step.most_iterations());
         each.fold((0, true), |(most, all), (iterations, accepts)| (most.max(iterations), all && accepts))

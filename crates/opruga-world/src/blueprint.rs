@@ -141,11 +141,11 @@ pub struct Surroundings<const D: usize> {
     pub gravity: [f64; D],
     /// Drag per unit of mass [1/s]: a = −drag·v. It slows rigid motion too.
     pub drag: f64,
-    /// The largest force on a node [N]. Each use of the limit is counted. None: no limit.
+    /// The largest force on a node [N]. Each use of the limit is counted. `None` means no limit.
     pub largest_force: Option<f64>,
-    /// The largest speed of a node [m/s]. Each use of the limit is counted. None: no limit.
+    /// The largest speed of a node [m/s]. Each use of the limit is counted. `None` means no limit.
     pub largest_velocity: Option<f64>,
-    /// A body is removed if all of its nodes are farther from the origin than this [m]. Removed bodies are counted. None: no limit.
+    /// A body is removed if all of its nodes are farther from the origin than this [m]. Removed bodies are counted. `None` means no limit.
     pub largest_distance: Option<f64>,
     /// Whether bodies at rest in a degenerate shape get a random displacement, so that they leave it. Such displacements are counted.
     pub unfold: bool,
@@ -164,7 +164,7 @@ pub struct BodyBlueprint<const D: usize> {
     pub velocity: [f64; D],
     /// Angular velocity about the centre of mass at the start [rad/s]: one number in 2D, three in 3D.
     pub angular_velocity: Vec<f64>,
-    /// Velocity gradient at the start, G = ∂v/∂x, row by row [1/s]. It adds G (x − c), where c is the centre of mass.
+    /// Velocity gradient at the start, G = ∂v/∂x, row by row [1/s]. It adds the velocity G (x − c) at the position x, where c is the centre of mass.
     pub velocity_gradient: [[f64; D]; D],
     /// Additional velocity of every node at the start [m/s], one row per node; empty: none.
     pub node_velocities: Arc<[[f64; D]]>,
@@ -172,13 +172,13 @@ pub struct BodyBlueprint<const D: usize> {
     pub mass: Mass,
     /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire, used only for a mass given by density [m].
     pub thickness: f64,
-    /// Its own integrator and parameters; none: that of the scene.
+    /// The integrator of this body and its parameters; `None` if it uses the integrator of the scene.
     pub integrator: Option<Values>,
     /// Its models and their parameters.
     pub models: Vec<Values>,
     /// Its pinned nodes.
     pub pins: Vec<PinBlueprint<D>>,
-    /// How it touches other bodies (`schema::BODY_CONTACT`); none: as the scene specifies.
+    /// How it touches other bodies (`schema::BODY_CONTACT`); `None` if the settings of the scene apply.
     pub contact: Option<Values>,
 }
 
@@ -285,7 +285,7 @@ pub enum LoadKind<const D: usize> {
     BodyForce([f64; D]),
     /// A force of the same size on every selected node, towards a fixed point.
     Central {
-        /// Its size [N]; negative: away from the point.
+        /// The size of the force [N]; a negative force points away from the point.
         value: f64,
         /// The point towards which the forces act [m].
         center: [f64; D],
@@ -310,7 +310,7 @@ pub enum Action<const D: usize> {
     Drag {
         /// The body, by its index in the list. Bodies that commands add are numbered after the others, in order of time.
         body: usize,
-        /// The node; none: the node, or the point of a facet, that is nearest to the pointer when the drag begins.
+        /// The node; `None` if it is the node, or the point of a facet, that is nearest to the pointer when the drag begins.
         node: Option<u32>,
         /// Whether the drag grabs the nearest point of a facet rather than a node.
         facet: bool,

@@ -1,5 +1,5 @@
-//! Bodies and commands that the program has added, as bytes. Snapshots contain them completely, so that removed bodies and finished commands need not
-//! be kept.
+//! Bodies and commands that the program has added, as bytes. Snapshots contain these bodies and commands completely, so that removed bodies and
+//! finished commands need not be kept.
 
 use crate::blueprint::{Action, BodyBlueprint, CommandBlueprint, Mass, PinBlueprint};
 use crate::bytes::{Reader, Writer};

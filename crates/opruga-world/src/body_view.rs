@@ -25,7 +25,7 @@ impl<const D: usize> World<D> {
         Ok(BodyView { world: self, number: self.resolve(handle)? })
     }
 
-    /// The number of the body of a handle. It stays the same while the body exists.
+    /// The number of the body of a handle. The number stays the same while the body exists.
     ///
     /// # Errors
     /// The errors of [`World::view`].

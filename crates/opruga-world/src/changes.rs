@@ -1,6 +1,6 @@
-//! Parameters of a scene that change during a run. Their values at the start are kept. A snapshot contains the differences from these values, so a
-//! snapshot of a changed scene can be restored in a world of the original scene, and an earlier snapshot in a changed world. This takes at most as
-//! much memory as the parameters of the scene, however often they are set.
+//! Parameters of a scene that change during a run. Their values at the start are kept. A snapshot contains the differences from these values.
+//! Therefore, a snapshot of a changed scene can be restored in a world of the original scene, and an earlier snapshot can be restored in a changed
+//! world. This takes at most as much memory as the parameters of the scene, however often they are set.
 
 use crate::at_start::AtStart;
 use crate::blueprint::{Surroundings, Time};
@@ -94,7 +94,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Updates islands and estimates after a change of the scene.
+    /// Updates the islands and the estimates after a change of the scene.
     fn follow(&mut self, touched: &Touched) -> Result<(), WorldError> {
         self.regroup(touched, &BTreeMap::new()).and_then(|()| self.check_stability())
     }

@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, PoisonError};
 
-/// The default largest force of a pull is that of the spring when it is stretched by this multiple of the size of the body.
+/// By default, the largest force of a pull is the force of its spring when stretched by this multiple of the size of the body.
 const FARTHEST_PULL: f64 = 10.0;
 
 impl<const D: usize> Action<D> {
@@ -85,7 +85,7 @@ impl<const D: usize> World<D> {
 
     /// Gives the world a command that begins now, as if the scene had contained it from the start; returns its number.
     ///
-    /// Commands of the scene that are due begin before it. The number stays the same until the world is rebuilt.
+    /// Commands of the scene that are due begin before this command. The number stays the same until the world is rebuilt.
     ///
     /// # Errors
     /// [`WorldError`] if its time is not that of the coming frame, or if it is refused. The command then has no effect.
@@ -206,7 +206,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Begins a command. Returns the body on which it acts from now on.
+    /// Begins a command. Returns the body on which the command acts from now on.
     fn begin(&mut self, number: usize) -> Result<Option<usize>, WorldError> {
         let command = self.running[number].command.clone();
         if let Some(body) = command.action.body()
@@ -264,7 +264,7 @@ impl<const D: usize> World<D> {
         select.resolve(&blueprint.mesh, &blueprint.translation)
     }
 
-    /// The node nearest to a point; or the corners of the nearest facet, with the weights of its nearest point.
+    /// The node nearest to a point or, if `facet` is set, the corners of the nearest facet with the weights of its nearest point.
     fn nearest(&self, body: usize, point: [f64; D], facet: bool) -> Vec<(u32, f64)> {
         let distance = |x: [f64; D]| (0..D).map(|d| (x[d] - point[d]) * (x[d] - point[d])).sum::<f64>();
         let mesh = Arc::clone(&self.blueprint.bodies[body].mesh);

@@ -6,7 +6,7 @@ use crate::warnings::{Warning, WorldWarning};
 use crate::world::World;
 
 impl<const D: usize> World<D> {
-    /// Turns the report of contacts on or off for the frames that follow. It is off at the start and then costs nothing.
+    /// Turns the report of contacts on or off for the frames that follow. The report is off at the start. While it is off, it costs nothing.
     pub fn report_contacts(&mut self, report: bool) {
         self.contacts = report.then(Vec::new);
     }

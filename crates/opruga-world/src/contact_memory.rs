@@ -1,7 +1,7 @@
 //! The state of contact that is kept from frame to frame: the impulses at the end of the last substep, which are the starting values of the next one.
 //!
-//! Impulses belong to pairs of features. Pushes, which are impulses that a step already includes, belong to nodes. Both are stored by the numbers of
-//! bodies in the scene, independently of clusters, in an order that depends only on bodies and features.
+//! Impulses belong to pairs of features. Pushes, which are impulses that a step already includes, belong to nodes. The memory stores both by the
+//! numbers of bodies in the scene, independently of clusters. Their order depends only on bodies and features.
 
 use crate::bytes::{Reader, Writer};
 use crate::clusters::Clusters;
@@ -23,7 +23,7 @@ pub(crate) struct Kept<const D: usize> {
 pub(crate) struct PairKey {
     /// The kind of the pair: see [`KINDS`].
     pub(crate) kind: u32,
-    /// Body and feature; for an obstacle, [`OBSTACLE`] plus its number in place of the body.
+    /// The body and the feature. For an obstacle, [`OBSTACLE`] plus the number of the obstacle takes the place of the body.
     pub(crate) first: [u32; 2],
     pub(crate) second: [u32; 2],
 }

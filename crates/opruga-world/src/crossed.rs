@@ -86,7 +86,7 @@ impl<const D: usize> World<D> {
         found
     }
 
-    /// The bodies that contact keeps apart, and the laws of their pairs; without a section `[contact]` all bodies, and no laws.
+    /// The bodies that contact keeps apart, and the laws of their pairs. Without a section `[contact]`, these are all bodies, and there are no laws.
     fn kept_apart(&self) -> (Vec<usize>, Option<Laws>) {
         let there = (0..self.blueprint.bodies.len()).filter(|body| self.handle(*body).is_some());
         let contact = self.blueprint.contact.as_ref();

@@ -26,8 +26,8 @@ fn join(hash: u64, other: u64) -> u64 {
     hash ^ hash >> 32
 }
 
-/// Eight sums of the bits of numbers, and eight sums of these sums, which depend on the order (Fletcher). They need only additions, which every set
-/// of vector instructions has for 64 bits.
+/// Eight sums of the bits of numbers, and eight sums of these sums, which depend on the order (Fletcher). These sums need only additions of 64 bits,
+/// which every set of vector instructions has.
 ///
 /// The upper half of a number is combined with its lower half, so that different numbers have terms that differ by less than 2³². Two changed numbers
 /// in one lane therefore never cancel: if their terms add up to zero, the sums of sums differ by one term times the distance, which is not a multiple

@@ -39,7 +39,7 @@ pub enum Input<const D: usize> {
         /// The name of the body.
         name: String,
     },
-    /// [`World::act`], [`World::lead`] or [`World::finish`], which cannot be written as bytes: their commands are saved with the scene instead.
+    /// [`World::act`], [`World::lead`] or [`World::finish`]. These calls cannot be written as bytes; their commands are saved with the scene instead.
     Act,
     /// [`World::add_force`]: a law of the program, which cannot be written as bytes.
     Force {

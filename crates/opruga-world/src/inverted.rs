@@ -1,9 +1,9 @@
 //! Cells of finite elements that are inverted in the present state, entirely or in part.
 //!
-//! Two checks are made. One uses the integration points with the deformation that the law sees there, which for boxes does not depend on the shape
-//! alone. The other uses J of the shape over the whole cell. For quadratic cells and boxes, J is a quotient of polynomials: its coefficients may
-//! prove that it is positive everywhere, or one value may disprove this ([`opruga_mesh::least_jacobian`]). A cell may be folded at a corner although
-//! none of its integration points is inverted. No force then shows the fold.
+//! Two checks are made. One check uses the integration points with the deformation that the law sees there; for boxes, this deformation does not
+//! depend on the shape alone. The other uses J of the shape over the whole cell. For quadratic cells and boxes, J is a quotient of polynomials. Its
+//! coefficients may prove that J is positive everywhere, or a single value may disprove this ([`opruga_mesh::least_jacobian`]). A cell may be folded
+//! at a corner although none of its integration points is inverted. No force then shows the fold.
 
 use crate::warnings::{CellHint, InvertedCells, UnfoldHint, Warning, WorldWarning};
 use crate::world::World;
@@ -14,7 +14,7 @@ use opruga_mesh::{jacobian_at, least_jacobian};
 enum Found {
     /// The cell is inverted; J has this value at the point at which it is inverted.
     Inverted(f64),
-    /// Degenerate somewhere, or nearly so: J is as small as this, and may be negative.
+    /// Degenerate or nearly degenerate somewhere: J is as small as this value, which may be negative.
     Nearly(f64),
 }
 
@@ -69,8 +69,8 @@ impl<const D: usize> World<D> {
         Some(Warning::new(warning, count + uncertain))
     }
 
-    /// The results for the shapes of the cells of a body, in the order of its cells. Cells without a positive J at rest, such as those with nodes at
-    /// a quarter of their sides, have no result, because their J has no sign to keep.
+    /// The results for the shapes of the cells of a body, in the order of its cells. Some cells, such as those with nodes at a quarter of their
+    /// sides, have no positive J at rest. Such cells have no result, because their J has no sign to keep.
     fn shapes_of_cells(&self, body: usize) -> Vec<Option<Found>> {
         let mesh = &self.blueprint.bodies[body].mesh;
         let (mut now, mut rest) = (Vec::new(), Vec::new());

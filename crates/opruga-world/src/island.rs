@@ -14,7 +14,7 @@ use opruga_core::system::{Member, System, Work8, Workspace};
 use opruga_math::Lane;
 use std::sync::Arc;
 
-/// One body, or up to eight alike bodies side by side.
+/// One body, or up to eight bodies of the same kind side by side.
 #[derive(Debug)]
 pub(crate) struct Island<const D: usize> {
     pub(crate) system: System<D>,
@@ -158,14 +158,14 @@ impl<const D: usize> Island<D> {
     }
 
     /// Whether this many threads work on this island together. The island must be large, and its integrator must support this. If there are fewer
-    /// islands than threads, it is enough that a model supports it, although in an explicit step only a part of the work is shared.
+    /// islands than threads, support by a model is enough, although the threads then share only a part of the work of an explicit step.
     pub(crate) fn is_shared_by(&self, threads: usize, islands: usize) -> bool {
         let models = || self.system.members.iter().any(|member| member.potential.properties().shares_threads);
         let known = || self.integrator.shares_threads() || islands < threads && models();
         threads > 1 && self.system.nodes >= SHARED_FROM && known()
     }
 
-    /// Updates what is computed from the state after a change from outside.
+    /// Updates all quantities that depend on the state, after the state was changed from outside.
     pub(crate) fn refresh(&mut self) {
         self.survey = survey(&self.system);
         self.stock = take_stock(&mut self.system);

@@ -64,7 +64,7 @@ impl<const D: usize> Island<D> {
         self.set_out(plan, substep);
     }
 
-    /// Refuses a substep that is made jointly with others.
+    /// Records that a substep made jointly with other islands has failed, and restores the state before this substep.
     pub(crate) fn refuse(&mut self, error: StepError) {
         self.outcome = Err(error);
         self.restore();

@@ -306,8 +306,8 @@ const ROUNDING: f64 = 1e-13;
 const CANCELLATION: f64 = 1e-14;
 
 impl<const D: usize> Survey<D> {
-    /// The energy of motions that consist of rounding errors [J]: in a step of h [s], every node has an error of one rounding of the largest
-    /// coordinate.
+    /// The energy of motions that consist of rounding errors [J]. In a step of h [s], every node is assumed to have an error of one rounding of the
+    /// largest coordinate.
     fn of_rounding(&self, h: f64) -> f64 {
         let ends = self.position.iter().flatten();
         let farthest = ends.fold(0.0, |most: f64, x| most.larger(x.abs()));
@@ -366,7 +366,7 @@ impl Flows {
         self.open_frames += u64::from(energy.closure > LARGEST_CLOSURE && has_energy());
         self.damped_frames += u64::from(energy.is_damped_by_rules());
     }
-    /// The ledger for the present stock, after steps of h [s].
+    /// Makes the ledger from the present energies, after steps of h [s].
     pub(crate) fn ledger<'a, const D: usize>(
         &mut self,
         h: f64,

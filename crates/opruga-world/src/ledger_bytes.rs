@@ -1,4 +1,4 @@
-//! The flows of the ledger in the bytes of a snapshot, and back.
+//! Writes the flows of the ledger to the bytes of a snapshot, and reads them back.
 
 use crate::bytes::{Reader, Writer};
 use crate::error::WorldError;

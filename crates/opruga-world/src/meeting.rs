@@ -50,7 +50,7 @@ pub(crate) struct Pushed<const D: usize> {
     pub(crate) indices: Vec<u32>,
     /// The impulses that were applied in its step, by its points [N s].
     pub(crate) applied: Vec<(usize, [f64; D])>,
-    /// The number of the matrix that gives its response to impulses; none if it has not been requested since the last step.
+    /// The number of the matrix that gives the response of the body to impulses; `None` if no response has been requested since the last step.
     pub(crate) matrix: Option<u64>,
 }
 

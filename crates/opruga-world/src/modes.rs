@@ -100,7 +100,7 @@ struct SmallMotions<const D: usize> {
     mass: Vec<f64>,
     /// Whether a pin holds an axis.
     pinned: Vec<bool>,
-    /// Nodes none of whose axes are pinned.
+    /// Whether a node has no pinned axis.
     free: Vec<bool>,
     /// For every node, the projector that removes its pinned axes.
     projectors: Vec<[[f64; D]; D]>,
@@ -109,8 +109,8 @@ struct SmallMotions<const D: usize> {
 }
 
 impl<const D: usize> SmallMotions<D> {
-    /// The small motions of a system whose forces have been computed in its present state. Refuses a system without frequencies, and a search for
-    /// `count` modes that needs too much memory.
+    /// The small motions of a system whose forces have been computed in its present state. Refuses a system without natural frequencies, and a search
+    /// for `count` modes that needs too much memory.
     fn about(system: System<D>, count: usize) -> Result<Self, Refusal> {
         let mut stiffness = BlockMatrix::<D>::default();
         stiffness.assemble(system.nodes, 0, |matrix| {

@@ -2,7 +2,7 @@
 
 use crate::world::World;
 
-/// One number of every node of a body, as stored in memory. The nodes of up to eight alike bodies are interleaved.
+/// One number of every node of a body, as stored in memory. The nodes of up to eight bodies of the same kind are interleaved.
 #[derive(Clone, Copy, Debug)]
 pub struct Strided<'w> {
     column: &'w [f64],

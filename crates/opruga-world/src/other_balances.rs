@@ -3,16 +3,16 @@
 //! A body may come to rest folded, inverted, contracted to a point or snapped through, although no present force would take it there. The cells do
 //! not show this: an arch that has snapped through consists of good cells. The energy shows it. Let fᵢ = ∂U/∂xᵢ be the forces that hold the shape
 //! against its cells, and yᵢ the rest shape, moved as a rigid body to its best fit. A convex energy satisfies U ≤ Σ fᵢ·(xᵢ − yᵢ) ≤ Σ |fᵢ| |xᵢ − yᵢ|.
-//! The energy of solids that rotate is not convex, but bodies that are bent or stretched from outside have large displacements and satisfy the bound:
-//! U is at most half of this bound at small strain, and a small part of it in bending with large rotations. A folded body, in contrast, keeps its
-//! energy although the forces on it are small, or act at nodes that have hardly moved.
+//! The energy of solids that rotate is not convex. Nevertheless, bodies that are bent or stretched from outside have large displacements and satisfy
+//! the bound. U is at most half of this bound at small strain, and a small part of it in bending with large rotations. A folded body, in contrast,
+//! keeps its energy although the forces on it are small, or act at nodes that have hardly moved.
 //!
 //! The best fit is the least-squares fit with the weights |fᵢ|: it places the rest shape where something holds the body.
 //!
-//! Pins that move nodes do work along their whole path, whatever the distance between its ends. A bar that was twisted by three full turns contains
-//! the work of its pins, although its ends are at the same positions as those of the bar at rest. A node that pins have moved therefore counts with
-//! the length sᵢ of its path, minus a rigid motion of all pins, if that is longer than |xᵢ − yᵢ|. If the forces grew along the path, U ≤ Σ |fᵢ| sᵢ.
-//! Because the forces may also have decreased along it, up to 2 sᵢ is allowed.
+//! Pins that move nodes do work along their whole path, whatever the distance between its ends. A bar that was twisted by three full turns stores the
+//! work of its pins, although its ends have the same positions as at rest. The length sᵢ of the path of a node that pins have moved is measured after
+//! a rigid motion of all pins is subtracted. If sᵢ is longer than |xᵢ − yᵢ|, the node therefore counts with sᵢ. If the forces grew along the path, U
+//! ≤ Σ |fᵢ| sᵢ. Because the forces may also have decreased along it, up to 2 sᵢ is allowed.
 
 use crate::pin_travel::travel_lengths;
 use crate::warnings::{Warning, WorldWarning};
@@ -57,7 +57,7 @@ struct Node {
     velocity: Vector,
     force: Vector,
     mass: f64,
-    /// The length of the path along which pins have moved it [m].
+    /// The length of the path along which pins have moved the node [m].
     led: f64,
 }
 
@@ -70,12 +70,12 @@ impl<const D: usize> World<D> {
     }
 
     /// A warning (`cells.other_balance`) about bodies of finite elements that are nearly at rest and contain more energy than the forces on them
-    /// account for relative to their own shape: they have snapped through, or are folded, inverted or twisted. None if there is no such body. Every
-    /// call computes it again.
+    /// account for, measured from their own rest shape. Such bodies have snapped through, or are folded, inverted or twisted. None if there is no
+    /// such body. Every call computes it again.
     ///
     /// Let fᵢ be the forces that hold the shape [N], and yᵢ the rest shape, moved as a rigid body to the best fit with the present positions xᵢ. A
-    /// body is reported if its energy is more than Σ |fᵢ| |xᵢ − yᵢ|. A body that loads, pins, obstacles or gas have deformed contains at most half of
-    /// that if its strain is small. Bodies of the material `linear`, which has only one shape without energy, are never reported.
+    /// body is reported if its energy is more than Σ |fᵢ| |xᵢ − yᵢ|. If loads, pins, obstacles or gas have deformed a body and its strain is small,
+    /// its energy is at most half of this sum. Bodies of the material `linear`, which has only one shape without energy, are never reported.
     pub fn other_balances(&self) -> Option<Warning> {
         let mut found: Vec<Unaccounted> = Vec::new();
         for island in &self.islands {
@@ -171,8 +171,8 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// The energies [J] of those models of a system by which its bodies are judged, and the forces [N] of these models on all nodes at zero velocity;
-/// none if they are not defined.
+/// The energies [J] of the models by which the bodies of a system are judged, and the forces [N] of these models on all nodes at zero velocity;
+/// `None` if these are not defined.
 fn elastic<const D: usize>(system: &System<D>, time: f64) -> Option<([f64; WIDTH], Columns<D>)> {
     let still = Columns::<D>::zeros(system.index_count());
     let mut forces = Columns::<D>::zeros(system.index_count());

@@ -13,7 +13,7 @@ use opruga_collide::{Pressed, Rubbing, Surface};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PairStiffness<const D: usize> {
     pairs: Vec<Pair<D>>,
-    /// First coordinates of nodes and their weights, ordered by pair.
+    /// The first coordinate of each node and the weight of the node, ordered by pair.
     nodes: Vec<(u32, f64)>,
 }
 

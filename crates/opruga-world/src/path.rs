@@ -7,7 +7,7 @@ use opruga_math::{Lane, Pack, Strip, WIDTH, Work, lanes};
 /// A box, given by its lowest and highest corner [m].
 pub(crate) type Bounds<const D: usize> = [[f64; D]; 2];
 
-/// The minimum and maximum of vectors of nodes: for a single body in eight parts, for a batch in each lane.
+/// The minimum and maximum of vectors of nodes. A single body has them in eight parts, a batch has them for each lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Path<const D: usize> {
     box_of_lanes: [[[f64; WIDTH]; D]; 2],

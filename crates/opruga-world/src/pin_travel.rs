@@ -6,8 +6,8 @@ use opruga_solve::dense::symmetric_eigen;
 /// Rotations that the positions of the pins do not determine have eigenvalues below this, relative to the largest.
 const NO_TURN: f64 = 1e-9;
 
-/// The lengths of the paths of pins from the start of their motions to a time [m], along the axes that they hold. From every piece of the motions the
-/// nearest rigid motion is subtracted, so pins that are moved or rotated as a whole have zero length.
+/// The lengths of the paths of pins from the start of their motions to a time [m], along the axes that they hold. The nearest rigid motion is
+/// subtracted from every piece of the motions, so the paths of pins that move or rotate as a whole have zero length.
 pub(crate) fn travel_lengths<const D: usize>(pins: &[&Pin<D>], time: f64) -> Vec<f64> {
     let mut out = vec![0.0; pins.len()];
     if pins.iter().all(|pin| pin.motion.is_empty()) {

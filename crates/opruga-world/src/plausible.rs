@@ -25,9 +25,9 @@ pub(crate) const SAG: &str = "units.sag";
 /// springs in a row; in a solid, there are N^⅓ times as many. So sag ≈ M g / k or M g / (k N^⅓). An outline sags more, but gas usually supports it,
 /// so it is treated as a surface.
 ///
-/// If only the boundary of a solid has nodes, the stiffness grows in proportion to the wave number, and not to its square. So the fastest motion of a
-/// node is that of one spring to its surroundings, k ≈ m ω². A cube of n × n × n springs has N = 6 n² nodes on its boundary: sag ≈ M g / (k √(N/6))
-/// in space.
+/// If only the boundary of a solid has nodes, the stiffness grows in proportion to the wave number, and not to its square. The fastest motion of a
+/// node is therefore that of one spring between the node and its surroundings, with k ≈ m ω². A cube of n × n × n springs has N = 6 n² nodes on its
+/// boundary: sag ≈ M g / (k √(N/6)) in space.
 pub(crate) fn sag<const D: usize>(body: &BodyBlueprint<D>, gravity: &[f64; D], spectrum: &Spectrum) -> Option<Warning> {
     let masses = node_masses(body);
     let (nodes, mass) = (masses.len() as f64, masses.iter().sum::<f64>());
@@ -155,7 +155,7 @@ impl<const D: usize> World<D> {
 const SHALLOW: f64 = 1e-6;
 
 impl<const D: usize> World<D> {
-    /// Warns about bodies whose free nodes start inside an obstacle. The first step puts these nodes on its surface, which may fold the body or throw
+    /// Warns about bodies whose free nodes start inside an obstacle. The first step puts these nodes on its surface, which may fold the body or fling
     /// it away. Copies in the same obstacle get one warning, which names the deepest of them.
     pub(crate) fn warn_of_buried_bodies(&mut self) {
         let Some(colliders) = self.colliders.clone() else { return };

@@ -12,7 +12,7 @@ const MOST_PROBLEMS: usize = 200;
 
 impl<const D: usize> World<D> {
     /// The errors from building a world of this blueprint: the integrator, every obstacle, and every kind of body with its models, loads and stable
-    /// step, each separately. Copies of a body are one kind. Empty if there are no errors.
+    /// step, each separately. Copies of a body count as one kind. Empty if there are no errors.
     pub fn problems(blueprint: &Blueprint<D>, options: &Options, registry: &Arc<Registry<D>>) -> Vec<WorldError> {
         let options = Options { threads: 1, ..options.clone() };
         let part = |bodies, colliders, loads| blueprint.part(bodies, colliders, loads);

@@ -1,4 +1,5 @@
-//! Inputs of a program to a world that are not part of its scene: moved nodes and added forces. They are recorded on request and can be repeated.
+//! Inputs of a program to a world that are not part of its scene: moved nodes and added forces. A world records such inputs on request and can repeat
+//! them.
 
 use crate::error::WorldError;
 use crate::inputs::Input;

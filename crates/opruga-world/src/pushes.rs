@@ -18,13 +18,13 @@ use opruga_collide::{Obstacles, Respond, Touching, Trouble};
 use opruga_core::system::Workspace;
 use opruga_math::{Lane, WIDTH};
 
-/// Pairs of a number of rounds and the tolerance that applies until that number is reached. Steps and contact agree if no point ends farther than the
-/// tolerance, relative to the thickness of surfaces, from the position that the impulses should give it. Exact steps reach the first tolerance in two
-/// or three rounds, and steps with a budget the second one. If contacts, or the nodes that obstacles hold, change in every round, the last tolerance
-/// is sufficient; surfaces begin to overlap at this size.
+/// Each pair is a number of rounds and the tolerance that applies until this number is reached. Steps and contact agree if no point ends farther than
+/// the tolerance, relative to the thickness of surfaces, from the position that the impulses should give it. Exact steps reach the first tolerance in
+/// two or three rounds, and steps with a budget reach the second tolerance. If contacts, or the nodes that obstacles hold, change in every round, the
+/// last tolerance is sufficient; surfaces begin to overlap at this size.
 const AGREED: [(usize, f64); 3] = [(3, 1e-7), (6, 1e-4), (MOST_ROUNDS, 1e-2)];
 
-/// The same pairs for the case that all bodies have a budget: surfaces with a thickness keep half of it between them.
+/// The same pairs for bodies that all have a budget. Surfaces with a thickness then keep half of it between them.
 const AGREED_IN_BUDGET: [(usize, f64); 1] = [(MOST_ROUNDS, 0.5)];
 
 /// The maximum number of rounds.
@@ -100,7 +100,7 @@ impl<const D: usize> Meeting<D> {
         self.mixed.clear();
     }
 
-    /// Ends a frame: queries of bodies between frames do not include contact forces.
+    /// Ends a frame and removes the contact forces, so that queries between frames do not include them.
     pub(crate) fn end(&mut self, islands: &mut [&mut Island<D>]) {
         self.pushed.iter().for_each(|pushed| islands[pushed.island].system.pushes = None);
     }
@@ -195,8 +195,8 @@ impl<const D: usize> Meeting<D> {
         true
     }
 
-    /// Lets contact change velocities after the steps, for the case that steps and contact do not agree. If all bodies of the meeting have implicit
-    /// integrators, they keep their last result, which is close. If bodies with explicit integrators have also responded to the impulses, or if a
+    /// Lets contact change velocities after the steps if steps and contact do not agree. If all bodies of the meeting have implicit integrators, they
+    /// keep their last result, which nearly agrees with contact. If bodies with explicit integrators have also responded to the impulses, or if a
     /// step failed, all return to a step without contact forces.
     pub(crate) fn part(&mut self, islands: &mut [&mut Island<D>], step: &Substep<'_, D>) {
         let failed = self.pushed.iter().any(|pushed| islands[pushed.island].outcome.is_err());

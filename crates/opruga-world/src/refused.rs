@@ -13,7 +13,7 @@ pub struct RefusedCommand<'w> {
     pub sets: Option<&'w str>,
     /// The name of the body that it adds or removes.
     pub body: Option<&'w str>,
-    /// Whether a command of the scene had set the substeps by then.
+    /// Whether a command of the scene had already set the number of substeps.
     pub substeps_were_set: bool,
 }
 

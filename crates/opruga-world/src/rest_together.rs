@@ -8,12 +8,12 @@
 //! end of the correction follow from the gaps at x and the answers (K + σM)⁻¹ of all bodies, as in a common step of implicit integrators.
 //!
 //! Newton's method finds the equilibrium of all bodies at once. Positions and contact forces are unknowns of the same linear problem, so a body that
-//! only lies on others is supported by them in every correction. If each body found its own end under given forces instead, errors of these forces
-//! would move it as far as σ permits.
+//! only lies on others is supported by them in every correction. If each body instead found its own end of the correction under given forces, errors
+//! of these forces would move the body as far as σ permits.
 //!
 //! σ ([`Staying`]) falls as the forces at the end of corrections approach the predicted ones. Friction opposes the sliding of each correction.
 //!
-//! Contact within a correction is solved by the method of the same publication as for implicit integrators (see `pushes.rs`).
+//! Contact within a correction is solved as for implicit integrators, by the method of the same publication (see `pushes.rs`).
 
 use crate::barrier_search::{Opened, Refused};
 use crate::island::Island;
@@ -26,11 +26,12 @@ use opruga_core::integrator::next_matrix_number;
 use opruga_core::system::{System, Workspace};
 use opruga_math::Lane;
 
-/// The largest error of the predicted forces at the end of a correction, relative to the forces that act in it, and the error below which σ falls.
+/// Two limits for the error of the predicted forces at the end of a correction, relative to the forces that act in it: the largest allowed error, and
+/// the error below which σ falls.
 const FORESEEN: f64 = 0.5;
 const WELL_FORESEEN: f64 = 0.1;
 
-/// The factor by which σ grows if a correction was not predicted well, and the largest σ; nodes then hardly move.
+/// The factor by which σ grows if a correction was not predicted well, and the largest σ, at which nodes hardly move.
 const HARDER: f64 = 16.0;
 const MOST: f64 = 1e6;
 
@@ -44,7 +45,8 @@ const LONGEST: f64 = 0.5;
 /// The largest correction after which the bodies count as being at rest, relative to the thickness of surfaces.
 const AT_REST: f64 = 1e-7;
 
-/// The final residual, relative to the forces on a body, that is accepted if rounding keeps it from falling further in this many corrections.
+/// The residual, relative to the forces on a body, that is accepted if rounding keeps it from falling further, and the number of corrections after
+/// which it is accepted.
 const NEARLY_BALANCED: f64 = 1e-6;
 const MOST_AT_REST: usize = 10;
 
@@ -62,8 +64,8 @@ struct Body<const D: usize> {
     /// The residual, and the size of the forces that balance [N].
     rest: f64,
     size: f64,
-    /// The part of the residual that is due to rounding of positions [N]. Without this floor, a body without forces would compare rounding errors
-    /// with each other and keep all others from equilibrium (`bodies_without_forces_do_not_keep_others_from_their_balance`).
+    /// The part of the residual that is due to rounding of positions [N]. Without this floor, a body without forces would be judged by its rounding
+    /// errors and would keep all others from equilibrium (`bodies_without_forces_do_not_keep_others_from_their_balance`).
     rounding: f64,
     /// Whether obstacles hold other nodes than before, or hold them differently.
     constraints_changed: bool,
@@ -201,7 +203,7 @@ impl<const D: usize> Respond<D> for Answers<'_, D> {
 }
 
 impl<const D: usize> Meeting<D> {
-    /// Brings bodies at rest into their common equilibrium. If there is none, the outcome of an island contains the error.
+    /// Brings bodies at rest into their common equilibrium. If there is no such equilibrium, the outcome of an island contains the error.
     pub(crate) fn come_to_balance(
         &mut self,
         islands: &mut [&mut Island<D>],

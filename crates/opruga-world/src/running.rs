@@ -23,7 +23,8 @@ pub(crate) struct Running<const D: usize> {
     pub(crate) path: Arc<RwLock<Vec<Vec<f64>>>>,
     /// Whether it was given by [`World::act`] and belongs to the commands of the scene.
     pub(crate) acted: bool,
-    /// Whether it was given by [`World::command`]: it comes after the commands of the scene, and nothing is kept of it once it is over.
+    /// Whether the command was given by [`World::command`]. Such a command comes after the commands of the scene, and the world keeps nothing of it
+    /// once it is over.
     pub(crate) given: bool,
     /// The generation of the body that it adds, if it belongs to the scene.
     pub(crate) generation: u64,

@@ -19,7 +19,7 @@ pub(crate) struct SceneContact<const D: usize> {
     made_for: MadeFor<D>,
     /// The bodies, by their index in the scene, ascending. The numbers in the other fields refer to this list.
     pub(crate) bodies: Vec<usize>,
-    /// Island and lane of each.
+    /// The island and the lane of each body.
     pub(crate) seats: Vec<(usize, usize)>,
     /// Their integrators: equal numbers mean the same integrator.
     pub(crate) rules: Vec<u32>,
@@ -186,7 +186,7 @@ impl Partition {
     }
 
     /// Joins bodies whose swept boxes come close to one another, and lists the obstacles close to them; returns whether there are new ones. `order`
-    /// is a workspace.
+    /// is scratch memory.
     pub(crate) fn join<const D: usize>(
         &mut self,
         scene: &SceneContact<D>,

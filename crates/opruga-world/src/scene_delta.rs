@@ -99,7 +99,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Restores the scene at the start and applies the differences in these bytes. Bodies that commands add are those of the given commands.
+    /// Restores the scene at the start and applies the differences in these bytes. Bodies that commands add come from the given commands.
     pub(crate) fn take_delta(&mut self, reader: &mut Reader<'_>, commands: &[Running<D>]) -> Result<(), WorldError> {
         let known: Vec<Arc<Mesh<D>>> = self.blueprint.bodies.iter().map(|body| Arc::clone(&body.mesh)).collect();
         self.undo_all();

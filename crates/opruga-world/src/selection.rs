@@ -9,7 +9,7 @@ const TOLERANCE: f64 = 1e-9;
 impl<const D: usize> Selector<D> {
     /// The numbers of the selected nodes, ascending. Node i is at `mesh.positions[i] + translation`.
     ///
-    /// Numbers beyond the last node, and groups that the mesh does not have, select nothing.
+    /// Node numbers beyond the last node select nothing, and neither do groups that the mesh does not have.
     pub fn resolve(&self, mesh: &Mesh<D>, translation: &[f64; D]) -> Vec<u32> {
         let (low, high) = extent(mesh);
         let reach = (0..D).map(|a| high[a] - low[a]).fold(0.0, |m, x| if x > m { x } else { m }) * TOLERANCE;

@@ -444,7 +444,7 @@ fn space(shape: &Values, transform: &Transform<'_>) -> Result<Made<3>, MeshError
     Ok(Made { mesh, flipped: false, loss })
 }
 
-/// The shapes of both dimensions.
+/// The shapes that exist in both dimensions.
 fn either<const D: usize>(shape: &Values) -> Result<Mesh<D>, MeshError> {
     match shape.kind() {
         "line" => Mesh::line(shape.vector("from"), shape.vector("to"), number(shape, "segments")),

@@ -105,9 +105,9 @@ fn slender<const D: usize>(body: &BodyBlueprint<D>) -> Option<Slender> {
     (beyond > 0.5 * volume).then(|| Slender { length: lengths / beyond, thickness, limit })
 }
 
-/// The thickness of a body at its thinnest [m]: its extent along its shortest axis of inertia, or, if it is curved or hollow, twice its volume over
-/// its surface, which is the thickness of a plate and of a shell. The shortest extent of a block in D dimensions is at most 2D times its volume over
-/// its surface.
+/// The thickness of a body at its thinnest [m]. It is the extent along the shortest axis of inertia or, if the body is curved or hollow, twice the
+/// volume divided by the surface, which is the thickness of a plate and of a shell. The shortest extent of a block in D dimensions is at most 2D
+/// times its volume over its surface.
 fn thickness<const D: usize>(mesh: &Mesh<D>, volume: f64) -> Option<f64> {
     let mut surface = 0.0;
     for facet in &mesh.facets {

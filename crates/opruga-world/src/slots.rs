@@ -7,8 +7,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A body of one world, by number and generation.
 ///
-/// No two bodies that a program or a user adds to a world have the same generation, even if one takes the slot of another, or if a restored snapshot
-/// has taken the world back to a time before one of them was added. A handle therefore refers to its own body or to none, never to another one.
+/// No two bodies that a program or a user adds to a world have the same generation. This holds even if one takes the slot of another, or if a
+/// restored snapshot has taken the world back to a time before one of them was added. A handle therefore refers to its own body or to none, never to
+/// another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BodyHandle {
     /// The slot in the list of bodies.

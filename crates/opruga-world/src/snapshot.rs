@@ -18,7 +18,7 @@ use std::sync::atomic::Ordering;
 
 const VERSION: u64 = 10;
 /// Earlier versions that can be read. The first is the previous version, which has no state of contact. The second is the version before it, which
-/// has no names of the channels of a history. It can be read only if no integrator kept anything.
+/// has no names of the channels of a history. A snapshot of that version can be read only if no integrator kept any data.
 const BEFORE: [u64; 2] = [9, 8];
 
 impl<const D: usize> World<D> {
@@ -133,8 +133,8 @@ impl<const D: usize> World<D> {
         Ok(Head { version, frames: reader.count()?, delta: reader.bytes()? })
     }
 
-    /// Reads the bodies of the blueprint, the commands, and the ledger from a snapshot. The commands are known; with `other_future`, those that had
-    /// not begun may differ.
+    /// Reads the bodies of the blueprint, the commands, and the ledger from a snapshot. `commands` are those of the scene. With `other_future`, the
+    /// commands that had not begun at the time of the snapshot may differ.
     fn read_rest(
         &self,
         reader: &mut Reader<'_>,
@@ -260,7 +260,7 @@ impl<const D: usize> World<D> {
         commands.iter().zip(&rest.progress).map(running).chain(rest.given.iter().cloned()).collect()
     }
 
-    /// Restores a snapshot that differs only in motion; the islands are kept. Returns false if more differs.
+    /// Restores a snapshot that differs only in motion; the islands are kept. Returns false if anything else differs.
     fn go_to_alike(&mut self, bytes: &[u8], commands: &[Running<D>], other_future: bool) -> Result<bool, WorldError> {
         let mut reader = Reader(bytes);
         let Head { version, frames, delta } = Self::read_head(&mut reader)?;

@@ -64,8 +64,8 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Steps all islands through the frame, on the available threads. Every island keeps its own outcome; the returned error is that of bodies that
-    /// touch, with its time [s].
+    /// Steps all islands through the frame, on the available threads. Every island keeps its own outcome. The function itself returns only an error
+    /// of bodies that touch, with its time [s].
     fn step_islands(&mut self) -> Result<(), (Trouble, f64)> {
         let plan = FramePlan {
             colliders: self.colliders.as_ref(),
@@ -180,7 +180,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Reverts to the last good frame, from a frame whose states are finite but whose sums are not.
+    /// Reverts to the last good frame after a frame whose states are finite but whose sums are not.
     fn take_back_frame(&mut self) -> WorldError {
         self.restore_islands(|_| true);
         self.frames -= 1;

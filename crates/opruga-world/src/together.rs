@@ -1,5 +1,4 @@
-//! A frame of bodies that may touch: their clusters are stepped through it substep by substep. All other bodies are stepped as
-//! if they were alone.
+//! Steps bodies that may touch through a frame. Their clusters advance substep by substep. All other bodies are stepped as if they were alone.
 
 use crate::blueprint::Blueprint;
 use crate::clusters::{Clusters, Group, Progress};
@@ -40,8 +39,7 @@ struct Hands<'a, const D: usize> {
 ///
 /// If bodies of different groups come close to one another, both groups return to the start of the frame and are stepped through it together.
 ///
-/// # Errors
-/// [`Trouble`] if more pairs may touch than the scene allows, or if pins and obstacles move bodies through one another; with the time [s].
+/// [`Trouble`], with its time [s], if more pairs may touch than the scene allows, or if pins and obstacles move bodies through one another.
 pub(crate) fn frame<const D: usize>(
     clusters: &mut Clusters<D>,
     (blueprint, memory, reported): (&Blueprint<D>, &ContactMemory<D>, bool),
@@ -204,7 +202,7 @@ impl<const D: usize> Hands<'_, D> {
         if self.threaded { rayon::current_num_threads() } else { 1 }
     }
 
-    /// Runs work on an island in the workspace of the thread; for a large island, on all threads.
+    /// Runs work on an island in the workspace of the thread. All threads work together on a large island.
     fn lend(&self, island: &mut Island<D>, work: impl Fn(&mut Island<D>, &mut Workspace<D>) + Sync) {
         let thread = if self.pooled { rayon::current_thread_index().unwrap_or(0) } else { 0 };
         let number = self.threads();

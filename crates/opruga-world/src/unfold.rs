@@ -7,21 +7,22 @@
 //! two displacements, the body has time to leave the shape. Every displacement is counted. A degenerate shape that remains after the last
 //! displacement is counted too.
 //!
-//! In statics a frame that ends in such a shape is solved again: first from its start, with the motion of pins and the loads divided into parts,
-//! because smaller steps may avoid a fold that one large step makes; then from displaced shapes, up to three times.
+//! In statics, a frame that ends in a degenerate shape is solved again. The first attempt begins at the start of the frame and divides the motion of
+//! pins and the loads into parts, because smaller steps may avoid a fold that one large step makes. Up to three further attempts begin from displaced
+//! shapes.
 //!
-//! A body has left such a shape once it has kept another shape for the time that leaving takes. A body that returns to it earlier keeps the number of
-//! its displacements, so it eventually gets the last one.
+//! A body has left such a shape once it has kept another shape for the time that leaving takes. A body that returns to its degenerate shape earlier
+//! keeps the number of its displacements, so it eventually gets the last displacement.
 //!
 //! Strained bodies on which a pin, an obstacle or a load acts are left alone, because they may have been meant to snap through. At the end,
 //! `cells.other_balance` reports that they contain more energy than the forces on them account for.
 //!
-//! A body is at rest if its kinetic energy and its unbalanced forces are small compared with the energy U of its cells, ½ Σ m v² ≪ U and Σ m |a| L ≪
-//! U, and if damping does not dissipate that energy: a body that creeps against its viscosity is still moving. The time to leave is a multiple of L
-//! √(M/U), where L is its size and M its mass.
+//! A body is at rest if its kinetic energy and its unbalanced forces are small compared with the energy U of its cells: ½ Σ m v² ≪ U and Σ m |a| L ≪
+//! U. In addition, damping must not dissipate that energy, because a body that creeps against its viscosity is still moving. The time to leave a
+//! degenerate shape is a multiple of L √(M/U), where L is the size of the body and M its mass.
 //!
-//! A body whose cells are all degenerate may move along its plane or line for ever without leaving it. It is therefore displaced once it has had time
-//! to leave, whatever its motion.
+//! A body whose cells are all degenerate may move along its plane or line for ever without leaving it. The world therefore displaces such a body
+//! after the time to leave, whatever its motion.
 //!
 //! Bodies of models without cells, such as springs, are left alone.
 //!
@@ -45,7 +46,7 @@ use opruga_math::{Lane, sum_in_fixed_order};
 use opruga_mesh::{Mesh, least_jacobian};
 use opruga_solve::dense::symmetric_eigen;
 
-/// The number of displacements since the body left its last degenerate shape, plus one if they had no effect.
+/// The number of displacements since the body left its last degenerate shape, plus one if the last possible displacement also had no effect.
 const TIMES: PerBody<u64> = PerBody::new("unfold.times");
 /// The time of its last displacement [s].
 const LAST: PerBody<f64> = PerBody::new("unfold.last");
@@ -55,7 +56,7 @@ const FLAT_LOOKS: PerBody<u64> = PerBody::new("unfold.flat_looks");
 const SINCE: PerBody<u64> = PerBody::new("unfold.since");
 /// Whether the last check found nothing.
 const SOUND: PerBody<bool> = PerBody::new("unfold.sound");
-/// The time until which another shape does not count as having left the degenerate one [s].
+/// Until this time [s], a body in another shape does not count as having left its degenerate shape.
 const UNTIL: PerBody<f64> = PerBody::new("unfold.until");
 
 /// The data that are kept for every body.
@@ -63,15 +64,14 @@ pub(crate) fn channels() -> [Channel; 6] {
     [TIMES.declared(), LAST.declared(), FLAT_LOOKS.declared(), UNTIL.declared(), SINCE.declared(), SOUND.declared()]
 }
 
-/// The number of frames between two checks, and between two checks of a sound body. A check costs about as much as an
-/// evaluation of the forces.
+/// The number of frames between two checks of a body, and the number for a sound body. A check costs about as much as an evaluation of the forces.
 const PERIODS: [u64; 2] = [24, 96];
 
-/// The kinetic energy, and the dissipation in the time to leave, below which a body counts as being at rest, relative to the stored energy.
+/// A body counts as being at rest only if its kinetic energy, and its dissipation in the time to leave, are below this fraction of the stored energy.
 const REST: f64 = 1e-3;
 
-/// The unbalanced force times the size below which a body counts as being at rest, relative to the stored energy. A vibration with 10⁻⁷ of that
-/// energy has a value of one thousandth.
+/// A body counts as being at rest only if its unbalanced force times its size is below this fraction of the stored energy. A vibration with 10⁻⁷ of
+/// that energy has a value of one thousandth.
 const BALANCED: f64 = 1e-2;
 
 /// The time that a displaced body has to leave, in units of L √(M/U).

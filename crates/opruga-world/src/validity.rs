@@ -73,7 +73,7 @@ pub fn name_fault(name: &str) -> Option<NameFault> {
     number.then_some(NameFault::Number {})
 }
 
-/// The fault of time settings beyond the ranges of their fields: the frames would not end, or time would not advance.
+/// The fault of time settings with which the frames would not end or time would not advance, although every field is within its range.
 pub fn time_fault(time: &Time) -> Option<Fault> {
     let Time { seconds, frame, substeps } = *time;
     let h = frame / f64::from(substeps);

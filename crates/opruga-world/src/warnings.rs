@@ -107,7 +107,7 @@ terms! {
 }
 
 terms! {
-    /// The hint that a scene may unfold bodies.
+    /// The hint that the scene setting `unfold` may help against inverted cells.
     pub enum UnfoldHint = "part.unfold_hint" { Unfold = ", or `unfold = true` in `[world]`" }
 }
 

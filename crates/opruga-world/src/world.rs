@@ -36,12 +36,12 @@ pub struct Options {
     pub simd: Option<Simd>,
     /// Whether steps above the estimated limit cause a warning instead of an error.
     pub allow_unstable: bool,
-    /// Whether alike bodies are stepped eight at a time.
+    /// Whether bodies of the same kind are stepped eight at a time.
     pub batches: bool,
     /// A request from outside to cancel a long frame. The frame then ends within a substep with [`WorldError::BrokenOff`], and the world is at its
     /// last good frame. The request can be withdrawn.
     pub break_off: Arc<BreakOff>,
-    /// The limit for the memory of all bodies together, estimated before they are built [bytes]; none: what the system provides.
+    /// The limit for the memory of all bodies together, estimated before they are built [bytes]; `None` if only the system sets a limit.
     pub most_bytes: Option<u64>,
 }
 
@@ -76,7 +76,7 @@ pub struct World<const D: usize> {
     pub(crate) contacts: Option<Vec<Contact<D>>>,
     /// The number of islands built since the start.
     pub(crate) islands_built: u64,
-    /// Island and lane of every body.
+    /// The island and the lane of every body.
     pub(crate) locations: Vec<(usize, usize)>,
     /// The slots of the list of bodies.
     pub(crate) slots: Slots,
@@ -102,12 +102,12 @@ pub struct World<const D: usize> {
     pub(crate) farthest_turn: f64,
     /// The inputs of the program since the last request; none if they are not recorded.
     pub(crate) inputs: Option<Vec<Input<D>>>,
-    /// One for each thread.
+    /// The workspaces, one for each thread.
     pub(crate) workspaces: Vec<Mutex<Workspace<D>>>,
     pub(crate) pool: Option<rayon::ThreadPool>,
 }
 
-/// Locks a workspace. It contains nothing between steps, so one that a panic has poisoned can still be used.
+/// Locks a workspace. A workspace contains nothing between steps, so one that a panic has poisoned can still be used.
 pub(crate) fn lock<const D: usize>(workspace: &Mutex<Workspace<D>>) -> MutexGuard<'_, Workspace<D>> {
     workspace.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -10,12 +10,12 @@
 //! |---|---|
 //! | gradient | force at rest with central differences of the energy (fourth order) |
 //! | hessian | second derivatives with central differences of the force; symmetric if the model declares it |
-//! | product | `add_hessian_product` with the assembled matrix; eight bodies with one |
+//! | product | `add_hessian_product` with the assembled matrix, and eight bodies in one batch with a single body |
 //! | clamped | the clamped Hessian has no negative eigenvalue, if it is symmetric |
 //! | views | energy and second derivatives exist if the model declares them for all its potentials |
 //! | tiles | forces in tiles of any size with forces in one tile, to the bit; also if they begin with the weight |
 //! | lanes | all sets of vector instructions of this processor, to the bit |
-//! | batch | eight bodies side by side with each alone, to the bit, forces and energy |
+//! | batch | forces and energy of eight bodies side by side with those of each body alone, to the bit |
 //! | translation, rotation | U(Qx + t) = U(x), F(Qx + t, Qv) = Q F(x, v) |
 //! | net force, net torque | Σ F = 0, Σ x × F = 0, damping included |
 //! | infinitesimal rotation | H Ωx = Ω ∇U for skew Ω, also under load |
@@ -61,8 +61,8 @@ pub struct Options {
     pub views: bool,
     /// Whether the model claims a finite force if all nodes coincide.
     pub coincident: bool,
-    /// Whether finite differences are computed. Each coordinate needs some, so this is not meant for meshes of more than some
-    /// hundred nodes.
+    /// Whether finite differences are computed. Each coordinate needs some of them, so this check is not meant for meshes of more than a few hundred
+    /// nodes.
     pub derivatives: bool,
     /// The time of the state [s].
     pub time: f64,

@@ -169,8 +169,8 @@ struct Walker<'a, P, L, const D: usize> {
     ahead: [P; MOST_LAG],
 }
 
-/// The largest number of packs between [`PairLaw::ahead`] and the force. A processor looks ahead by itself, but not for as long
-/// as a root and a division take: operations that wait for them fill its queues.
+/// The largest number of packs between [`PairLaw::ahead`] and the force. A processor looks ahead by itself, but not for as long as a root and a
+/// division take, because operations that wait for these two fill its queues.
 const MOST_LAG: usize = 2;
 
 /// The number of packs between [`PairLaw::ahead`] and the force: one is enough if a pack takes many registers.

@@ -39,8 +39,8 @@ pub trait PairLaw<const D: usize>: Copy {
     fn uniform<P: Pack>(&self) -> [P; 2] {
         [P::zero(); 2]
     }
-    /// A result that the force needs, depends only on d = xₐ − x_b and is slow to compute, such as a division by |d|. Loops
-    /// request it some packs before the force, so that nothing waits for it.
+    /// A result that the force needs and that is slow to compute, such as a division by |d|. It depends only on d = xₐ − x_b. Loops request it some
+    /// packs before the force, so that nothing waits for it.
     fn ahead<S: Lane>(&self, d: [S; D]) -> S;
     /// The force on the first node [N] and the dissipated power [W] of pairs, from d = xₐ − x_b, its rate, and the result of
     /// [`PairLaw::ahead`] for d.

@@ -35,7 +35,7 @@ pub(super) struct Pull {
     pub(super) partner: Vec<u32>,
     /// The number of the pair, or the number of the pair without effect if there is no partner.
     pub(super) pair: Vec<u32>,
-    /// `[node / 8][slot]`: whether the eight partners, and the eight pairs, are consecutive, so that they are read at once.
+    /// `[node / 8][slot]`: whether the eight partners are consecutive, and the eight pairs too, so that they can be read at once.
     pub(super) together: Vec<bool>,
     /// The pulled pairs by number, padded to packs with the pair without effect, and their two ends.
     pub(super) loose: Vec<u32>,

@@ -41,7 +41,7 @@ pub enum Condition {
     Word(&'static str, &'static [&'static str]),
     /// Another field is given, or true.
     Given(&'static str),
-    /// At least one of some other fields is given, or true.
+    /// At least one of several other fields is given or, if Boolean, is true.
     GivenOneOf(&'static [&'static str]),
     /// Another field is not given, or false.
     NotGiven(&'static str),

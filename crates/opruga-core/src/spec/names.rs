@@ -27,8 +27,8 @@ const OTHER_NAMES: [(&str, &str); 23] = [
     ("name", "title"),
 ];
 
-/// The candidate that a word means. This is the candidate for which the word is a common name. If there is none, it is the
-/// candidate that differs from the word in the fewest letters, if these are few enough.
+/// The candidate that a word means. If the word is a common name for a candidate, it is this candidate. If there is none, it is the candidate that
+/// differs from the word in the fewest letters, if these are few enough.
 pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     let candidates: Vec<&str> = candidates.collect();
     let spelt: String = word.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();

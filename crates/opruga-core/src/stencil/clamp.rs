@@ -3,7 +3,7 @@
 use super::kernel::Blocks;
 use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work, symmetric};
 
-/// The number of rows of the Hessians of most stencils, and the largest number, that of a hexahedron.
+/// The number of rows of the Hessians of most stencils, and that of a hexahedron, which is the largest.
 const ROWS: [usize; 2] = [12, 24];
 
 /// Removes the negative eigenvalues of symmetric block matrices, eight side by side.

@@ -43,7 +43,7 @@ pub trait Kernel<const D: usize, const N: usize, const K: usize>: Copy + Debug +
         }
         out
     }
-    /// ∂²U/∂x∂x; by default the exact derivative of [`Kernel::gradient`] by dual numbers.
+    /// ∂²U/∂x∂x. By default, it is the exact derivative of [`Kernel::gradient`], computed with dual numbers.
     fn hessian(parameters: &[f64; K], x: &[[f64; D]; N]) -> Blocks<D, N> {
         let constants = parameters.map(Dual::constant);
         let mut at = x.map(|node| node.map(Dual::constant));

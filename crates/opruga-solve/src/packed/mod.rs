@@ -39,7 +39,7 @@ pub struct Packed<const D: usize> {
     /// The seat of each node.
     seat: Vec<u32>,
     pieces: Vec<Piece<D>>,
-    /// Direction vectors by seat, [`ROW`] numbers each, as products gather them.
+    /// The direction vectors by seat, [`ROW`] numbers each, in the layout from which products gather them.
     rows: Column,
     rank_one: Vec<Part<D>>,
     ranks: usize,

@@ -178,7 +178,7 @@ fn subdivisions(edges: f64) -> f64 {
     edges.log2().round()
 }
 
-/// Writes a load for each node: its force.
+/// Writes a load for each node with the force on this node.
 fn forces<const D: usize>(forces: &[[f64; D]]) -> String {
     let mut out = String::new();
     for (node, force) in forces.iter().enumerate() {

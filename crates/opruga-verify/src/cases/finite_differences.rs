@@ -260,7 +260,7 @@ fn ring(n: f64, pins: &str) -> String {
     )
 }
 
-/// The pressure on a ring with pins at which its lowest frequency is zero.
+/// The pressure at which the lowest frequency of a pinned ring falls to zero.
 fn ring_loses_its_roundness(lab: &Lab, n: f64, pins: &str, load: impl Fn(f64) -> String) -> Result<f64, Trouble> {
     critical([1.0, 2.0], |pressure| {
         let mut world = lab.plane(Scene::statics(2, 1e-8).add(&(ring(n, pins) + &load(pressure))))?;
@@ -275,8 +275,8 @@ fn ring_buckles(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     })
 }
 
-/// Pins the ring in the tangential direction at its four points on the axes. The ring then cannot rotate. Its oval motion is free, because it has no
-/// tangential component at these points.
+/// Pins the ring in the tangential direction at its four points on the axes. The ring then cannot rotate. The pins allow its oval motion, which has
+/// no tangential component at these points.
 fn tangential_pins(n: f64) -> String {
     let count = n as u32;
     format!(
@@ -292,8 +292,8 @@ fn node_force(n: f64, pressure: f64) -> f64 {
     pressure * (TAU / n).sin()
 }
 
-/// The pressure at which a ring buckles if its nodes carry the forces of this pressure on the round ring and the directions of these forces do not
-/// change.
+/// The pressure at which a ring buckles under dead load: the nodes carry the forces of this pressure on the round ring, and the directions of these
+/// forces do not change.
 fn ring_buckles_under_dead_load(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     ring_loses_its_roundness(lab, n, &tangential_pins(n), |pressure| {
         let force = -node_force(n, pressure);

@@ -123,7 +123,8 @@ enum Kept {
     Energy,
 }
 
-/// The largest relative change of a conserved quantity of a rotating ring of springs around gas, which is out of equilibrium, without gravity.
+/// The largest relative change of a conserved quantity of a rotating ring of springs around gas. The ring is out of equilibrium, and there is no
+/// gravity.
 fn flight(lab: &Lab, h: f64, rule: &str, kept: Kept) -> Result<f64, Trouble> {
     let frame = 1.0 / 60.0;
     let scene = Scene::new(2, frame, (frame / h).round() as u32, rule).add(

@@ -101,7 +101,7 @@ fn space(lab: &Lab, share: f64, fit: &str, wanted: Wanted) -> Result<f64, Troubl
     found(&modes.iter().map(|mode| mode.omega()).collect::<Vec<f64>>(), wanted)
 }
 
-/// The displacement of the tip of a beam after 3 s of strongly damped motion, divided by that with the largest step.
+/// The displacement of the tip of a beam after 3 s of strongly damped motion, divided by the displacement with the largest step.
 fn sag(lab: &Lab, step: f64) -> Result<f64, Trouble> {
     let tip = |step: f64| -> Result<f64, Trouble> {
         let scene = Scene::new(2, 1.0 / 60.0, (1.0 / 60.0 / step).round() as u32, "backward_euler").add(

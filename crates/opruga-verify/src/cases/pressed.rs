@@ -188,8 +188,8 @@ struct Patch {
     height: f64,
 }
 
-/// Brings two blocks without friction to rest, the upper one under a pressure of 1 kPa. Contact is a barrier of a given reach [m], outside of which
-/// the blocks start, or a constraint.
+/// Brings two blocks without friction to rest, the upper one under a pressure of 1 kPa. Contact is a constraint or a barrier. If it is a barrier of a
+/// given reach [m], the blocks start outside of this reach.
 fn patch<const D: usize>(lab: &Lab, n: f64, cells: Cells, reach: Option<f64>, rule: &str) -> Result<Patch, Trouble>
 where
     Lab: Worlds<D>,

@@ -33,8 +33,7 @@ pub struct Loss {
 impl Filling {
     /// The filled body, and its loss of volume if that is more than [`REPORTED_LOSS`].
     ///
-    /// # Errors
-    /// The errors of [`Mesh::lattice_filling`] and [`Mesh::tetrahedra_filling`]; [`MeshError::Lost`] for tetrahedra that lose more than a quarter.
+    /// [`MeshError::Lost`] for tetrahedra that lose more than a quarter of the volume.
     pub fn of(self, surface: &Mesh<3>) -> Result<(Mesh<3>, Option<Loss>), MeshError> {
         let spacing = match self {
             // This filling extends beyond the surface, and carries the surface unchanged.
@@ -65,7 +64,8 @@ fn kept(filling: &Mesh<3>, surface: &Mesh<3>) -> f64 {
     filling.enclosed_volume() / surface.enclosed_volume()
 }
 
-/// A spacing with two significant digits that keeps the volume. The loss falls with the square of the spacing, which gives the first spacing to try.
+/// Returns a spacing with two significant digits at which the filling keeps the volume. The loss falls with the square of the spacing, which gives
+/// the first spacing to try.
 fn finer(surface: &Mesh<3>, spacing: f64, now: f64) -> Option<f64> {
     let (step, most) = FINER;
     let square = (REPORTED_LOSS / (now - 1.0).abs()).sqrt();

@@ -278,7 +278,7 @@ pub(super) fn all() -> Vec<&'static Spec> {
     vec![&SVG, &MAP, &TEXT, &BITMAP, &SURFACE, &MESH]
 }
 
-/// Whether a shape of this kind is built from a file, which only the reader of that file can do.
+/// Whether a shape of this kind comes from a file, so that only the reader of that file can build it.
 pub fn is_from_file(kind: &str) -> bool {
     all().iter().any(|spec| spec.kind == kind)
 }
