@@ -44,9 +44,9 @@ const KEPT: f64 = 0.1;
 /// section 5.3).
 const PARALLEL: f64 = 1e-3;
 
-/// The stiffness of sticking, relative to that of the pair. The ratio of this stiffness to the response of the bodies determines
-/// the number of rounds for the multipliers. With 1000 instead, the search for the equilibrium of a stack of five blocks
-/// alternates between sticking and sliding.
+/// The stiffness of sticking, relative to the stiffness of the pair. The ratio of this stiffness to the response of the bodies determines the number
+/// of rounds for the multipliers. With 1000 instead, the search for the equilibrium of a stack of five blocks alternates between sticking and
+/// sliding.
 const STICKING: f64 = 10.0;
 
 /// A pair within reach of the barrier.
@@ -54,7 +54,7 @@ const STICKING: f64 = 10.0;
 pub struct Pressed<const D: usize> {
     /// The key of its two features. Pairs are sorted by this key.
     pub id: u64,
-    /// Its points; unused entries repeat the first.
+    /// The points of the pair; unused entries repeat the first point.
     pub points: [u32; 4],
     /// The weights wᵢ of its points, with ∇g = wᵢ n.
     pub weights: [f64; 4],
@@ -81,7 +81,7 @@ pub struct Pressed<const D: usize> {
 pub struct Rubbing<const D: usize> {
     /// The key of the two features of the pair.
     pub id: u64,
-    /// Its points.
+    /// The points of the pair.
     pub points: [u32; 4],
     /// The weights wᵢ of these points.
     pub weights: [f64; 4],

@@ -24,7 +24,7 @@ const LEFT: f64 = 1e-9;
 const MOST_STEPS: usize = 1000;
 
 /// Returns the fraction of the step at which a vertex comes closer to a facet than `distance` [m], or a slightly smaller
-/// fraction; none if the vertex stays farther away. All points move in straight lines from the positions `[0]` to the positions
+/// fraction; `None` if the vertex stays farther away. All points move in straight lines from the positions `[0]` to the positions
 /// `[1]`.
 ///
 /// There are no false negatives. Features that are already this close at the start meet at the fraction 0.

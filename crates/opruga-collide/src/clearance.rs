@@ -12,9 +12,9 @@ use opruga_math::Lane;
 /// d(t) ≥ d(t₀) − (s_a(t) − s_a(t₀)) − (s_b(t) − s_b(t₀))
 /// ```
 ///
-/// s is the path of the body of a feature: the largest displacement of its points, summed over the steps. Displacements are
-/// relative to the mean displacement of all points or, if both features belong to one body, to that of its points. So bodies
-/// that fall together, or rotate little, keep their bounds.
+/// s is the path of the body of a feature: the largest displacement of its points, summed over the steps. Displacements are relative to the mean
+/// displacement of all points or, if both features belong to one body, to that of its points. Bodies that fall together, or rotate little, therefore
+/// keep their bounds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clearance<const D: usize> {
     /// The positions at the end of the paths [m].
@@ -66,7 +66,7 @@ fn of_both(paths: &[[f64; 2]], [a, b]: &[u32; 2]) -> f64 {
     paths[*a as usize][own] + paths[*b as usize][own]
 }
 
-/// The entry of a body whose own pairs have not been searched for.
+/// The entry of a body without a search for its own pairs so far.
 const NEVER: [f64; 2] = [0.0, f64::NEG_INFINITY];
 
 /// Paths that are longer than this many margins restart at zero. Up to this length, additions to them are rounded to 1e-12 of a
@@ -159,9 +159,9 @@ impl<const D: usize> Clearance<D> {
         (0..self.own.len()).all(|body| self.covers(body, margin))
     }
 
-    /// Sets, for each body whose search is due, the distance around its points within which its own pairs are searched for. This
-    /// distance allows for the motion of the points relative to their mean in this step and, limited by `margin` [m], in `steps`
-    /// more steps (see [`beyond`]).
+    /// Sets the distance around the points of each body whose search is due; within this distance, the search finds the body's own pairs. This
+    /// distance allows for the motion of the points relative to their mean in this step and, limited by `margin` [m], in `steps` more steps (see
+    /// [`beyond`]).
     pub(crate) fn widen(&mut self, margin: f64, steps: f64) {
         self.due.clear();
         for body in 0..self.own.len() {
@@ -181,7 +181,7 @@ impl<const D: usize> Clearance<D> {
         self.due[body as usize]
     }
 
-    /// The box around a point in which pairs of its own body are searched for [m].
+    /// The box around a point in which the search looks for pairs of the body with itself [m].
     pub(crate) fn own_box(&self, surface: &Surface<D>, point: u32) -> [[f64; D]; 2] {
         let width = self.own[surface.body[point as usize] as usize][1];
         [-width, width].map(|side| self.x[point as usize].map(|c| c + side))

@@ -11,7 +11,7 @@ pub(crate) struct ClosePair<const D: usize> {
     pub(crate) points: [u32; 4],
     pub(crate) weights: [f64; 4],
     pub(crate) normal: [f64; D],
-    /// The gap at the start of the step, minus the thickness; and the thickness [m].
+    /// The gap at the start of the step minus the thickness, followed by the thickness [m].
     pub(crate) gap: f64,
     pub(crate) thickness: f64,
     pub(crate) friction: f64,

@@ -247,7 +247,7 @@ impl<const D: usize> Collider<D> {
 }
 
 impl<const D: usize> Part<D> {
-    /// The bounding box; none if the shape is unbounded.
+    /// The bounding box; `None` if the shape is unbounded.
     fn bounds(&self) -> Option<[[f64; D]; 2]> {
         let (center, half) = match self {
             Part::HalfSpace(_) => return None,

@@ -22,9 +22,9 @@ pub trait Respond<const D: usize> {
 #[derive(Clone, Debug, Default)]
 pub struct Coupled<const D: usize> {
     bodies: Vec<Body<D>>,
-    /// The body of every point; `NONE` if the point responds by itself.
+    /// The body of every point; `NONE` if the point responds independently.
     of_point: Vec<u32>,
-    /// Whether all points respond by themselves in this step, because the balance of forces and contact disagree.
+    /// Whether all points respond independently in this step, because the balance of forces and contact disagree.
     pub(crate) apart: bool,
 }
 

@@ -8,7 +8,7 @@ use opruga_math::{Lane, Pack, WIDTH, Work, lanes};
 /// A candidate that may touch in a step according to the bound on its distance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unclear {
-    /// Its index among the candidates.
+    /// The index of the candidate among all candidates.
     pub(crate) candidate: usize,
     pub(crate) features: [u32; 2],
     /// The distance at the start of the step, or a lower bound on it [m].

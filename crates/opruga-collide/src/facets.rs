@@ -268,7 +268,7 @@ impl<const D: usize> Shape<D> for Facets<D> {
 }
 
 impl<const D: usize> Facet<D> {
-    /// Makes a facet from its corners; none if it is degenerate.
+    /// Makes a facet from its corners; `None` if it is degenerate.
     fn new(corners: &[[f64; D]; D]) -> Option<Facet<D>> {
         let mut weights = [[0.0; D]; D];
         let mut normal = [0.0; D];

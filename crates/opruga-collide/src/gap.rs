@@ -13,7 +13,7 @@ use opruga_math::Lane;
 pub struct Gap<const D: usize> {
     /// The points; unused ones have the weight 0 and repeat the first.
     pub points: [u32; 4],
-    /// Their weights.
+    /// The weights of the points of the pair.
     pub weights: [f64; 4],
     /// The distance, negative if the first feature is on the inner side of the second [m].
     pub gap: f64,
@@ -54,7 +54,7 @@ impl<const D: usize> Gap<D> {
         out
     }
 
-    /// The gap of two edges with the points at `x` [m]; none if a closest point is an end of its edge, or if the edges are parallel. Pairs of a
+    /// The gap of two edges with the points at `x` [m]; `None` if a closest point is an end of its edge, or if the edges are parallel. Pairs of a
     /// vertex and a facet are sufficient in these cases.
     pub fn of_edges(surface: &Surface<D>, x: &[[f64; D]], a: u32, b: u32) -> Option<Gap<D>> {
         let (ea, eb) = (surface.edges[a as usize], surface.edges[b as usize]);

@@ -2,10 +2,9 @@
 
 use opruga_math::Lane;
 
-/// Boxes that are sorted into cells of several sizes. The smallest cells have the mean extent of the boxes, and each further
-/// level has cells twice as large. A box is in a cell that contains its lowest corner and is at least as large as the box. So a
-/// box extends at most into the next cell along every axis, however different the sizes of boxes are, and no box is found
-/// twice.
+/// Boxes that are sorted into cells of several sizes. The smallest cells have the mean extent of the boxes, and each further level has cells twice as
+/// large. A box is in a cell that contains its lowest corner and is at least as large as the box. A box therefore extends at most into the next cell
+/// along every axis, however different the sizes of boxes are, and no box is found twice.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Grid<const D: usize> {
     boxes: Vec<[[f64; D]; 2]>,
@@ -76,7 +75,7 @@ fn cells_between<const D: usize>(from: [i64; D], to: [i64; D], mut visit: impl F
 }
 
 impl<const D: usize> Grid<D> {
-    /// Sorts boxes, given by their lowest and highest corners [m], into cells.
+    /// Sorts boxes into cells. A box is given by its lowest and its highest corner [m].
     pub(crate) fn fill(&mut self, boxes: impl Iterator<Item = [[f64; D]; 2]>) {
         self.boxes.clear();
         self.boxes.extend(boxes);

@@ -9,7 +9,7 @@ pub(crate) fn key([a, b]: [u32; 2], with_facet: bool) -> u64 {
     u64::from(!with_facet) << 62 | u64::from(a) << 31 | u64::from(b)
 }
 
-/// The fraction of the step at which a vertex and a facet, or two edges, come closer to one another than a distance [m]; none if they stay apart.
+/// The fraction of the step at which a vertex and a facet, or two edges, come closer to one another than a distance [m]; `None` if they stay apart.
 #[inline]
 pub(crate) fn meeting_time<const D: usize>(
     surface: &Surface<D>,
@@ -30,7 +30,7 @@ pub(crate) fn meeting_time<const D: usize>(
     }
 }
 
-/// The gap of a pair at the start of the step, with the normal and the weights at a time within the step; none for edges that meet at one of their
+/// The gap of a pair at the start of the step, with the normal and the weights at a time within the step; `None` for edges that meet at one of their
 /// ends at that time.
 pub(crate) fn impact<const D: usize>(
     surface: &Surface<D>,

@@ -75,8 +75,8 @@ impl<const D: usize> Problem<'_, D> {
         })
     }
 
-    /// Sweeps over the rows, forward and backward, until the velocities no longer change. Rows that no point connects are
-    /// solved for separately. Returns the number of turns.
+    /// Sweeps over the rows, forward and backward, until the velocities no longer change. Sets of rows that no point connects are solved separately.
+    /// Returns the number of turns.
     ///
     /// The code behind this call is not generic, so that the sweeps are compiled once, with this crate.
     pub(crate) fn solve(mut self) -> usize {

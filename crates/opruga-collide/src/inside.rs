@@ -15,7 +15,7 @@ pub struct Buried<const D: usize> {
     pub count: usize,
     /// The depth of the deepest node, including its margin [m].
     pub depth: f64,
-    /// A shift after which no node is inside any obstacle [m]; none if no such shift was found.
+    /// A shift after which no node is inside any obstacle [m]; `None` if no such shift was found.
     pub shift: Option<[f64; D]>,
 }
 
@@ -28,7 +28,7 @@ const DOUBLINGS: usize = 12;
 const HALVINGS: usize = 20;
 
 impl<const D: usize> Colliders<D> {
-    /// Returns the obstacle that contains the deepest node of a body at the start; none if no node is deeper than `slack` [m].
+    /// Returns the obstacle that contains the deepest node of a body at the start; `None` if no node is deeper than `slack` [m].
     pub fn buried(&self, points: &[[f64; D]], slack: f64) -> Option<Buried<D>> {
         let (point, deepest, count) = self.deepest(points, &[0.0; D], slack)?;
         let collider = self.collider_of(deepest.surface);

@@ -34,7 +34,7 @@ impl<const D: usize> Touching<D> {
         [kind, first[0], first[1], second[0], second[1]]
     }
 
-    /// The number of a pair; none if a body has no such feature.
+    /// The number of a pair; `None` if a body has no such feature.
     pub fn id_of(&self, [kind, first, own, second, other]: [u32; 5]) -> Option<u64> {
         let at = |range: core::ops::Range<usize>, local: u32| {
             let number = range.start + local as usize;

@@ -17,11 +17,10 @@
 //! all other contacts, nodes do not bounce. With `rest_speed = 0`, every crossing is an impact, even that of a node that lies
 //! on the floor. This is the rule v = −e v of the thesis.
 //!
-//! **Speed of an impact.** The force acts for the whole step, but the node meets the surface within it. The speed s of the
-//! impact therefore follows from s² = u² + 2 a g, with the approach u and the gap g at the start of the step and the
-//! acceleration a towards the surface. It is limited to the range between the approaches at both ends of the step. So an impact
-//! returns e² of the incoming energy, and forces do not create energy. With `rest_speed = 0`, the rule of the thesis, s is the
-//! approach at the end of the step.
+//! **Speed of an impact.** The force acts for the whole step, but the node meets the surface within it. The speed s of the impact therefore follows
+//! from s² = u² + 2 a g, with the approach u and the gap g at the start of the step and the acceleration a towards the surface. It is limited to the
+//! range between the approaches at both ends of the step. An impact therefore returns e² of the incoming energy, and forces do not create energy.
+//! With `rest_speed = 0`, the rule of the thesis, s is the approach at the end of the step.
 //!
 //! **Position.** Without friction the node is moved along the normal onto the surface, and its tangential motion does not change
 //! in any bit. With friction, a node that does not bounce moves from its previous position (carried along by the collider) with

@@ -9,10 +9,10 @@
 //! G maps the velocities of points to the velocities u of gaps, and Y contains the responses of the bodies to impulses (see [`Coupled`]). N and F are
 //! the impulses along and across a normal, and ρ and r are the inverse mobilities of the contact in these directions. A contact that is apart (a ≤ 0)
 //! has no impulse, one that sticks (|b| ≤ µ a) does not move, and one that slides has the full friction along b. The residuals of these laws are
-//! linear except at the borders between the cases. So Newton's method converges even if sweeps let contacts alternate between sticking and sliding.
-//! Contacts are redundant, so W has no inverse. A fraction of its diagonal is added, which acts on the change of the impulses and makes the solution
-//! unique (a proximal point). The next attempt removes the error of this term. It uses a smaller fraction if the present attempt has converged, and a
-//! larger one if not.
+//! linear except at the borders between the cases. Newton's method therefore converges even if sweeps let contacts alternate between sticking and
+//! sliding. Contacts are redundant, so W has no inverse. A fraction of its diagonal is added, which acts on the change of the impulses and makes the
+//! solution unique (a proximal point). The next attempt removes the error of this term. It uses a smaller fraction if the present attempt has
+//! converged, and a larger one if not.
 //!
 //! Source: P. Alart, A. Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, Computer Methods in
 //! Applied Mechanics and Engineering 92 (1991) 353–375; V. Acary, M. Brémond, O. Huber, On solving contact problems with Coulomb friction:
@@ -37,8 +37,7 @@ const MOST_PROXIMAL: f64 = 1.0;
 const FIRMER: f64 = 10.0;
 const LOOSER: f64 = 0.03;
 
-/// The number of sweeps between attempts with Newton's method. Sweeps determine which contacts stick and slide; by themselves
-/// they do not converge.
+/// The number of sweeps between attempts with Newton's method. Sweeps determine which contacts stick and slide; sweeps alone do not converge.
 const SWEEPS: usize = 10;
 
 /// The largest number of consecutive attempts that do not halve the change of a sweep.
@@ -53,8 +52,8 @@ const MOST_UPHILL: usize = 1;
 const MOST_HALVINGS: usize = 12;
 const UPHILL: f64 = 0.1;
 
-/// The fraction of the tolerance to which Newton's method solves, so that the following sweep finds nothing to change; and the
-/// fraction of the initial squared residual below which the residual is rounding.
+/// The fraction of the tolerance to which Newton's method solves, so that the following sweep finds nothing to change. Also the fraction of the
+/// initial squared residual below which the residual is rounding.
 const ENOUGH: f64 = 0.1;
 const ROUNDING: f64 = 1e-12;
 
@@ -343,7 +342,7 @@ impl<const D: usize> Equations<D> {
         Trial { impulses, velocities, missed: out }
     }
 
-    /// Newton's correction of the impulses; none if its equations have no solution.
+    /// Newton's correction of the impulses; `None` if its equations have no solution.
     fn correction(&self, Trial { impulses, velocities: u, missed }: &Trial) -> Option<Vec<f64>> {
         let mut out = vec![0.0; impulses.len()];
         let mut present = Vec::new();

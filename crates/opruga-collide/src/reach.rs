@@ -4,8 +4,8 @@ use crate::vector::{Bounds, dot, subtract};
 use opruga_core::threads;
 use opruga_math::Lane;
 
-/// For every point, a box around its motion in the step, including the motion that contact may add; and the larger box of the
-/// last search for candidates.
+/// For every point, a box around its motion in the step, including the motion that contact may add. Also the larger box of the last search for
+/// candidates.
 ///
 /// Every point has its own box, so one fast point does not turn all the others into candidates.
 #[derive(Clone, Debug, Default)]
@@ -18,9 +18,8 @@ pub(crate) struct Reach<const D: usize> {
     pub(crate) found_in: Vec<Bounds<D>>,
     /// For every body, the largest displacement that contact may add to the motion of one of its points [m].
     body_push: Vec<f64>,
-    /// For every body, whether its candidates must be searched for again. This is necessary if a box of the step is not inside
-    /// the box of the last search with a quarter of a margin to spare, or if the box of the last search is far too large
-    /// because it was made for a faster motion.
+    /// For every body, whether a new search must find its candidates. This is necessary if a box of the step is not inside the box of the last search
+    /// with a quarter of a margin to spare, or if the box of the last search is far too large because it was made for a faster motion.
     stale: Vec<bool>,
     /// For every body, whether it will soon be stale. The next search covers all such bodies at once.
     due: Vec<bool>,
@@ -33,9 +32,9 @@ pub(crate) struct Reach<const D: usize> {
 /// straight ahead has up to twice the margin behind it.
 pub(crate) const MOST_WIDTHS: f64 = 4.0;
 
-/// Returns how far beyond the box of a step candidates are searched for [m], for a point or body that moves by `moves` in the step. This distance is
-/// what the point or body covers in `steps` more steps, but at least half a margin and at most a whole one. Without the upper limit, long steps of
-/// fast bodies would make everything around them a candidate (ten times as many candidates for eight falling cubes).
+/// Returns how far beyond the box of a step the search for candidates extends [m], for a point or body that moves by `moves` in the step. This
+/// distance is what the point or body covers in `steps` more steps, but at least half a margin and at most a whole one. Without the upper limit, long
+/// steps of fast bodies would make everything around them a candidate (ten times as many candidates for eight falling cubes).
 pub(crate) fn beyond(moves: f64, steps: f64, margin: f64) -> f64 {
     (0.5 * margin).larger((steps * moves).smaller(margin))
 }
@@ -56,9 +55,9 @@ const LEAST_PART: usize = 4096;
 const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 impl<const D: usize> Reach<D> {
-    /// Begins a step from the positions of points before and after the free motion [m] and their bodies. It is assumed that
-    /// contact pushes a point at most as far as the point moves by itself, plus the distance by which overlapping bodies are
-    /// separated. [`Reach::grow`] widens the box of a point that contact pushes farther.
+    /// Begins a step from the positions of points before and after the free motion [m] and their bodies. The method assumes that contact pushes a
+    /// point at most as far as the free motion moves it, plus the distance by which overlapping bodies are separated. [`Reach::grow`] widens the box
+    /// of a point that contact pushes farther.
     pub(crate) fn begin(
         &mut self,
         body: &[u32],
@@ -120,13 +119,13 @@ impl<const D: usize> Reach<D> {
         }
     }
 
-    /// Whether all boxes are inside those of the last search, with a quarter of a margin to spare. Then even pairs slightly
-    /// beyond the boxes of the step are known, regardless of when they were searched for.
+    /// Whether all boxes are inside those of the last search, with a quarter of a margin to spare. Then even pairs slightly beyond the boxes of the
+    /// step are known, whenever the last search was made.
     pub(crate) fn is_covered(&self) -> bool {
         !self.stale.contains(&true)
     }
 
-    /// Whether the candidates of a body must be searched for again.
+    /// Whether a new search must find the candidates of a body.
     pub(crate) fn is_stale(&self, body: u32) -> bool {
         self.stale[body as usize]
     }
@@ -136,7 +135,7 @@ impl<const D: usize> Reach<D> {
         self.stale.iter_mut().zip(&self.due).for_each(|(stale, due)| *stale |= due);
     }
 
-    /// Sets the boxes in which candidates of stale bodies are searched for: the boxes of the step, extended by the motion of the
+    /// Sets the boxes in which the next search looks for candidates of stale bodies. These are the boxes of the step, extended by the motion of the
     /// points in `steps` more steps (see [`beyond`]), limited by `margin` [m].
     pub(crate) fn widen(&mut self, body: &[u32], margin: f64, steps: f64) {
         let own = self.swept.iter().zip(&self.push).zip(body);

@@ -54,10 +54,10 @@ pub(crate) struct Meeting<S, const D: usize> {
 
 /// The state of a node after contact, and its energy balance.
 ///
-/// The obstacle gives an impulse J, and the force F has given the impulse hF. With v₀ before the step, v₁ after it and v̄ =
-/// ½(v₀ + v₁), the kinetic energy changes by exactly (J + hF)·v̄; J·v̄ is the work of the motion of the obstacle minus the two
-/// losses. The potential energy changes by −F·(x₁ − x₀), of which hF·v̄ has become kinetic energy; the rest is the effect of
-/// moving the node back to the surface. So a node at rest exchanges no energy, however large the step.
+/// The obstacle gives an impulse J, and the force F has given the impulse hF. With v₀ before the step, v₁ after it and v̄ = ½(v₀ + v₁), the kinetic
+/// energy changes by exactly (J + hF)·v̄; J·v̄ is the work of the motion of the obstacle minus the two losses. The potential energy changes by −F·(x₁
+/// − x₀), of which hF·v̄ has become kinetic energy; the rest is the effect of moving the node back to the surface. Therefore, a node at rest
+/// exchanges no energy, however large the step.
 pub(crate) struct Parting<S, const D: usize> {
     /// Position [m].
     pub(crate) x: [S; D],

@@ -316,7 +316,7 @@ pub(crate) fn support<T: Shape<D>, const D: usize>(
 }
 
 /// Finds where a node that moved from `a` to `b` entered a convex solid. Returns the distance of `b` behind the tangent plane
-/// at that point (negative) and the normal; none if the node did not enter from outside.
+/// at that point (negative) and the normal; `None` if the node did not enter from outside.
 ///
 /// This is sphere tracing: a step along the segment by the signed distance never crosses the surface.
 #[inline(never)]

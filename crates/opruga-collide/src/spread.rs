@@ -61,7 +61,7 @@ impl Spread {
         [first as u32, (self.points.len() - first) as u32]
     }
 
-    /// The nodes of a contact, given the index of the first one and their number, and the weights of these nodes.
+    /// The nodes of a contact and their weights, given the index of the first node and the number of nodes.
     #[inline]
     pub(crate) fn at(&self, [first, count]: [u32; 2]) -> Weighted<'_> {
         let range = first as usize..(first + count) as usize;

@@ -22,11 +22,10 @@ pub struct Surface<const D: usize> {
     pub sides: Vec<[u32; 2]>,
     /// The start of the points, facets, edges and vertices of each body. Points before its vertices only carry others.
     starts: Vec<[u32; 4]>,
-    /// The points that are carried by others, ascending, and their carriers. Carriers refer to points that move by themselves.
+    /// The points that are carried by others, ascending, and their carriers. Carriers refer to points that move independently.
     carried: Vec<u32>,
     carriers: Vec<Carrier>,
-    /// Whether each body, in the order of addition, touches faces of obstacles with its vertices; otherwise obstacles hold its
-    /// nodes.
+    /// For each body in the order of addition, whether its vertices touch faces of obstacles; otherwise obstacles hold its nodes.
     touch_faces: Vec<bool>,
     /// The first body that is an obstacle, and its first point.
     obstacles: Option<[u32; 2]>,
@@ -41,7 +40,7 @@ impl<const D: usize> Surface<D> {
         self.body.len()
     }
 
-    /// The points of a body, given its number in the order of addition. The points that are nodes come before the points that nodes carry.
+    /// The points of the body that was added with this number. The points that are nodes come before the points that nodes carry.
     pub fn points_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 0, self.points())
     }
@@ -52,12 +51,12 @@ impl<const D: usize> Surface<D> {
         self.starts.get(number).map_or(points.end, |start| start[3] as usize)..points.end
     }
 
-    /// The facets of a body, given its number in the order of addition.
+    /// The facets of the body that was added with this number.
     pub fn facets_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 1, self.facets.len())
     }
 
-    /// The edges of a body, given its number in the order of addition.
+    /// The edges of the body that was added with this number.
     pub fn edges_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 2, self.edges.len())
     }
@@ -110,14 +109,14 @@ impl<const D: usize> Surface<D> {
         self.sides.extend(sides);
     }
 
-    /// Lets the vertices of a body touch faces of obstacles. `number` is the number of the body in the order of addition. Otherwise obstacles hold
-    /// its nodes directly.
+    /// Lets the vertices of a body touch faces of obstacles. Bodies are numbered in the order in which they were added. Otherwise obstacles hold its
+    /// nodes directly.
     pub fn touch_faces(&mut self, number: usize) {
         self.touch_faces.resize(self.touch_faces.len().max(number + 1), false);
         self.touch_faces[number] = true;
     }
 
-    /// Whether a body touches faces of obstacles, given its number in the order of addition.
+    /// Whether the body that was added with this number touches faces of obstacles.
     pub(crate) fn touches_faces(&self, number: u32) -> bool {
         self.touch_faces.get(number as usize).is_some_and(|touches| *touches)
     }
@@ -178,7 +177,7 @@ impl<const D: usize> Surface<D> {
         !around.is_empty() && around.iter().all(|facet| self.closed[*facet as usize])
     }
 
-    /// The carrier of a point; none if it is a node.
+    /// The carrier of a point; `None` if it is a node.
     #[inline]
     pub fn carrier_of(&self, point: u32) -> Option<&Carrier> {
         self.carried.binary_search(&point).ok().map(|k| &self.carriers[k])
@@ -195,7 +194,7 @@ impl<const D: usize> Surface<D> {
         !self.carried.is_empty() && points.iter().any(|p| self.carried.binary_search(p).is_ok())
     }
 
-    /// Calls `visit` with the points that move by themselves and determine the given point, and with their weights.
+    /// Calls `visit` with the independent points that determine the given point, and with their weights.
     #[inline]
     pub fn visit_nodes(&self, point: u32, mut visit: impl FnMut(u32, f64)) {
         match if self.carried.is_empty() { None } else { self.carrier_of(point) } {

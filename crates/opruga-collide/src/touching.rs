@@ -28,13 +28,13 @@ use opruga_math::{Lane, Simd};
 /// position  x = x₀ + h v of every point that got an impulse; overlap is taken apart at `recovery_speed`, by positions alone
 /// ```
 ///
-/// Impulses start from those of the previous substep; the caller has to keep those of the last substep of a frame
-/// ([`Touching::visit_kept`], [`Touching::keep`]). Results do not depend on when candidates were searched for.
+/// Impulses start from those of the previous substep; the caller has to keep those of the last substep of a frame ([`Touching::visit_kept`],
+/// [`Touching::keep`]). Results do not depend on the steps in which candidates are searched.
 #[derive(Debug, Default)]
 pub struct Touching<const D: usize> {
     /// The surfaces.
     pub surface: Surface<D>,
-    /// Their contact laws.
+    /// The contact laws of the surfaces.
     pub laws: Laws,
     /// The inverse mass of every point along every axis [1/kg]; 0 for pinned points and for points that nodes carry.
     pub inverse_mass: Vec<[f64; D]>,
@@ -42,8 +42,7 @@ pub struct Touching<const D: usize> {
     pub coupled: Coupled<D>,
     /// Positions [m] and velocities [m/s] of the points at the start of the step.
     pub before: [Vec<[f64; D]>; 2],
-    /// Positions and velocities of the points after the free motion; those of touching points are replaced by the result of
-    /// contact.
+    /// Positions and velocities of the points after the free motion. Contact replaces those of touching points by its result.
     pub after: [Vec<[f64; D]>; 2],
     /// The points that got an impulse or were moved, ascending.
     pub changed: Vec<u32>,
@@ -77,7 +76,7 @@ pub struct Touching<const D: usize> {
     pub(crate) found: Vec<Found<D>>,
     /// The laws that applied at the last search for candidates.
     found_for: Laws,
-    /// The contacts that are solved for; after the solution, in the order of the solution.
+    /// The contacts of the solution; after the solution, they are in its order.
     pub(crate) rows: Vec<Row<D>>,
     /// The nodes on which contacts act if nodes carry their points.
     pub(crate) spread: Spread,
@@ -140,7 +139,7 @@ pub struct Counts {
     pub candidates: u64,
     /// Pairs whose gap was computed.
     pub pairs: u64,
-    /// Pairs that were solved for.
+    /// Pairs that entered the solution.
     pub contacts: u64,
     /// The number of turns in which these were solved.
     pub turns: u64,
@@ -346,7 +345,7 @@ impl<const D: usize> Touching<D> {
         self.counts.pairs += (self.rows.len() + self.watched.len()) as u64;
     }
 
-    /// Makes all points respond by themselves for the rest of the substep, because contact and the balance of forces disagree.
+    /// Makes all points respond independently for the rest of the substep, because contact and the balance of forces disagree.
     pub fn part_coupled(&mut self) {
         self.coupled.apart = true;
         self.passing.clear();
@@ -562,7 +561,6 @@ pub(crate) fn acting<'a, const D: usize>(spread: &'a Spread, row: &'a Row<D>) ->
     points.iter().copied().zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0)
 }
 
-/// The number of rounds in which pairs that would pass through one another are solved for along their normals. Pairs that still
-/// pass after these rounds move rigidly together. An impulse along one pair may make another one pass, but each round leaves
-/// fewer pairs.
+/// The number of rounds that solve the contact of passing pairs along their normals. Pairs that still pass after these rounds move rigidly together.
+/// An impulse along one pair may make another one pass, but each round leaves fewer pairs.
 const ROUNDS: usize = 4;

@@ -27,11 +27,11 @@ pub(crate) const COUPLED_TOLERANCE: f64 = 1e-9;
 pub(crate) struct Turns<const D: usize> {
     /// The turn in which the velocity of each point last changed.
     stamps: Vec<u64>,
-    /// The points of each row, and the number of its last turn; 0 before the first turn. In a set whose points respond by
-    /// themselves, points are indices among those of the set.
+    /// The points of each row, and the number of its last turn; 0 before the first turn. In a set whose points respond independently, a point is
+    /// given by its index in this set.
     heads: Vec<([u32; 4], u64)>,
     now: u64,
-    /// The points of all sets whose points respond by themselves, and the first one of every set.
+    /// The points of all sets whose points respond independently, and the first point of every set.
     alone: Alone<D>,
     first_alone: Vec<u32>,
     /// For each point, another one to which rows connect it, or the point itself.
@@ -50,8 +50,8 @@ pub(crate) struct Turns<const D: usize> {
     approach: Approach,
 }
 
-/// Points that respond by themselves, one set after the other. Threads can solve for different sets at the same time because
-/// every set has its own copies of what its rows read and write.
+/// Points that respond independently, one set after the other. Threads can solve for different sets at the same time because every set has its own
+/// copies of what its rows read and write.
 #[derive(Clone, Debug, Default)]
 struct Alone<const D: usize> {
     /// The point of every copy, and whether the rows of the set move it. Points that they do not move may have several copies.
@@ -227,8 +227,8 @@ impl<const D: usize> Turns<D> {
         }
     }
 
-    /// Sorts rows into connected sets, each in the order of features, so that rows that are solved together are stored together.
-    /// Their approach velocities must be known.
+    /// Sorts rows into connected sets, each in the order of features, so that rows that are solved together are stored together. The approach
+    /// velocities of the rows must be known.
     pub(crate) fn join(
         &mut self,
         rows: &mut Vec<Row<D>>,
@@ -296,7 +296,7 @@ impl<const D: usize> Turns<D> {
         self.movers = movers;
     }
 
-    /// Puts the rows into the new order, and copies the points that respond by themselves.
+    /// Puts the rows into the new order, and copies the points that respond independently.
     fn sort(&mut self, rows: &mut Vec<Row<D>>, movers: &[[u32; 4]], inverse_mass: &[[f64; D]]) {
         let Turns { heads, alone, first_alone, starts, number, order, mixed, sorted, .. } = self;
         heads.clear();
@@ -339,7 +339,7 @@ impl<const D: usize> Turns<D> {
         alone.inverse_mass.extend(alone.points.iter().map(|(p, _)| inverse_mass[*p as usize]));
     }
 
-    /// A set whose points do not all respond by themselves, with the mean approach velocity of its bodies [m/s]; none for other sets. `body` gives
+    /// A set with points that respond together with others, and the mean approach velocity of its bodies [m/s]; `None` for other sets. `body` gives
     /// the body of every point.
     pub(crate) fn coupled_set<'a>(
         &'a mut self,
@@ -359,8 +359,8 @@ impl<const D: usize> Turns<D> {
         Some((Sweeps { rows, heads, inverse_mass, v, stamps, now }, approach))
     }
 
-    /// Solves for the sets whose points respond by themselves, with at most `most` sweeps, on the threads of the pool if there are several. Sweeps
-    /// may leave velocities of `tolerance` times the mean approach velocity. `body` gives the body of every point. Returns the number of turns.
+    /// Solves the sets whose points respond independently, with at most `most` sweeps, on the threads of the pool if there are several. Sweeps may
+    /// leave velocities of `tolerance` times the mean approach velocity. `body` gives the body of every point. Returns the number of turns.
     pub(crate) fn solve_alone(
         &mut self,
         rows: &mut [Row<D>],
@@ -446,7 +446,7 @@ impl<const D: usize> Turns<D> {
 /// The least number of rows that a thread solves for in one piece. This many rows take some tens of microseconds.
 const LEAST_PART: usize = 256;
 
-/// Some sets whose points respond by themselves.
+/// Some sets whose points respond independently.
 struct Part<'a, const D: usize> {
     sets: Range<usize>,
     rows: &'a mut [Row<D>],

@@ -53,12 +53,12 @@ pub(crate) fn choose<S: Lane, const D: usize>(mask: S::Mask, yes: &[S; D], no: &
 pub(crate) fn length<S: Lane, const D: usize>(a: &[S; D]) -> S {
     dot(a, a).sqrt()
 }
-/// A matrix, given by its rows, times a vector.
+/// Multiplies a matrix, given by its rows, by a vector.
 #[inline(always)]
 pub(crate) fn turned<S: Lane, const D: usize>(rows: &[[f64; D]; D], a: &[S; D]) -> [S; D] {
     lanes!(S, d => dot(&splat(&rows[d]), a))
 }
-/// The transpose of a matrix, given by its rows, times a vector.
+/// Multiplies the transpose of a matrix, given by its rows, by a vector.
 pub(crate) fn turned_back<const D: usize>(rows: &[[f64; D]; D], a: &[f64; D]) -> [f64; D] {
     let mut out = [0.0; D];
     for i in 0..D {

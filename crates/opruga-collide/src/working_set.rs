@@ -1,8 +1,8 @@
 //! Impulses of contacts of coupled bodies, when far more pairs are examined than press.
 //!
-//! Most pairs of a step are only near one another and have no impulse in the end. Therefore, the laws are solved for only some of the contacts, the
-//! working set. Contacts that approach too fast then join the set, the fastest first, until none is left. Each solution satisfies the laws of all
-//! contacts of the set, so the last solution satisfies those of all contacts.
+//! Most pairs of a step are only near one another and have no impulse in the end. Therefore, the laws are solved only for some contacts, the working
+//! set. Contacts that approach too fast then join the set, the fastest first, until none is left. Each solution satisfies the laws of all contacts of
+//! the set, so the last solution satisfies those of all contacts.
 
 use crate::coupled::Coupled;
 use crate::newton::{self, Aim};
@@ -14,9 +14,9 @@ use crate::vector::{dot, subtract};
 /// alternately without end.
 const MOST_SOLUTIONS: usize = 40;
 
-/// Finds the impulses with which all contacts obey their laws, to the required accuracy. Returns the number of turns. Returns
-/// none if more contacts press than can be solved for at once, or if the set does not settle. Impulses and velocities are then
-/// consistent, and sweeps can continue from there.
+/// Finds the impulses with which all contacts obey their laws, to the required accuracy. Returns the number of turns. Returns none if more contacts
+/// press than one solution can handle, or if the set does not settle. Impulses and velocities are then consistent, and sweeps can continue from
+/// there.
 pub(crate) fn solve<const D: usize>(
     rows: &mut [Row<D>],
     spread: &Spread,

@@ -9,12 +9,12 @@ pub(crate) const ROUNDING: f64 = 1e-9;
 /// The points of a pair, and their number: at most four points with at most four nodes each.
 pub(crate) type PointsOfPair = ([u32; 16], usize);
 
-/// The zones of a step, and the motion that their points would have by themselves.
+/// The zones of a step, and the motion that their points would have outside of zones.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Zones<const D: usize> {
     /// For each point, another point of its zone, or the point itself; empty if there is no zone.
     parent: Vec<u32>,
-    /// Points in zones, ascending, with the velocities that were solved for [m/s] and the velocities along prescribed axes.
+    /// The points in zones, ascending, with the velocities of the solution [m/s] and the velocities along prescribed axes.
     points: Vec<(u32, [f64; D], Led<D>)>,
 }
 
@@ -29,7 +29,7 @@ impl<const D: usize> Default for Led<D> {
 }
 
 impl<const D: usize> Led<D> {
-    /// Prescribes the velocity along an axis; none if it contradicts an earlier one.
+    /// Prescribes the velocity along an axis; `None` if it contradicts an earlier one.
     pub(crate) fn lead(&mut self, axis: usize, speed: f64) -> Option<()> {
         match self.0[axis] {
             Some(known) if (known - speed).abs() > ROUNDING * (1.0 + known.abs()) => None,

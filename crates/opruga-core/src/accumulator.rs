@@ -1,8 +1,8 @@
 //! Real time: the number of frames of the simulation that are due when a display shows its next picture.
 //!
-//! The simulation always advances by whole frames of one length, whatever the rate of the display. So the same amount of real
-//! time gives the same number of substeps, and so the same bits, at 30, 60, 144 or 1000 pictures per second. Time that does not
-//! fill a frame is kept for the next picture, and nothing is lost by rounding.
+//! The simulation always advances by whole frames of one length, whatever the rate of the display. The same amount of real time therefore gives the
+//! same number of substeps, and the same bits, at 30, 60, 144 or 1000 pictures per second. Time that does not fill a frame is kept for the next
+//! picture, and nothing is lost by rounding.
 
 /// The number of attoseconds in a second. This unit is so small that the conversion hardly rounds an `f64` number of seconds
 /// below 1000.

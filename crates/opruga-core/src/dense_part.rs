@@ -18,7 +18,7 @@ pub struct DensePart<'a, const D: usize> {
     pub indices: &'a [u32],
     /// K, with D rows per node.
     pub matrix: &'a Arc<Dense>,
-    /// How the frame follows displacements; none if it does not.
+    /// How the frame follows displacements; `None` if it does not.
     pub following: Option<&'a Following>,
 }
 

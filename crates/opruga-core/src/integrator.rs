@@ -23,14 +23,14 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn work_columns(&self) -> usize {
         0
     }
-    /// The data that it keeps from step to step besides x and v; part of the state.
+    /// The data besides x and v that it keeps from step to step. They are part of the state.
     fn history(&self) -> Vec<Channel> {
         Vec::new()
     }
     /// The matrix that takes (x, v), followed by the vectors of its history, to the next step for the damped oscillator x″ = −ω²x
     /// − c x′.
     ///
-    /// Its spectral radius is at most 1 if the step h is stable. The state is scaled as (x, v), not (ωx, v).
+    /// The spectral radius of the matrix is at most 1 if the step h is stable. The state is scaled as (x, v), not (ωx, v).
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification;
     /// Refuses a system that it cannot step, such as a free body in statics; `obstacles` is true if there are obstacles that
     /// may hold the body.
@@ -136,9 +136,9 @@ pub fn next_matrix_number() -> u64 {
 
 /// A kind of integrator that scenes can name.
 pub trait IntegratorKind<const D: usize>: Send + Sync {
-    /// Its parameters and documentation.
+    /// The parameters and the documentation of the kind.
     fn spec(&self) -> &'static Spec;
-    /// Whether it steps eight identical bodies side by side; otherwise every body is stepped by itself.
+    /// Whether it steps eight identical bodies side by side; otherwise it steps every body separately.
     fn batches(&self) -> bool {
         true
     }

@@ -66,7 +66,7 @@ pub(crate) struct PinnedNodes<const D: usize>(Vec<PinnedNode<D>>);
 struct PinnedNode<const D: usize> {
     index: usize,
     axes: [bool; D],
-    /// Its mean velocity within the step, if known [m/s]: a motion may begin or end within a step.
+    /// The mean velocity of the node within the step [m/s], if it is known; a motion may begin or end within a step.
     mean: Option<[f64; D]>,
 }
 

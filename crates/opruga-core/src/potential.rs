@@ -202,7 +202,7 @@ impl Properties {
 /// step (an amount of gas, a ramp); it is part of the state. `scratch` holds the results of [`Potential::prepare`] for the calls
 /// that follow it.
 pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
-    /// Its constant properties.
+    /// The constant properties of the model.
     fn properties(&self) -> Properties;
     /// Visits the nodes of every term of the energy that couples nodes, in any order. Colours, tiles and drawings of the coupling are made from these
     /// nodes. Terms of one node, or of the whole body (the volume of a gas, for which the facets are given), are not included.
@@ -308,14 +308,14 @@ pub trait Observe<const D: usize> {
 pub struct CellState {
     /// The cell, in the order of [`opruga_mesh::Cells::iter`].
     pub cell: u32,
-    /// Its mean Cauchy stress σ [Pa], row by row. In 2D, it includes the stress perpendicular to the plane.
+    /// The mean Cauchy stress σ of the cell [Pa], row by row. In 2D, it includes the stress perpendicular to the plane.
     pub stress: [[f64; 3]; 3],
-    /// Its volume ratio J: its volume divided by its volume at rest.
+    /// The volume ratio J of the cell: its volume divided by its volume at rest.
     pub volume_ratio: f64,
-    /// The smallest J at its integration points: the minimum over the gradients of its shape and those with which its law is evaluated. A cell of
-    /// positive volume may be degenerate or inverted at some integration points.
+    /// The smallest J at the integration points of the cell: the minimum over the gradients of its shape and the gradients with which its law is
+    /// evaluated. A cell of positive volume may be degenerate or inverted at some integration points.
     pub smallest_volume_ratio: f64,
-    /// Its volume at rest [m³], in the plane its area times the thickness.
+    /// The volume of the cell at rest [m³]; in the plane, its area times the thickness.
     pub measure: f64,
 }
 
@@ -411,7 +411,7 @@ impl<const D: usize> Ingredients<'_, D> {
 
 /// A kind of model that scenes can name.
 pub trait Model<const D: usize>: Send + Sync {
-    /// Its parameters and documentation.
+    /// The parameters and the documentation of the kind.
     fn spec(&self) -> &'static Spec;
     /// Whether its potentials have an energy and second derivatives, on every body and with the default parameters. The
     /// documentation of parameters describes exceptions.

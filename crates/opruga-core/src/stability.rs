@@ -13,9 +13,9 @@
 //! iteration still has an error of 2 % after 30 products. The estimate is the largest Ritz value plus its residual, and the resulting step is reduced
 //! by 2 %. Negative eigenvalues, which a body has when it is about to buckle, do not affect the step.
 //!
-//! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 satisfies μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. So
-//! the pairs (ω², c) of all modes are in the joint numerical range of K and C, whether or not K and C have the same
-//! eigenvectors. A polygon encloses this range. It follows from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
+//! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 satisfies μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. Therefore, the pairs (ω²,
+//! c) of all modes are in the joint numerical range of K and C, whether or not K and C have the same eigenvectors. A polygon encloses this range. It
+//! follows from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
 //!
 //! ```text
 //!     c │     ______________         0 ≤ ω² ≤ ω²_max,  c_min ≤ c ≤ c_max,

@@ -214,7 +214,7 @@ impl Parameter {
     }
 }
 
-/// Eight items of a column: consecutive from an index on, or each with its own index.
+/// Eight items of a column: consecutive items after an index, or separate indices.
 #[derive(Clone, Copy, Debug)]
 pub enum At<'a> {
     /// From this index on.

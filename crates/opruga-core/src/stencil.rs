@@ -11,8 +11,8 @@
 //! nodes: slots by ascending element, corner    ●       ●           added up one after the other
 //! ```
 //!
-//! Every tile evaluates all elements that touch it. Elements across the border of two tiles are evaluated by both. So a node
-//! receives the same numbers in the same order, whatever the tiles and the layout, and its force has the same bits.
+//! Every tile evaluates all elements that touch it. Elements across the border of two tiles are evaluated by both. Therefore, a node receives the
+//! same numbers in the same order, whatever the tiles and the layout, and its force has the same bits.
 
 mod clamp;
 mod dual;
@@ -294,7 +294,7 @@ enum Nodes<const N: usize> {
 }
 
 impl<const N: usize> Eight<'_, N> {
-    /// The parameters of the elements from `offset` on.
+    /// The parameters of the elements that start at `offset`.
     #[inline(always)]
     fn parameters<R: Register, const K: usize>(&self, parameters: &[Parameter; K], offset: usize) -> [R; K] {
         let mut out = [R::zero(); K];
@@ -303,7 +303,7 @@ impl<const N: usize> Eight<'_, N> {
         }
         out
     }
-    /// A vector at every node of the elements from `offset` on.
+    /// A vector at every node of the elements that start at `offset`.
     #[inline(always)]
     fn read<R: Register, const D: usize>(&self, columns: &[&[f64]; D], offset: usize) -> [[R; D]; N] {
         let mut out = [[R::zero(); D]; N];

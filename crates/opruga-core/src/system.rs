@@ -60,7 +60,7 @@ pub trait Update<const D: usize> {
 pub struct Member<const D: usize> {
     /// The model, built for the bodies of the system.
     pub potential: Box<dyn Potential<D>>,
-    /// Its memory from step to step; part of the state.
+    /// The memory of the model from step to step; part of the state.
     pub memory: Vec<f64>,
     /// The results of `prepare`.
     pub scratch: Column,
@@ -77,8 +77,8 @@ pub struct System<const D: usize> {
     pub simd: Simd,
     /// A request to break off a long step, which then ends with [`crate::error::StepError::BrokenOff`].
     pub break_off: std::sync::Arc<crate::break_off::BreakOff>,
-    /// The number of threads over which the work on this system may be distributed; it then runs in a pool of threads. Their
-    /// number does not change the bits.
+    /// The number of threads over which the work on this system may be distributed; it then runs in a pool of threads. The number of threads does not
+    /// change the bits.
     pub threads: usize,
     /// Whether the columns hold one body, or eight side by side.
     pub layout: Layout,

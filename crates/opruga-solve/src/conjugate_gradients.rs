@@ -20,7 +20,7 @@ pub struct Ended {
     pub residual: f64,
 }
 
-/// Solves A x = b for a symmetric positive definite A, given only its product, starting from x = 0.
+/// Solves A x = b for a symmetric positive definite A, starting from x = 0. Only the product with A is needed.
 ///
 /// The method ends when the residual in the norm of the preconditioner is `tolerance` times that of b, after `most` products,
 /// or when rounding prevents further progress. Sums have a fixed order, so the bits are the same everywhere.

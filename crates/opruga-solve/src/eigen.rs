@@ -34,7 +34,7 @@ pub struct Pencil<'a> {
     pub mass: &'a [f64],
     /// The shift s, with which K + s M is positive definite [1/s²].
     pub shift: f64,
-    /// M-orthonormal shapes that are already known and are not searched for.
+    /// M-orthonormal shapes that are already known, so that the search leaves them out.
     pub known: &'a [Vec<f64>],
     /// Writes M x; M has no rows and columns of pinned coordinates.
     pub weigh: &'a dyn Fn(&[f64], &mut [f64]),

@@ -11,8 +11,8 @@ use opruga_math::{Simd, WIDTH};
 
 /// Compressed rows of blocks, filled by models through [`Sink`].
 ///
-/// The pattern is determined once. From then on, the k-th call of a model adds to the same block as before, without a search.
-/// If a call is for another block, that block is searched for; a missing block extends the pattern.
+/// The pattern is determined once. From then on, the k-th call of a model adds to the same block as before, without a search. If a call is for
+/// another block, the matrix searches for that block; a missing block extends the pattern.
 #[derive(Clone, Debug, Default)]
 pub struct BlockMatrix<const D: usize> {
     /// The start of the blocks of each row, and the end of the last.
@@ -72,7 +72,7 @@ impl Script {
     }
 }
 
-/// How far ahead the script is searched for a call that is out of order.
+/// The number of calls in the script that are searched for a call out of order.
 const LOOK_AHEAD: usize = 64;
 
 impl<const D: usize> BlockMatrix<D> {

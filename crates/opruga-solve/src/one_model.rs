@@ -1,4 +1,4 @@
-//! The matrix of one model by itself, for measurements at the speed of the integrators.
+//! The matrix of a single model, for measurements at the speed of the integrators.
 
 use crate::BlockMatrix;
 use opruga_core::potential::{Definiteness, Potential};

@@ -53,7 +53,7 @@ pub struct IncompleteCholesky<const D: usize> {
     generation: u64,
     start: Vec<u32>,
     column: Vec<u32>,
-    /// The index in the matrix of each block below the diagonal, or [`FILL`]; and the index of each block on the diagonal.
+    /// The index in the matrix of each block below the diagonal, or [`FILL`]. Also the index of each block on the diagonal.
     source: Vec<u32>,
     diagonal: Vec<u32>,
     below: Vec<Block<D>>,
@@ -69,7 +69,7 @@ impl<const D: usize> IncompleteCholesky<D> {
     pub(crate) fn rows(&self) -> usize {
         self.diagonal.len()
     }
-    /// Takes the pattern of a factor whose k-th row is that of the node `order[k]`, with these columns below the diagonal.
+    /// Takes the pattern of a factor. Its k-th row belongs to the node `order[k]`, and has these columns below the diagonal.
     pub(crate) fn take(&mut self, matrix: &BlockMatrix<D>, order: &[usize], rows: &[Vec<u32>]) {
         (self.start, self.column, self.source) = (vec![0], Vec::new(), Vec::new());
         for (node, columns) in order.iter().zip(rows) {

@@ -133,7 +133,7 @@ pub struct Row {
     pub case: &'static Case,
     /// The results, level by level.
     pub points: Vec<Point>,
-    /// The slope of the logarithm of the error over that of the size, by a least-squares fit; none if no order is expected.
+    /// The slope of the logarithm of the error over that of the size, by a least-squares fit; `None` if no order is expected.
     pub observed_order: Option<f64>,
     /// Whether the case passes.
     pub pass: bool,
@@ -214,7 +214,7 @@ impl Row {
     }
 }
 
-/// The slope of ln error over ln size by least squares; none for fewer than three points or for an error of zero.
+/// The slope of ln error over ln size by least squares; `None` for fewer than three points or for an error of zero.
 fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let logs: Vec<(f64, f64)> = points.map(|(size, error)| (size.ln(), error.ln())).collect();
     if logs.len() < 3 || logs.iter().any(|(_, y)| !y.is_finite()) {

@@ -13,7 +13,7 @@ pub type Trouble = Box<dyn std::error::Error + Send + Sync>;
 /// The settings with which scenes are run.
 #[derive(Clone, Debug)]
 pub struct Lab {
-    /// Vector instructions; none: the best that the processor supports.
+    /// The vector instructions; `None` stands for the best that the processor supports.
     pub simd: Option<Simd>,
     /// A factor on the shear modulus of every solid and on the stiffness of every spring and hinge; the default is 1. Another factor shows which
     /// cases would detect an error of that size.

@@ -34,7 +34,7 @@ pub trait AnyScene {
     fn integrator(&self) -> &Values;
     /// Rigid obstacles.
     fn colliders(&self) -> &[ColliderBlueprint];
-    /// The contact settings of the bodies; none if bodies pass through one another.
+    /// The contact settings of the bodies; `None` if bodies pass through one another.
     fn contact(&self) -> Option<&ContactBlueprint>;
     /// The length of the list of bodies. All body numbers are below this length; a number may belong to a body that was removed.
     fn body_count(&self) -> usize;
@@ -141,7 +141,7 @@ pub trait AnyBody: core::fmt::Debug {
     fn cell_groups(&self) -> &BTreeMap<String, Vec<u32>>;
     /// The surface or drawing that is shown instead of the boundary, if there is one.
     fn skin(&self) -> Option<&Skin>;
-    /// The signed volume that its facets enclose when its nodes are at the given positions [m³, m² in the plane]; none without facets.
+    /// The signed volume that its facets enclose when its nodes are at the given positions [m³, m² in the plane]; `None` without facets.
     fn enclosed_volume(&self, positions: &[[f64; 3]]) -> Option<f64>;
     /// The pairs of nodes that its elements join.
     fn edges(&self) -> Vec<[u32; 2]>;
@@ -149,7 +149,7 @@ pub trait AnyBody: core::fmt::Debug {
     fn pinned_nodes(&self) -> Vec<u32>;
     /// Whether one of its own pins holds nodes at rest.
     fn is_pinned_at_rest(&self) -> bool;
-    /// The smallest and largest angles and edges of its cells; none if it has no cells.
+    /// The smallest and largest angles and edges of its cells; `None` if it has no cells.
     fn cell_quality(&self) -> Option<CellQuality>;
 }
 
@@ -246,7 +246,7 @@ impl AnyBlueprint {
         *own = name.to_string();
     }
 
-    /// The integrators of the bodies that have their own, then that of the scene.
+    /// First the integrators of bodies that have their own, then the integrator of the scene.
     pub fn integrators_mut(&mut self) -> Vec<&mut Values> {
         fn of<const D: usize>(blueprint: &mut Blueprint<D>) -> Vec<&mut Values> {
             let own = blueprint.bodies.iter_mut().filter_map(|body| body.integrator.as_mut());

@@ -189,7 +189,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn is_implicit(&self, integrator: &Values) -> bool;
     /// The first known integrator with the given role.
     fn integrator_with(&self, role: Role) -> Option<&'static Spec>;
-    /// The step that would be stable for all bodies under another integrator [s]; none if there is no such step or integrator.
+    /// The step that would be stable for all bodies under another integrator [s]; `None` if there is no such step or integrator.
     fn stable_step_under(&self, integrator: &Values) -> Option<f64>;
     /// The estimates of the stable step.
     fn stability(&self) -> &[(String, Stability)];
@@ -222,13 +222,13 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn contact_forces(&mut self, body: usize) -> Vec<[f64; 3]>;
     /// The nodes of a body that are pinned now.
     fn pinned_now(&self, body: usize) -> Vec<u32>;
-    /// The default stiffness [N/m] and largest force [N] of a pull; none if there is no such body.
+    /// The default stiffness [N/m] and largest force [N] of a pull; `None` if there is no such body.
     fn usual_pull(&self, body: usize) -> Option<[f64; 2]>;
     /// Pulls that act now: grabbed point [m], pointer [m], force [N].
     fn pulls(&self) -> Vec<[[f64; 3]; 3]>;
     /// The obstacles at the present time, in scene order.
     fn obstacles(&self) -> Vec<Picture<3>>;
-    /// The pairs of nodes that springs of a body join; none if there is no such body or if a model refuses it. Body numbers beyond those of the scene
+    /// The pairs of nodes that springs of a body join; `None` if there is no such body or if a model refuses it. Body numbers beyond those of the scene
     /// refer to [`AnyWorld::coming_bodies`].
     fn springs_of(&self, body: usize) -> Option<Vec<[u32; 2]>>;
 }

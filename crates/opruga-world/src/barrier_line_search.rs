@@ -118,7 +118,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(gone)
     }
 
-    /// The sum of Φ of all bodies, B and D (see `barrier_search`), and the sum of the magnitudes of these terms [J]; none with damping.
+    /// The sum of Φ of all bodies, B and D (see `barrier_search`), and the sum of the magnitudes of these terms [J]; `None` with damping.
     fn energy(&self) -> Option<[f64; 2]> {
         let [mut sum, mut size] = [0.0; 2];
         for open in &self.opened {

@@ -95,7 +95,7 @@ pub(crate) struct Search<'a, 'b, const D: usize> {
     pub(crate) touching: &'a mut Touching<D>,
     pub(crate) barrier: &'a mut Barrier<D>,
     pub(crate) opened: Vec<Opened<D>>,
-    /// The body and first coordinate index of every point of the surfaces; none for points of obstacles.
+    /// The body and first coordinate index of every point of the surfaces; `None` for points of obstacles.
     pub(crate) coordinates: Vec<Option<(usize, usize)>>,
     /// Displacements of all points since the start of the step, and their positions.
     pub(crate) moved: Vec<[f64; D]>,
@@ -116,7 +116,7 @@ pub(crate) struct Search<'a, 'b, const D: usize> {
     pub(crate) converged: bool,
     /// The factor by which the next correction is lengthened.
     pub(crate) stretch: f64,
-    /// The terms that keep bodies at rest near their present positions during a correction; none for moving bodies.
+    /// The terms that keep bodies at rest near their present positions during a correction; `None` for moving bodies.
     pub(crate) staying: Option<Staying>,
 }
 

@@ -62,7 +62,7 @@ pub struct Blueprint<const D: usize> {
     pub bodies: Vec<BodyBlueprint<D>>,
     /// Rigid obstacles.
     pub colliders: Vec<ColliderBlueprint>,
-    /// How bodies touch one another; none if they do not.
+    /// How bodies touch one another; `None` if they do not.
     pub contact: Option<ContactBlueprint>,
     /// Forces from outside.
     pub loads: Vec<LoadBlueprint<D>>,
@@ -166,7 +166,7 @@ pub struct BodyBlueprint<const D: usize> {
     pub angular_velocity: Vec<f64>,
     /// Velocity gradient at the start, G = ∂v/∂x, row by row [1/s]. It adds the velocity G (x − c) at the position x, where c is the centre of mass.
     pub velocity_gradient: [[f64; D]; D],
-    /// Additional velocity of every node at the start [m/s], one row per node; empty: none.
+    /// The additional velocity of every node at the start [m/s], one row per node; empty if there is none.
     pub node_velocities: Arc<[[f64; D]]>,
     /// The mass of the body or of its parts.
     pub mass: Mass,
@@ -239,7 +239,7 @@ pub struct PinBlueprint<const D: usize> {
     pub select: Selector<D>,
     /// The pinned axes.
     pub axes: [bool; D],
-    /// Displacement from the start over time, rows `[t, dx, dy(, dz)]`; empty: at rest.
+    /// The displacement from the start over time, rows `[t, dx, dy(, dz)]`; empty for a node at rest.
     pub motion: Vec<Vec<f64>>,
 }
 
@@ -268,7 +268,7 @@ pub struct LoadBlueprint<const D: usize> {
     pub select: Selector<D>,
     /// The force that acts.
     pub kind: LoadKind<D>,
-    /// A factor over time, rows `[t, factor]`; empty: always 1.
+    /// A factor over time, rows `[t, factor]`; an empty curve means the factor 1.
     pub curve: Vec<Vec<f64>>,
 }
 
@@ -357,9 +357,9 @@ pub enum Action<const D: usize> {
     Change {
         /// The body, by its index in the list.
         body: usize,
-        /// Its models from now on; none: as before.
+        /// The models of the body from now on; `None` if they do not change.
         models: Option<Vec<Values>>,
-        /// Its own integrator from now on; none: as before.
+        /// The body's own integrator from now on; `None` if it does not change.
         integrator: Option<Values>,
     },
     /// Add a body.

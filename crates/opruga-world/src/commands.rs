@@ -21,7 +21,7 @@ use std::sync::{Arc, PoisonError};
 const FARTHEST_PULL: f64 = 10.0;
 
 impl<const D: usize> Action<D> {
-    /// The number of the body on which the action acts; none if it changes a parameter, adds a body, or removes one by name.
+    /// The number of the body on which the action acts; `None` if it changes a parameter, adds a body, or removes one by name.
     pub fn body(&self) -> Option<usize> {
         match self {
             Action::Drag { body, .. }
@@ -59,7 +59,7 @@ impl<const D: usize> World<D> {
         self.refused.as_deref()
     }
 
-    /// The default stiffness [N/m] and largest force [N] of a pull on a body; none if there is no such body.
+    /// The default stiffness [N/m] and largest force [N] of a pull on a body; `None` if there is no such body.
     pub fn usual_pull(&self, body: usize) -> Option<[f64; 2]> {
         self.handle(body)?;
         let (island, lane) = self.locations[body];
@@ -88,7 +88,7 @@ impl<const D: usize> World<D> {
     /// Commands of the scene that are due begin before this command. The number stays the same until the world is rebuilt.
     ///
     /// # Errors
-    /// [`WorldError`] if its time is not that of the coming frame, or if it is refused. The command then has no effect.
+    /// [`WorldError`] if the time of the command is not that of the coming frame, or if the command is refused. The command then has no effect.
     pub fn act(&mut self, command: CommandBlueprint<D>) -> Result<usize, WorldError> {
         let (at, now) = (command.at, self.time());
         if (at - now).abs() > 1e-9 * self.blueprint.time.frame {
@@ -376,8 +376,8 @@ impl<const D: usize> World<D> {
 
 /// The default stiffness [N/m] and largest force [N] of a pull.
 ///
-/// With this stiffness the whole body would oscillate on the spring twice a second. The largest force is that of the spring stretched by
-/// [`FARTHEST_PULL`] sizes of the body at rest, wherever the pointer goes.
+/// With this stiffness the whole body would oscillate on the spring twice a second. The largest force is the force of the spring when it is stretched
+/// by [`FARTHEST_PULL`] sizes of the body at rest, wherever the pointer goes.
 fn usual_pull<const D: usize>(system: &System<D>, lane: usize, body: &BodyBlueprint<D>) -> [f64; 2] {
     let whole: f64 = (0..system.nodes).map(|n| system.mass.at(system.layout.index(n, lane))).sum();
     let stiffness = whole * 157.913_670_417_429_74;

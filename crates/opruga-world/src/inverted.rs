@@ -89,7 +89,7 @@ impl<const D: usize> World<D> {
         found.collect()
     }
 
-    /// The hint to use `unfold` for a body that rests in a degenerate shape; none if the scene already uses it.
+    /// The hint to use `unfold` for a body that rests in a degenerate shape; `None` if the scene already uses it.
     pub(crate) fn or_unfold(&self) -> Option<UnfoldHint> {
         (!self.blueprint.surroundings.unfold).then_some(UnfoldHint::Unfold)
     }

@@ -301,8 +301,8 @@ pub(crate) const LARGEST_DAMPING: f64 = 0.05;
 /// The relative error of a number after many roundings.
 const ROUNDING: f64 = 1e-13;
 
-/// Ten times the rounding error of a difference of numbers, relative to the numbers. So the ledger still closes if a few rounding errors of 1e-16 all
-/// have the same sign.
+/// Ten times the rounding error of a difference of numbers, relative to the numbers. The ledger therefore still closes if a few rounding errors of
+/// 1e-16 all have the same sign.
 const CANCELLATION: f64 = 1e-14;
 
 impl<const D: usize> Survey<D> {

@@ -33,7 +33,7 @@ fn push<const D: usize>(tile: &mut Tile<D>, view: &View<D>, index: usize, force:
 pub(crate) struct NodeForces<const D: usize> {
     /// Index and force [N], with ascending indices.
     pub(crate) entries: Vec<(usize, [f64; D])>,
-    /// Factor over time, rows `[t, factor]`; empty: 1.
+    /// A factor over time, rows `[t, factor]`; an empty curve means the factor 1.
     pub(crate) curve: Vec<Vec<f64>>,
 }
 

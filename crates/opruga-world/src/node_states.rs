@@ -63,7 +63,7 @@ impl Sum {
 }
 
 impl<const D: usize> World<D> {
-    /// The states of the nodes of a body; none for a node without stress around it, empty if there is no such body.
+    /// The states of the nodes of a body; `None` for a node without stress around it, empty if there is no such body.
     pub fn node_states(&self, body: usize) -> Vec<Option<NodeState>> {
         if self.handle(body).is_none() {
             return Vec::new();
@@ -88,7 +88,7 @@ impl<const D: usize> World<D> {
         self.facet_states(body).iter().for_each(|state| visit(state, &mesh.facets[state.cell as usize]));
     }
 
-    /// The mean over some nodes; none if no node has a state.
+    /// The mean over some nodes; `None` if no node has a state.
     pub(crate) fn mean_of_cells(&self, body: usize, nodes: &[u32]) -> Option<NodeState> {
         let states = self.node_states(body);
         let mut sum = Sum::default();

@@ -22,8 +22,8 @@ pub(crate) const SAG: &str = "units.sag";
 ///
 /// In a chain of springs k between nodes of mass m the fastest oscillation is ω = 2 √(k/m), so k ≈ m ω²/4 represents the springs of one node,
 /// whatever the models are. The weight M g of a body of N nodes is carried by rows of springs. In a surface, there are as many rows side by side as
-/// springs in a row; in a solid, there are N^⅓ times as many. So sag ≈ M g / k or M g / (k N^⅓). An outline sags more, but gas usually supports it,
-/// so it is treated as a surface.
+/// springs in a row; in a solid, there are N^⅓ times as many. The sag is therefore about M g / k or M g / (k N^⅓). An outline sags more, but gas
+/// usually supports it, so it is treated as a surface.
 ///
 /// If only the boundary of a solid has nodes, the stiffness grows in proportion to the wave number, and not to its square. The fastest motion of a
 /// node is therefore that of one spring between the node and its surroundings, with k ≈ m ω². A cube of n × n × n springs has N = 6 n² nodes on its

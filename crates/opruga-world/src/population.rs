@@ -20,8 +20,8 @@ use std::collections::BTreeMap;
 const MOST_NAMED: usize = 16;
 
 impl<const D: usize> World<D> {
-    /// Adds a body; returns its number. After the removal of the body, nothing is kept of it, and another body that the program adds may get the same
-    /// number. [`World::handle`] distinguishes these bodies.
+    /// Adds a body; returns its number. After the removal of the body, the world keeps nothing of it, and another body that the program adds may get
+    /// the same number. [`World::handle`] distinguishes these bodies.
     ///
     /// # Errors
     /// [`WorldError`] if its name is taken, if a scene could not contain it, or if a model refuses it; the world is then unchanged.

@@ -97,7 +97,7 @@ fn signed_area<const D: usize>(at: &[[f64; D]; D], normal: &[f64; D]) -> f64 {
 }
 
 impl<const D: usize> World<D> {
-    /// The first point of a body that a ray hits, at most `reach` [m] from its origin; none if it hits nothing. Wires in space are too thin to be
+    /// The first point of a body that a ray hits, at most `reach` [m] from its origin; `None` if it hits nothing. Wires in space are too thin to be
     /// hit. If points have the same distance, the first body and facet win.
     ///
     /// # Errors
@@ -146,7 +146,7 @@ impl<const D: usize> World<D> {
         Ok(best)
     }
 
-    /// The point nearest to a given point on the surfaces of all bodies, at most `reach` [m] away; none if there is no such point. If points have the
+    /// The point nearest to a given point on the surfaces of all bodies, at most `reach` [m] away; `None` if there is no such point. If points have the
     /// same distance, the first body and facet win.
     ///
     /// # Errors

@@ -21,7 +21,7 @@ impl<const D: usize> World<D> {
     pub fn is_static(&self) -> bool {
         !self.islands.is_empty() && self.islands.iter().all(|island| island.integrator.is_static())
     }
-    /// The kinds of integrators in use: that of the scene, then those of individual bodies.
+    /// The kinds of integrators in use: first the integrator of the scene, then those of individual bodies.
     pub fn integrators(&self) -> Vec<&'static str> {
         let mut out = Vec::new();
         let bodies: Vec<_> = self.bodies().map(|b| &self.blueprint.bodies[b].integrator).collect();

@@ -132,7 +132,7 @@ impl<const D: usize> Body<D> {
     }
 
     /// Adds the effect of new contact forces to the correction, and computes the forces at its end. Returns the largest displacement [m] and the part
-    /// of the forces that was not predicted; none if the correction is too long or if a model is not defined at its end.
+    /// of the forces that was not predicted; `None` if the correction is too long or if a model is not defined at its end.
     fn end_correction(&mut self, system: &mut System<D>, pushes: Pushes<D>) -> Option<(f64, f64)> {
         let mut change = vec![0.0; self.open.step.displacements().len()];
         for (of, sign) in [(&pushes, 1.0), (system.pushes.as_ref().unwrap_or(&Vec::new()), -1.0)] {
@@ -316,7 +316,7 @@ impl<const D: usize> Search<'_, '_, D> {
     }
 
     /// Finds the correction of all bodies, with the contact forces at its end. Returns the largest displacement [m] and the part of the forces that
-    /// was not predicted; none if the correction is not possible.
+    /// was not predicted; `None` if the correction is not possible.
     fn correct(&mut self) -> Result<Option<(f64, f64)>, Refused> {
         let Search { islands, touching, bodies, h, matrix, .. } = &mut *self;
         let (h, matrix) = (*h, *matrix);

@@ -21,7 +21,7 @@ pub(crate) struct SceneContact<const D: usize> {
     pub(crate) bodies: Vec<usize>,
     /// The island and the lane of each body.
     pub(crate) seats: Vec<(usize, usize)>,
-    /// Their integrators: equal numbers mean the same integrator.
+    /// The integrators of the bodies: equal numbers mean the same integrator.
     pub(crate) rules: Vec<u32>,
     /// Corners and edges of obstacles; their numbers follow those of the bodies.
     pub(crate) outlines: Vec<Arc<Outline<D>>>,
@@ -32,7 +32,7 @@ pub(crate) struct SceneContact<const D: usize> {
     pub(crate) most: usize,
     /// The vector instructions of the world.
     pub(crate) simd: Simd,
-    /// The reach of the barrier [m]; none if impulses keep bodies apart.
+    /// The reach of the barrier [m]; `None` if impulses keep bodies apart.
     pub(crate) reach: Option<f64>,
     /// The distance from their present positions within which bodies may touch others [m].
     distance: f64,
@@ -61,7 +61,7 @@ impl<const D: usize> MadeFor<D> {
 }
 
 impl<const D: usize> SceneContact<D> {
-    /// The contact of a scene in its present state; none without `[contact]`, or if no two bodies may touch.
+    /// The contact of a scene in its present state; `None` without `[contact]`, or if no two bodies may touch.
     pub(crate) fn of(
         scene: &Blueprint<D>,
         islands: &[Island<D>],
@@ -119,7 +119,7 @@ impl<const D: usize> SceneContact<D> {
         self.made_for.is(made_for)
     }
 
-    /// The obstacles for which the data were made; none if the scene has no obstacles.
+    /// The obstacles for which the data were made; `None` if the scene has no obstacles.
     pub(crate) fn colliders(&self) -> Option<&Arc<Colliders<D>>> {
         self.made_for.colliders.as_ref()
     }

@@ -39,6 +39,7 @@ struct Hands<'a, const D: usize> {
 ///
 /// If bodies of different groups come close to one another, both groups return to the start of the frame and are stepped through it together.
 ///
+/// # Errors
 /// [`Trouble`], with its time [s], if more pairs may touch than the scene allows, or if pins and obstacles move bodies through one another.
 pub(crate) fn frame<const D: usize>(
     clusters: &mut Clusters<D>,

@@ -115,7 +115,7 @@ fn axes<const D: usize>(nodes: &[u32], at: impl Fn(u32) -> [f64; D]) -> [[f64; 3
     out
 }
 
-/// F, row by row, from the axes of a cell at rest and now; none for a cell without volume at rest.
+/// F, row by row, from the axes of a cell at rest and the present axes; `None` for a cell without volume at rest.
 fn gradient(rest: &[[f64; 3]; 3], now: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
     let cross = |a: &[f64; 3], b: &[f64; 3]| -> [f64; 3] {
         core::array::from_fn(|d| a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3])

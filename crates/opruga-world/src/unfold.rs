@@ -1,7 +1,7 @@
 //! Recovery of bodies that rest in a degenerate shape: flat, inverted or folded. It is active if the scene contains `[world] unfold = true`.
 //!
 //! A body that was squeezed onto a plane, a line or a point, or that was inverted, may be in equilibrium by symmetry alone: no force acts out of the
-//! plane, although the energy falls on both sides of it. No solver can leave such a shape by itself, because solvers follow the forces. The world
+//! plane, although the energy falls on both sides of it. No solver can leave such a shape without help, because solvers follow the forces. The world
 //! therefore checks the bodies from time to time. If a body is at rest with degenerate or inverted cells, or is strained although nothing acts on it,
 //! its free nodes are displaced at random, in the same way in every run: first by 10⁻⁴ of its size, then by a hundredth and by a tenth of it. Between
 //! two displacements, the body has time to leave the shape. Every displacement is counted. A degenerate shape that remains after the last
@@ -331,7 +331,7 @@ fn turned<const D: usize>(spin: &[f64; 3], arm: &[f64; D]) -> [f64; D] {
     })
 }
 
-/// The size of a body that is degenerate, inverted, or strained without cause [m]; none if its shape is regular.
+/// The size of a body that is degenerate, inverted, or strained without cause [m]; `None` if its shape is regular.
 fn degenerate_size<const D: usize>(system: &System<D>, mesh: &Mesh<D>) -> Option<f64> {
     let (alone, cells) = (nothing_acts(system), cells(system));
     // Models without cells have no degenerate cells.

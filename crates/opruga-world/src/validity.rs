@@ -123,7 +123,7 @@ impl SelectorFault {
 }
 
 impl<const D: usize> Selector<D> {
-    /// The reason why the set is not valid for a body; none if it is.
+    /// The reason why the set is not valid for a body; `None` if it is.
     pub fn fault(&self, body: &BodyBlueprint<D>) -> Option<SelectorFault> {
         let (mut node, mut group) = (None, None);
         self.visit(&mut |part| match part {
@@ -350,7 +350,7 @@ fn load<const D: usize>(load: &LoadBlueprint<D>, bodies: &[&BodyBlueprint<D>]) -
     select(&load.select, body)
 }
 
-/// Checks a command by itself; the existence of its body is checked when it begins.
+/// Checks a command alone; the existence of its body is checked when the command begins.
 pub(crate) fn command<const D: usize>(command: &CommandBlueprint<D>) -> Result<(), Fault> {
     range::<D>(&Allowed::ANY, "at", Value::Number(command.at))?;
     range::<D>(&Allowed::ANY, "until", Value::Number(command.until))?;

@@ -41,7 +41,7 @@ pub struct Warning {
     pub message: String,
     /// The number of times that it happened.
     pub count: u64,
-    /// What happened, as a value; none if there is only the text.
+    /// What happened, as a value; `None` if there is only the text.
     pub about: Option<AnyMessage>,
 }
 

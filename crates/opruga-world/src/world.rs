@@ -32,7 +32,7 @@ pub(crate) const MOST_THREADS: usize = 256;
 pub struct Options {
     /// The number of threads, 1 to 256; 1 runs everything on the calling thread.
     pub threads: usize,
-    /// Vector instructions; none: the best that the processor supports.
+    /// The vector instructions; `None` stands for the best that the processor supports.
     pub simd: Option<Simd>,
     /// Whether steps above the estimated limit cause a warning instead of an error.
     pub allow_unstable: bool,
@@ -68,11 +68,11 @@ pub struct World<const D: usize> {
     pub(crate) integrator: Arc<dyn Integrator<D>>,
     pub(crate) colliders: Option<Arc<Colliders<D>>>,
     pub(crate) islands: Vec<Island<D>>,
-    /// Bodies that may touch, and their contacts; none without `[contact]`.
+    /// Bodies that may touch, and their contacts; `None` without `[contact]`.
     pub(crate) clusters: Option<Box<Clusters<D>>>,
     /// The state of contact that is kept from frame to frame.
     pub(crate) contact_memory: ContactMemory<D>,
-    /// The contacts of the last frame; none if they are not reported.
+    /// The contacts of the last frame; `None` if they are not reported.
     pub(crate) contacts: Option<Vec<Contact<D>>>,
     /// The number of islands built since the start.
     pub(crate) islands_built: u64,
@@ -100,7 +100,7 @@ pub struct World<const D: usize> {
     pub(crate) at_start: AtStart<D>,
     /// The cosine of the largest rotation of a cell under the law `linear` that was reported.
     pub(crate) farthest_turn: f64,
-    /// The inputs of the program since the last request; none if they are not recorded.
+    /// The inputs of the program since the last request; `None` if they are not recorded.
     pub(crate) inputs: Option<Vec<Input<D>>>,
     /// The workspaces, one for each thread.
     pub(crate) workspaces: Vec<Mutex<Workspace<D>>>,
@@ -144,11 +144,11 @@ impl<const D: usize> World<D> {
     pub fn blueprint(&self) -> &Blueprint<D> {
         &self.blueprint
     }
-    /// The obstacles of the scene; none if it has no obstacles.
+    /// The obstacles of the scene; `None` if it has no obstacles.
     pub fn colliders(&self) -> Option<&Colliders<D>> {
         self.colliders.as_deref()
     }
-    /// The work of contact between bodies since the bodies were grouped; none without contact.
+    /// The work of contact between bodies since the bodies were last grouped; `None` without contact.
     pub fn contact_counts(&self) -> Option<opruga_collide::Counts> {
         self.clusters.as_ref().map(|clusters| clusters.counts())
     }

@@ -179,7 +179,7 @@ const fn lag<P: Pack>() -> usize {
 }
 
 impl<P: Pack, L: PairLaw<D>, const D: usize> Walker<'_, P, L, D> {
-    /// Calls [`PairLaw::ahead`] for the pack from `k` on.
+    /// Calls [`PairLaw::ahead`] for the pack that starts at `k`.
     #[inline(always)]
     fn look_ahead(&mut self, into: usize, k: usize) {
         if L::AHEAD {
@@ -192,7 +192,7 @@ impl<P: Pack, L: PairLaw<D>, const D: usize> Walker<'_, P, L, D> {
         }
     }
 
-    /// Processes the pack of nodes from `k` on; returns the power of their pairs. `EDGE`: not all eight nodes exist.
+    /// Processes the pack of nodes that starts at `k`; returns the power of their pairs. `EDGE`: not all eight nodes exist.
     #[inline(always)]
     fn step<const BATCH: bool, const FRESH: bool, const SAME: bool, const EDGE: bool>(
         &mut self,

@@ -335,8 +335,8 @@ impl<L: PairLaw<D>, const D: usize> Work for Long<'_, '_, '_, L, D> {
     }
 }
 
-/// Adds slots to `count` forces from `at` on. Each force receives one slot times `sign`. If `BOTH` is set, it receives the slot
-/// of the first node and then `sign` times the slot of the second node. Later forces do not change.
+/// Adds slots to `count` forces that start at `at`. Each force receives one slot times `sign`. If `BOTH` is set, it receives the slot of the first
+/// node and then `sign` times the slot of the second node. Later forces do not change.
 #[inline(always)]
 fn add_slots<P: Pack, const BOTH: bool>(
     into: &mut [f64],

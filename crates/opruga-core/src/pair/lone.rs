@@ -17,7 +17,7 @@ pub(super) struct Lone {
 }
 
 impl Lone {
-    /// Adds the force of the pair to those of its nodes that are in a tile.
+    /// Adds the force of the pair to the forces on its nodes in a tile.
     #[inline(always)]
     pub(super) fn add<P: Pack, L: PairLaw<D>, const D: usize>(
         &self,

@@ -75,11 +75,11 @@ struct Piece<const D: usize> {
     direction: Column,
     product: Column,
     solution: Column,
-    /// Its part of a scalar product.
+    /// The part of a scalar product that comes from this piece.
     sum: f64,
     /// The number of its first pack.
     first: usize,
-    /// Its part of the stiffness.
+    /// The part of the stiffness that comes from this piece.
     stiffness: f64,
     /// Whether all of its diagonal blocks have an inverse.
     definite: bool,
