@@ -37,7 +37,7 @@ use crate::touching::{Touching, Trouble};
 use crate::vector::{add, dot, length, scaled, subtract};
 use opruga_math::{Lane, Simd};
 
-/// The smallest fraction of its gap that a pair keeps in one iteration; the value is that of the source (2020, section 5).
+/// The smallest fraction of its gap that a pair keeps in one iteration, with the value of the source (2020, section 5).
 const KEPT: f64 = 0.1;
 
 /// The squared sine of the angle between two edges below which their barrier fades out. The source uses the same value (2020,

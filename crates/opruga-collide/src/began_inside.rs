@@ -1,5 +1,4 @@
-//! Points that are inside another body at the start of a frame: those of bodies that began inside one another and have not come
-//! out yet.
+//! Points that are inside another body at the start of a frame, because their bodies began inside one another and have not come out yet.
 
 use crate::gap::Gap;
 use crate::touching::Touching;

@@ -16,7 +16,7 @@ use opruga_math::{Lane, Simd};
 pub struct Candidates<const D: usize> {
     /// Vertex and facet.
     pub vertex_facet: Vec<[u32; 2]>,
-    /// Two edges, the one with the lower number first; empty in 2D.
+    /// Two edges, of which the edge with the lower number comes first; empty in 2D.
     pub edge_edge: Vec<[u32; 2]>,
     /// The vector instructions. The pairs that a search finds do not depend on them.
     pub simd: Simd,

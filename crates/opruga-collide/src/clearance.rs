@@ -13,8 +13,8 @@ use opruga_math::Lane;
 /// ```
 ///
 /// s is the path of the body of a feature: the largest displacement of its points, summed over the steps. Displacements are relative to the mean
-/// displacement of all points or, if both features belong to one body, to that of its points. Bodies that fall together, or rotate little, therefore
-/// keep their bounds.
+/// displacement of all points. If both features belong to one body, displacements are relative to the mean displacement of the points of this body.
+/// Bodies that fall together, or rotate little, therefore keep their bounds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clearance<const D: usize> {
     /// The positions at the end of the paths [m].
@@ -28,8 +28,8 @@ pub(crate) struct Clearance<const D: usize> {
     push: Vec<f64>,
     /// Upper bounds on both paths of every body at the end of this step [m], wherever contact pushes its points.
     ends: Vec<[f64; 2]>,
-    /// For every body, its path at the last search for its own pairs (those of the body with itself), and the distance around
-    /// its points that this search covered [m].
+    /// For every body, its path at the last search for pairs of the body with itself, and the distance around its points that this search covered
+    /// [m].
     own: Vec<[f64; 2]>,
     /// For every body, whether the present search includes its own pairs.
     due: Vec<bool>,

@@ -90,7 +90,8 @@ pub fn closest_on_segment<const D: usize>(p: &[f64; D], a: &[f64; D], b: &[f64; 
     if square > 0.0 { (dot(&subtract(p, a), &ab) / square).larger(0.0).smaller(1.0) } else { 0.0 }
 }
 
-/// The positions of the closest points on two segments, each from 0 to 1. For parallel segments this is one of several pairs.
+/// The positions of the closest points on two segments, each from 0 to 1. Parallel segments have several pairs of closest points, of which this is
+/// one.
 ///
 /// # Source
 /// C. Ericson, Real-Time Collision Detection (2005), §5.1.9.
@@ -119,8 +120,7 @@ pub fn closest_of_segments<const D: usize>(a: &[[f64; D]; 2], b: &[[f64; D]; 2])
     [s, t]
 }
 
-/// The squared sine of their angle below which two edges count as parallel. It is a hundred times the rounding error of the
-/// products, 1e-16.
+/// The squared sine of their angle below which two edges count as parallel. This limit is a hundred times the rounding error of the products, 1e-16.
 pub(crate) const PARALLEL: f64 = 1e-14;
 
 /// Returns the weighted sum Σ wᵢ xᵢ of points.

@@ -49,7 +49,7 @@ impl<const D: usize> Colliders<D> {
         }
         Ok(Colliders { all: colliders.into(), without_faces: false })
     }
-    /// Returns the same colliders, except that those with faces do not hold nodes. Surfaces keep their numbers.
+    /// Returns the same colliders, except that colliders with faces do not hold nodes. Surfaces keep their numbers.
     pub fn without_faces(&self) -> Colliders<D> {
         Colliders { all: Arc::clone(&self.all), without_faces: true }
     }

@@ -91,7 +91,7 @@ impl<const D: usize> Coupled<D> {
         !self.bodies.is_empty() && (0..points.len()).any(|k| weights[k] != 0.0 && self.body_of(points[k]).is_some())
     }
 
-    /// Discards all impulses, so that those of a new solution can be added.
+    /// Discards all impulses, so that the impulses of a new solution can be added.
     pub(crate) fn begin(&mut self) {
         for body in &mut self.bodies {
             body.matrix = None;

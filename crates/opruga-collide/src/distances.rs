@@ -22,7 +22,7 @@ pub(crate) struct Distances<'a, const D: usize> {
     pub(crate) surface: &'a Surface<D>,
     pub(crate) x: &'a [[f64; D]],
     pub(crate) pairs: &'a mut [Unclear],
-    /// Whether the pairs are those of a vertex and a facet.
+    /// Whether the pairs consist of a vertex and a facet.
     pub(crate) with_facet: bool,
 }
 

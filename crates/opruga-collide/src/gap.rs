@@ -7,8 +7,8 @@ use opruga_math::Lane;
 
 /// Two features at their closest points.
 ///
-/// When the points move, the gap changes by Σ wᵢ n·Δxᵢ. The weights of one feature sum to 1, those of the other to −1, so
-/// impulses wᵢ n λ on the points conserve momentum.
+/// When the points move, the gap changes by Σ wᵢ n·Δxᵢ. The weights of one feature sum to 1 and the weights of the other to −1, so impulses wᵢ n λ on
+/// the points conserve momentum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap<const D: usize> {
     /// The points; unused ones have the weight 0 and repeat the first.

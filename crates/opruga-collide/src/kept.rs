@@ -11,8 +11,8 @@ const EDGES: u32 = 1;
 const OF_OBSTACLE: u32 = 2;
 
 impl<const D: usize> Touching<D> {
-    /// Returns what the number of a pair stands for: its kind, then the body and the number of its first feature, and those of
-    /// its second feature. An obstacle that holds nodes is not a body, and has the number of a surface.
+    /// Returns what the number of a pair stands for: its kind, the body and the number of its first feature, and the body and the number of its
+    /// second feature. An obstacle that holds nodes is not a body, and has the number of a surface.
     pub fn features_of(&self, id: u64) -> [u32; 5] {
         let part = |shift: u32| ((id >> shift) & ((1 << 31) - 1)) as u32;
         let (a, b) = (part(31), part(0));

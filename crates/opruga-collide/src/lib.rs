@@ -12,10 +12,9 @@
 //! position         onto the surface
 //! ```
 //!
-//! **Rest.** An approach is an impact if the node was off the surface at the start of the step and is faster than `rest_speed`.
-//! (If it was on the surface, its whole normal speed comes from the step itself: from weight or from the body behind it.) In
-//! all other contacts, nodes do not bounce. With `rest_speed = 0`, every crossing is an impact, even that of a node that lies
-//! on the floor. This is the rule v = −e v of the thesis.
+//! **Rest.** An approach is an impact if the node was off the surface at the start of the step and is faster than `rest_speed`. (If it was on the
+//! surface, its whole normal speed comes from the step itself: from weight or from the body behind it.) In all other contacts, nodes do not bounce.
+//! With `rest_speed = 0`, every crossing is an impact, even if the node lies on the floor. This is the rule v = −e v of the thesis.
 //!
 //! **Speed of an impact.** The force acts for the whole step, but the node meets the surface within it. The speed s of the impact therefore follows
 //! from s² = u² + 2 a g, with the approach u and the gap g at the start of the step and the acceleration a towards the surface. It is limited to the
@@ -55,9 +54,8 @@
 //! **Whole obstacles.** If bodies meet one another, corners and edges of obstacles ([`Outline`]) are part of the surfaces, with zero inverse mass.
 //! These corners and edges meet the facets and edges of bodies in the same way as those of another body do. Nodes meet obstacles as above.
 //!
-//! **Limits.** If bodies do not meet one another, only nodes meet colliders, so an obstacle finer than the mesh can pass
-//! between two nodes. A tilted or curved surface is evaluated at the end of the step. This is an approximation of first order
-//! in h.
+//! **Limits.** If bodies do not meet one another, only nodes meet colliders, so an obstacle finer than the mesh can pass between two nodes. A tilted
+//! or curved surface is evaluated at the end of the step. This evaluation is an approximation of first order in h.
 
 // Units are in brackets, [m], which rustdoc takes for links.
 #![allow(rustdoc::broken_intra_doc_links)]

@@ -249,8 +249,8 @@ impl<const D: usize> Equations<D> {
         largest
     }
 
-    /// Runs Newton's method. Changes are counted from the given impulses, which are then replaced by those with the smallest
-    /// residual. Returns whether it converged.
+    /// Runs Newton's method. Changes are counted from the given impulses, which are then replaced by the impulses with the smallest residual. Returns
+    /// whether it converged.
     fn improve(&mut self, impulses: &mut Vec<f64>, enough: f64) -> bool {
         self.center.clone_from(impulses);
         let mut trial = self.trial(impulses.clone(), self.velocities(impulses));

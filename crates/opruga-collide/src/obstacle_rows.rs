@@ -1,4 +1,4 @@
-//! Contacts of points with obstacles, beside contacts between bodies.
+//! Contacts of points with obstacles, in addition to contacts between bodies.
 
 use crate::row::{OBSTACLE_BIT, Row};
 use crate::rows::append;

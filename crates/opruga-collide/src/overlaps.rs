@@ -75,8 +75,8 @@ fn longest_axis<const D: usize>(boxes: &[(u32, Bounds<D>)]) -> usize {
     (1..D).fold(0, |longest, d| if extents[d] > extents[longest] { d } else { longest })
 }
 
-/// Calls `visit` with all pairs of a feature of the first list and a feature of the second list whose boxes overlap; `columns`
-/// holds the boxes of the second list.
+/// Calls `visit` with all pairs of a feature of the first list and a feature of the second list, if their boxes overlap. `columns` holds the boxes of
+/// the second list.
 pub(crate) struct Overlaps<'a, F, const D: usize> {
     pub(crate) first: &'a [(u32, Bounds<D>)],
     pub(crate) second: &'a [(u32, Bounds<D>)],

@@ -119,8 +119,8 @@ impl<const D: usize> Reach<D> {
         }
     }
 
-    /// Whether all boxes are inside those of the last search, with a quarter of a margin to spare. Then even pairs slightly beyond the boxes of the
-    /// step are known, whenever the last search was made.
+    /// Whether all boxes are inside the boxes of the last search, with a quarter of a margin to spare. Then even pairs slightly beyond the boxes of
+    /// the step are known, whenever the last search was made.
     pub(crate) fn is_covered(&self) -> bool {
         !self.stale.contains(&true)
     }

@@ -60,7 +60,7 @@ impl<const D: usize> Touching<D> {
         all.truncate(number);
     }
 
-    /// Adds the pairs found in a part of the candidates to those of the previous parts.
+    /// Adds the pairs found in a part of the candidates to the pairs of the previous parts.
     fn take_in(&mut self, found: &mut Found<D>) {
         let first = self.spread.append(&mut found.spread);
         if first > 0 {

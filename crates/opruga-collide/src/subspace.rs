@@ -1,11 +1,10 @@
 //! The impulses of all active contacts at once, by conjugate gradients between sweeps.
 //!
-//! A sweep passes an impulse on from contact to contact. For coupled bodies, such as those of implicit integrators, a sweep
-//! removes only a part of smooth errors, such as the error of a pressure that varies along a side. As long as the same contacts
-//! are active, the equations are linear: contacts that press keep their normal velocity, and those that stick do not slide.
-//! Their matrix W = G Y Gᵀ is symmetric and has no negative eigenvalues, so conjugate gradients can solve them. Contacts that
-//! would pull or begin to slide are removed from the equations, and sweeps decide which of them return. (Silcowitz, Niebe and
-//! Erleben 2010, a projected Gauss–Seidel subspace method.)
+//! A sweep passes an impulse on from contact to contact. For coupled bodies, such as bodies with implicit integrators, a sweep removes only a part of
+//! smooth errors, such as the error of a pressure that varies along a side. As long as the same contacts are active, the equations are linear:
+//! contacts that press keep their normal velocity, and those that stick do not slide. Their matrix W = G Y Gᵀ is symmetric and has no negative
+//! eigenvalues, so conjugate gradients can solve them. Contacts that would pull or begin to slide are removed from the equations, and sweeps decide
+//! which of them return. (Silcowitz, Niebe and Erleben 2010, a projected Gauss–Seidel subspace method.)
 
 use crate::coupled::Coupled;
 use crate::row::Row;

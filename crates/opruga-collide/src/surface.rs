@@ -206,7 +206,7 @@ impl<const D: usize> Surface<D> {
         }
     }
 
-    /// Computes vectors of carried points from those of the nodes: positions, velocities, displacements.
+    /// Computes vectors of carried points from the vectors of the nodes: positions, velocities, displacements.
     pub fn follow(&self, vectors: &mut [[f64; D]]) {
         for (p, carrier) in self.carried() {
             let mut sum = [0.0; D];

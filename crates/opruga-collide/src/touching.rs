@@ -28,8 +28,8 @@ use opruga_math::{Lane, Simd};
 /// position  x = x₀ + h v of every point that got an impulse; overlap is taken apart at `recovery_speed`, by positions alone
 /// ```
 ///
-/// Impulses start from those of the previous substep; the caller has to keep those of the last substep of a frame ([`Touching::visit_kept`],
-/// [`Touching::keep`]). Results do not depend on the steps in which candidates are searched.
+/// Impulses start from the impulses of the previous substep. The caller has to keep the impulses of the last substep of a frame
+/// ([`Touching::visit_kept`], [`Touching::keep`]). Results do not depend on the steps in which candidates are searched.
 #[derive(Debug, Default)]
 pub struct Touching<const D: usize> {
     /// The surfaces.
@@ -42,7 +42,7 @@ pub struct Touching<const D: usize> {
     pub coupled: Coupled<D>,
     /// Positions [m] and velocities [m/s] of the points at the start of the step.
     pub before: [Vec<[f64; D]>; 2],
-    /// Positions and velocities of the points after the free motion. Contact replaces those of touching points by its result.
+    /// Positions and velocities of the points after the free motion. Contact replaces the values of touching points by its result.
     pub after: [Vec<[f64; D]>; 2],
     /// The points that got an impulse or were moved, ascending.
     pub changed: Vec<u32>,
@@ -52,8 +52,7 @@ pub struct Touching<const D: usize> {
     /// Whether overlaps are removed by impulses within the step, and not by changes of positions. This is so for bodies at rest, which have no
     /// velocity.
     pub(crate) at_once: bool,
-    /// Whether the steps of coupled bodies have a fixed budget. Impulses are then found only as accurately as those of
-    /// uncoupled bodies.
+    /// Whether the steps of coupled bodies have a fixed budget. Impulses are then found only as accurately as for uncoupled bodies.
     pub has_budget: bool,
     /// The largest allowed displacement of points of bodies at rest [m]; impulses that exceed it are rejected.
     pub farthest: f64,

@@ -22,7 +22,7 @@ pub(crate) const TOLERANCE: f64 = 1e-2;
 pub(crate) const COUPLED_TOLERANCE: f64 = 1e-9;
 
 /// The sets of rows that points connect. The structure also stores the times at which rows were last solved and at which their velocities last
-/// changed, counted in turns of rows. They are stored separately from the rows, which are large.
+/// changed, counted in turns of rows. The times are stored separately from the rows, which are large.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns<const D: usize> {
     /// The turn in which the velocity of each point last changed.
@@ -498,10 +498,10 @@ impl<const D: usize> Sweeps<'_, D> {
         self.sweep(backward, enough, (coupled, spread), turn, followers)
     }
 
-    /// Sweeps over all rows by `turn`, which returns the change of the velocity of its row [m/s]. A row is skipped as long as no
-    /// velocity of its points has changed by more than `enough` since its last turn, so the cost of a sweep depends on the number
-    /// of rows that still change. `followers` visits the points that respond besides those of the row. Returns whether any
-    /// velocity changed by more than `enough`, and the largest change [m/s].
+    /// Sweeps over all rows by `turn`, which returns the change of the velocity of its row [m/s]. A row is skipped as long as no velocity of its
+    /// points has changed by more than `enough` since its last turn, so the cost of a sweep depends on the number of rows that still change.
+    /// `followers` visits the points that respond together with the points of the row. Returns whether any velocity changed by more than `enough`,
+    /// and the largest change [m/s].
     #[inline(always)]
     fn sweep<C>(
         &mut self,

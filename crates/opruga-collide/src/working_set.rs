@@ -2,7 +2,7 @@
 //!
 //! Most pairs of a step are only near one another and have no impulse in the end. Therefore, the laws are solved only for some contacts, the working
 //! set. Contacts that approach too fast then join the set, the fastest first, until none is left. Each solution satisfies the laws of all contacts of
-//! the set, so the last solution satisfies those of all contacts.
+//! the set, so the last solution satisfies the laws of all contacts of the step.
 
 use crate::coupled::Coupled;
 use crate::newton::{self, Aim};

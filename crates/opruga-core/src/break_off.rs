@@ -2,8 +2,8 @@
 
 use core::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// A shared request to end a long step, made explicitly or by a time limit. It is checked within steps and within preparations
-/// that take seconds. The threads that compute share it with those that wait.
+/// A shared request to end a long step, made explicitly or by a time limit. Steps check the request, and so do preparations that take seconds. The
+/// threads that compute share it with those that wait.
 #[derive(Debug)]
 pub struct BreakOff {
     asked: AtomicBool,

@@ -45,7 +45,7 @@ impl IntoField for BuildError {
     }
 }
 
-/// The range that a diverging body has left: that of finite numbers, or that of its positions [m].
+/// The range that a diverging body has left: the range of finite numbers, or the range of its positions [m].
 pub fn what_was_left(range: Option<f64>) -> String {
     match range {
         None => "the range of finite numbers".into(),

@@ -1,5 +1,4 @@
-//! Data that are kept from step to step in addition to positions and velocities. They are stored in channels, each with a name
-//! and a type.
+//! Data that are kept from step to step in addition to positions and velocities. The data are stored in channels, each with a name and a type.
 //!
 //! An integrator that keeps data declares its channels once ([`Integrator::history`](crate::integrator::Integrator::history)).
 //! Snapshots, recordings, rewinding, rebuilding of islands and resets follow from the declaration.

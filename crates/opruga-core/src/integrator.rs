@@ -15,7 +15,7 @@ use opruga_math::Lane;
 pub trait Integrator<const D: usize>: Send + Sync + Debug {
     /// The name of the integrator.
     fn name(&self) -> &'static str;
-    /// The quantities that every model must provide for it. They are checked when a world is built.
+    /// The quantities that every model must provide for it. The world checks for these quantities when it is built.
     fn needs(&self) -> Views {
         Views::default()
     }
@@ -23,7 +23,7 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn work_columns(&self) -> usize {
         0
     }
-    /// The data besides x and v that it keeps from step to step. They are part of the state.
+    /// The data that it keeps from step to step in addition to x and v. These data are part of the state.
     fn history(&self) -> Vec<Channel> {
         Vec::new()
     }
@@ -74,7 +74,7 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn takes_mass_matrix(&self) -> bool {
         false
     }
-    /// The memory that it needs for one body whose models couple this many pairs of nodes [bytes], besides the state.
+    /// The memory that it needs in addition to the state [bytes], for one body whose models couple this many pairs of nodes.
     fn memory(&self, counts: &Counts, _couplings: f64) -> f64 {
         16.0 * D as f64 * counts.nodes * self.work_columns() as f64
     }

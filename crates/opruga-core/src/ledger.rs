@@ -1,8 +1,8 @@
-//! The ledger of a system: the energy that went in and out, and the work of solving its equations.
+//! The ledger of a system: the energy that entered and left it, and the work of solving its equations.
 
 use opruga_math::{Lane, WIDTH};
 
-/// The energy that went in and out since the ledger was last emptied [J]; eight partial sums each.
+/// The energy that entered and left the system since the ledger was last emptied [J], in eight partial sums each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work8 {
     /// Work of external forces, of moving obstacles and of pins.
@@ -33,10 +33,9 @@ pub struct Work8 {
 
 /// The work of one account within a step of several stages [J], eight partial sums.
 ///
-/// The work of damping and loads depends on velocities, which an integrator evaluates at its stages. These velocities do not
-/// include the effect of obstacles: a node that lies on a floor falls within every stage and is at rest at the end of every
-/// step. A step that ends in contact therefore uses its initial velocities, which contact has already changed. Over many steps
-/// this is the trapezoidal rule except for its two ends.
+/// The work of damping and loads depends on velocities, which an integrator evaluates at its stages. These velocities do not include the effect of
+/// obstacles: a node that lies on a floor falls within every stage and is at rest at the end of every step. A step that ends in contact therefore
+/// uses its initial velocities, which contact has already changed. Over many steps, the sum is the trapezoidal rule except for its two ends.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StepWork {
     /// The work with the velocities of all stages [J].

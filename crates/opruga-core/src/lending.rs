@@ -12,7 +12,7 @@ impl<const D: usize> Workspace<D> {
 }
 
 impl<const D: usize> System<D> {
-    /// Swaps the memory of the system with that of a workspace, to borrow memory or to give it back.
+    /// Swaps the memory of the system with the memory of a workspace, to borrow memory or to give it back.
     pub fn exchange(&mut self, workspace: &mut Workspace<D>) {
         std::mem::swap(&mut self.forces, &mut workspace.forces);
         std::mem::swap(&mut self.before, &mut workspace.before);

@@ -19,7 +19,7 @@ pub struct Need {
 pub struct Counts {
     /// The number of nodes.
     pub nodes: f64,
-    /// The number of edges: those of cells, or of surfaces and wires if there are no cells.
+    /// The number of edges of cells or, if there are no cells, of surfaces and wires.
     pub edges: f64,
     /// The number of edges of surfaces across which two triangles bend.
     pub hinges: f64,
@@ -29,7 +29,7 @@ pub struct Counts {
     pub cell_bytes: f64,
     /// The number of pairs of nodes that have a cell in common.
     pub cell_pairs: f64,
-    /// Whether the body fills space: factors of its matrix then have many more blocks than those of a surface.
+    /// Whether the body fills space, so that factors of its matrix have many more blocks than the factors of a surface.
     pub is_bulk: bool,
 }
 

@@ -77,7 +77,7 @@ pub struct StencilPack<'a> {
     pub count: usize,
     /// Indices of the nodes, `[node][lane]`.
     pub indices: &'a [u32],
-    /// Blocks K_ab row by row, `[a][b][row][column][lane]`; those with a > b are not read.
+    /// Blocks K_ab row by row, `[a][b][row][column][lane]`; blocks with a > b are not read.
     pub blocks: &'a [f64],
 }
 
@@ -237,8 +237,8 @@ pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
     ) -> [f64; WIDTH] {
         [0.0; WIDTH]
     }
-    /// The energy U of each body [J], after `prepare` in the same state: eight numbers whose sum is that of one body, or one
-    /// number for each of eight bodies.
+    /// The energy U of each body [J], after `prepare` in the same state. For one body, the result consists of eight partial sums; for eight bodies,
+    /// it has one number for each.
     fn energy(&self, _simd: Simd, _view: &View<D>, _scratch: &[f64]) -> [f64; WIDTH] {
         [0.0; WIDTH]
     }
@@ -423,7 +423,7 @@ pub trait Model<const D: usize>: Send + Sync {
     fn batches(&self) -> bool {
         false
     }
-    /// The memory and the couplings that it needs for one body, besides the mesh and the state.
+    /// The memory and the couplings that it needs for one body, in addition to the mesh and the state.
     fn need(&self, _counts: &Counts) -> Need {
         Need::default()
     }

@@ -1,7 +1,7 @@
 //! The description of the parameters of a model, integrator, shape or collider.
 //!
-//! One description serves the scene reader, the error messages, the documentation, the JSON Schema and the panels of the studio.
-//! It does not depend on any file format.
+//! One description serves the scene reader, the error messages, the documentation, the JSON Schema and the panels of the studio. The description does
+//! not depend on any file format.
 
 mod allowed;
 mod condition;
@@ -55,7 +55,7 @@ pub enum Role {
     Statics,
     /// The explicit integrator that a program offers if the user has named none, or has named one without a stable step.
     OfferedExplicit,
-    /// The integrator that replaces [`Role::Statics`] if a body has to move. It is stable at any step.
+    /// The integrator that replaces [`Role::Statics`] if a body has to move. This integrator is stable at any step.
     OfferedImplicit,
 }
 

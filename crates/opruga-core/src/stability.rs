@@ -81,8 +81,8 @@ pub struct Stability {
     /// The spectra, with each residual added on the safe side. A smallest damping below 1 % of the strongest is replaced by the damping due to the
     /// drag on every node, which is known.
     pub spectrum: Spectrum,
-    /// The largest step for which no mode grows, reduced by 2 % [s]; infinite for a free body and for integrators without a
-    /// limit; `None` if a mode grows at every step.
+    /// The largest step for which no mode grows, reduced by 2 % [s]. It is infinite for a free body and for integrators without a limit, and `None`
+    /// if a mode grows at every step.
     pub largest_stable_step: Option<f64>,
 }
 

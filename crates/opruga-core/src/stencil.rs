@@ -34,7 +34,7 @@ pub struct Stencils<L, const N: usize, const K: usize> {
     kernel: PhantomData<L>,
     layout: Layout,
     nodes: usize,
-    /// The nodes of each element. Elements are sorted by their lowest node, and those with the same lowest node in lexicographic order.
+    /// The nodes of each element. Elements are sorted by their lowest node, and elements with the same lowest node are in lexicographic order.
     elements: Vec<[u32; N]>,
     parameters: [Parameter; K],
     damped: bool,

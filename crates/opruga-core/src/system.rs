@@ -36,7 +36,7 @@ pub struct State<const D: usize> {
     pub work: Vec<[Columns<D>; 2]>,
 }
 
-/// The limits that the thesis uses against instability. They are off by default, and each use is counted.
+/// The limits that the thesis uses against instability. The limits are off by default, and each use is counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stabilisers {
     /// The largest force on a node [N].
@@ -64,7 +64,7 @@ pub struct Member<const D: usize> {
     pub memory: Vec<f64>,
     /// The results of `prepare`.
     pub scratch: Column,
-    /// The account in which its power is recorded, if it has any power. It is determined once and not for every tile.
+    /// The account in which its power is recorded, if it has any power. The account is determined once and not for every tile.
     pub(crate) flows: Option<Account>,
     /// Whether it begins the forces of tiles.
     pub(crate) begins_tiles: bool,
@@ -112,7 +112,7 @@ pub struct System<const D: usize> {
     pub pushes: Option<Vec<(usize, [f64; D])>>,
     /// The limits of the thesis.
     pub stabilisers: Stabilisers,
-    /// The energy that went in and out, and the work of the solver.
+    /// The energy that entered and left the system, and the work of the solver.
     pub work: Work8,
     /// The channels that the integrator keeps from step to step.
     pub history: History<D>,
@@ -191,7 +191,7 @@ impl<const D: usize> System<D> {
             false => Ok(()),
         }
     }
-    /// The masses that determine the weight of the nodes [kg]: those of the nodes or, with a consistent mass matrix, ∫ρNₐ.
+    /// The masses that determine the weight of the nodes [kg]: the masses of the nodes or, with a consistent mass matrix, ∫ρNₐ.
     pub fn weighing(&self) -> &Parameter {
         self.weighing.as_ref().unwrap_or(&self.mass)
     }

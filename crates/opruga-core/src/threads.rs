@@ -27,7 +27,7 @@ impl Drop for Leading {
     }
 }
 
-/// Runs `work` while `threads` threads, including that of the caller, are ready for its pieces.
+/// Runs `work` while `threads` threads, including the thread of the caller, are ready for its pieces.
 pub fn together<R>(threads: usize, work: impl FnOnce() -> R) -> R {
     if threads < 2 || team().is_some() {
         return work();
@@ -66,8 +66,8 @@ pub fn each<T: Send>(threads: usize, pieces: &mut [T], work: impl Fn(&mut T) + S
     }
 }
 
-/// Does the work on every piece on the threads of the pool in which the caller runs. Unlike those of a team, these threads
-/// sleep between calls. This function is meant for pieces that take tens of microseconds, between longer work on one thread.
+/// Does the work on every piece on the threads of the pool in which the caller runs. The threads of a team stay awake between calls, whereas these
+/// threads sleep. This function is meant for pieces that take tens of microseconds, between longer work on one thread.
 ///
 /// A single piece needs no memory.
 pub fn each_in_pool<T: Send>(mut pieces: impl Iterator<Item = T>, work: impl Fn(T) + Sync + Send) {
@@ -89,9 +89,8 @@ pub fn empty_lists<T>(lists: &mut Vec<Vec<T>>, count: usize) -> &mut [Vec<T>] {
     lists
 }
 
-/// Divides a list into parts for [`each_in_pool`]: one part for a single thread, otherwise four for each thread, so that threads
-/// that finish early take over work of others. Only the last part may have fewer entries than `least`. An empty list has one
-/// empty part.
+/// Divides a list into parts for [`each_in_pool`]. A single thread gets one part. Otherwise there are four parts for each thread, so that threads
+/// that finish early take over the work of others. Only the last part may have fewer entries than `least`. An empty list has one empty part.
 pub fn parts(length: usize, threads: usize, least: usize) -> impl ExactSizeIterator<Item = Range<usize>> {
     let size = part_size(length, threads, least);
     (0..length.max(1)).step_by(size).map(move |first| first..length.min(first + size))

@@ -142,7 +142,7 @@ impl Cholesky {
     }
 }
 
-/// The number of right-hand sides per pass through the factor: those of the axes of a point.
+/// The number of right-hand sides per pass through the factor: one for each axis of a point.
 const AT_ONCE: usize = 3;
 
 fn solve(

@@ -22,8 +22,8 @@ pub struct Ended {
 
 /// Solves A x = b for a symmetric positive definite A, starting from x = 0. Only the product with A is needed.
 ///
-/// The method ends when the residual in the norm of the preconditioner is `tolerance` times that of b, after `most` products,
-/// or when rounding prevents further progress. Sums have a fixed order, so the bits are the same everywhere.
+/// The method ends when the norm of the residual is `tolerance` times the norm of b, both in the norm of the preconditioner. It also ends after
+/// `most` products, or when rounding prevents further progress. Sums have a fixed order, so the bits are the same everywhere.
 ///
 /// # Errors
 /// [`Indefinite`] if a direction has zero or negative curvature; x is then the solution so far.

@@ -114,8 +114,8 @@ impl DenseCholesky {
     }
 }
 
-/// Removes the negative eigenvalues from a symmetric matrix of `size` rows, given column by column; returns the norm of the
-/// removed part relative to that of the matrix. Eigenvalues below 1e-12 of the largest count as rounding errors and are kept.
+/// Removes the negative eigenvalues from a symmetric matrix of `size` rows, given column by column. Returns the norm of the removed part divided by
+/// the norm of the matrix. Eigenvalues below 1e-12 of the largest count as rounding errors and are kept.
 ///
 /// # Errors
 /// [`Indefinite`] if an entry is not finite.

@@ -3,9 +3,9 @@
 //! Both methods find the largest eigenvalues θ = 1/(ω² + s) of A = (K + s M)⁻¹ M, which belong to the lowest frequencies. The
 //! shift s > 0 allows K to be singular, as for a free body.
 //!
-//! * *Few modes*: a block Lanczos recurrence. A block of several vectors also finds frequencies that occur several times, such as those of round
-//!   bodies. Every block is orthogonalised against all previous ones (twice), so no frequency is found again. The products of the orthogonalisation
-//!   give the projection T = Qᵀ M A Q. It is decomposed only when the basis has grown by a fraction of its size.
+//! * *Few modes*: a block Lanczos recurrence. A block of several vectors also finds frequencies that occur several times, such as the frequencies of
+//!   round bodies. Every block is orthogonalised against all previous ones (twice), so no frequency is found again. The products of the
+//!   orthogonalisation give the projection T = Qᵀ M A Q. It is decomposed only when the basis has grown by a fraction of its size.
 //! * *Many modes*: with M = R Rᵀ, all eigenvectors of the dense symmetric matrix Rᵀ (K + s M)⁻¹ R.
 //!
 //! Products of dense matrices and their eigenvectors come from faer, so results have the same bits only on processors of one

@@ -29,7 +29,7 @@ impl core::fmt::Debug for Factors {
     }
 }
 
-/// The rows of the matrix were passed as columns, so the factors of an unsymmetric matrix are those of its transpose.
+/// The rows of the matrix were passed as columns, so the factors of an unsymmetric matrix are the factors of its transpose.
 fn solve(factors: &Lu<usize, f64>, is_symmetric: bool, x: &mut [f64]) {
     let rows = x.len();
     let x = MatMut::from_column_major_slice_mut(x, rows, 1);

@@ -111,7 +111,7 @@ impl TurnedFactor {
         (self.following, self.solved_base) = (Some(frame), Some(base));
         Ok(true)
     }
-    /// Takes all rank-one terms: those of a frame that follows its nodes, and others.
+    /// Takes all rank-one terms, including the terms of a frame that follows its nodes.
     pub(crate) fn update_parts<const D: usize>(
         &self,
         parts: &mut Woodbury,

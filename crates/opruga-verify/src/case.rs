@@ -133,7 +133,7 @@ pub struct Row {
     pub case: &'static Case,
     /// The results, level by level.
     pub points: Vec<Point>,
-    /// The slope of the logarithm of the error over that of the size, by a least-squares fit; `None` if no order is expected.
+    /// The slope of the logarithm of the error over the logarithm of the size, by a least-squares fit; `None` if no order is expected.
     pub observed_order: Option<f64>,
     /// Whether the case passes.
     pub pass: bool,
@@ -203,7 +203,8 @@ impl Case {
 }
 
 impl Row {
-    /// The point that decides whether the case passes: the finest one or, if all points must be within the tolerance, the one with the largest error.
+    /// The point that decides whether the case passes. It is the finest point or, if all points must be within the tolerance, the point with the
+    /// largest error.
     pub fn decisive(&self) -> Option<&Point> {
         match self.case.check {
             Check::Everywhere => {

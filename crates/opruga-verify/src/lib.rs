@@ -1,7 +1,7 @@
 //! # Verification
 //!
 //! This crate compares the engine with closed forms and published numbers through the public interface: the text of a scene, a world, its frames and
-//! its readings. It does not access the internals of the engine.
+//! its readings. The crate does not access the internals of the engine.
 //!
 //! A [`Case`] defines, before it is run, the measured quantity, the expected value (a literal with its source, never a number of this engine), the
 //! meshes or steps, the largest error on the finest one, and the order at which the error must fall. [`Case::run`] runs it and returns a [`Row`], and

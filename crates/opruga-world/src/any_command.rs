@@ -1,4 +1,4 @@
-//! Commands without a dimension in their type. They have the form of commands in space. A world in the plane ignores their z components.
+//! Commands without a dimension in their type. Such commands have the form of commands in space. A world in the plane ignores their z components.
 
 use crate::blueprint::{Action, AnyBlueprint, Blueprint, CommandBlueprint, Selector};
 use crate::bytes::{Reader, Writer};

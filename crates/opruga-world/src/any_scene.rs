@@ -117,7 +117,7 @@ pub trait AnyBody: core::fmt::Debug {
     fn name(&self) -> &str;
     /// Its models and their parameters.
     fn models(&self) -> &[Values];
-    /// Its own integrator; if there is none, the body uses that of the scene.
+    /// The body's own integrator; if there is none, the body uses the integrator of the scene.
     fn integrator(&self) -> Option<&Values>;
     /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire [m].
     fn thickness(&self) -> f64;
@@ -131,7 +131,7 @@ pub trait AnyBody: core::fmt::Debug {
     fn facets(&self) -> &[u32];
     /// The triangles of an open surface.
     fn sheets(&self) -> &[[u32; 3]];
-    /// The wires of the body. They are drawn as lines even if the body has a surface.
+    /// The wires of the body. Wires are drawn as lines even if the body has a surface.
     fn wires(&self) -> &[[u32; 2]];
     /// The filled interior.
     fn cells(&self) -> &Cells;

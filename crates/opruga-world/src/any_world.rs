@@ -134,7 +134,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn momentum(&self) -> [[f64; 3]; 2];
     /// The readings of the models of a body.
     fn readings(&mut self, body: usize) -> Vec<Reading>;
-    /// The names of the readings of a body; empty if a model refuses the body. Numbers after those of the bodies in the scene refer to
+    /// The names of the readings of a body; empty if a model refuses the body. Numbers after the bodies of the scene refer to
     /// [`AnyWorld::coming_bodies`].
     fn reading_names_of(&self, body: usize) -> Vec<Cow<'static, str>>;
     /// The values of a probe.
@@ -228,8 +228,8 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn pulls(&self) -> Vec<[[f64; 3]; 3]>;
     /// The obstacles at the present time, in scene order.
     fn obstacles(&self) -> Vec<Picture<3>>;
-    /// The pairs of nodes that springs of a body join; `None` if there is no such body or if a model refuses it. Body numbers beyond those of the scene
-    /// refer to [`AnyWorld::coming_bodies`].
+    /// The pairs of nodes that springs of a body join; `None` if there is no such body or if a model refuses it. Body numbers beyond the bodies of
+    /// the scene refer to [`AnyWorld::coming_bodies`].
     fn springs_of(&self, body: usize) -> Option<Vec<[u32; 2]>>;
 }
 

@@ -22,7 +22,8 @@ use opruga_core::system::Workspace;
 use opruga_math::{Lane, Simd};
 use opruga_solve::{Directions, Preconditioner, conjugate_gradients, dot};
 
-/// The tolerance of the linear solver in the first iteration, relative to its right-hand side. It falls with the residual, as for a single body.
+/// The tolerance of the linear solver in the first iteration, relative to its right-hand side. The tolerance falls with the residual, as for a single
+/// body.
 const LEFT: f64 = 1e-2;
 
 /// The smallest tolerance of the linear solver. Below it the residuals of stiff bodies (1e7 Pa) are rounding errors, and directions computed from
@@ -32,8 +33,8 @@ const LEAST_LEFT: f64 = 1e-9;
 /// The maximum number of matrix products in the method of conjugate gradients. Each pair under a large force needs about one product.
 const MOST_PRODUCTS: u32 = 2000;
 
-/// The maximum number of iterations of a search with a budget, including those that do not count against the budget. It equals the limit for exact
-/// steps without friction.
+/// The maximum number of iterations of a search with a budget, including those that do not count against the budget. This maximum equals the limit
+/// for exact steps without friction.
 const MOST_IN_BUDGET: u32 = 100;
 
 /// The maximum number of rounds of friction, and the relative change of the friction force at which they end.

@@ -139,7 +139,7 @@ impl Time {
 pub struct Surroundings<const D: usize> {
     /// Acceleration of gravity [m/s²].
     pub gravity: [f64; D],
-    /// Drag per unit of mass [1/s]: a = −drag·v. It slows rigid motion too.
+    /// Drag per unit of mass [1/s]: a = −drag·v. Drag slows rigid motion too.
     pub drag: f64,
     /// The largest force on a node [N]. Each use of the limit is counted. `None` means no limit.
     pub largest_force: Option<f64>,

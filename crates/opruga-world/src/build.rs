@@ -26,7 +26,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 impl<const D: usize> Builder<'_, D> {
-    /// Whether something besides its own pins may hold a body: obstacles, or other bodies that it touches.
+    /// Whether anything other than its own pins may hold a body: obstacles, or other bodies that it touches.
     fn may_be_supported(&self, body: &BodyBlueprint<D>) -> bool {
         let scene = self.blueprint;
         let by_others = scene.contact.is_some()

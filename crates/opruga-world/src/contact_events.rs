@@ -11,8 +11,8 @@ impl<const D: usize> World<D> {
         self.contacts = report.then(Vec::new);
     }
 
-    /// The contacts between bodies in the last frame, in ascending order of bodies. They are the same for every number of threads. Empty unless
-    /// [`World::report_contacts`] was called.
+    /// The contacts between bodies in the last frame, in ascending order of bodies. The contacts are the same for every number of threads. Empty
+    /// unless [`World::report_contacts`] was called.
     ///
     /// Reports are not part of the state: after [`World::restore`] all contacts begin again.
     pub fn contacts(&self) -> &[Contact<D>] {

@@ -135,8 +135,8 @@ pub(crate) fn laws<const D: usize>(
     }
 }
 
-/// The default reach of a barrier relative to the mean edge, and its largest value relative to the shortest edge. It is small compared with every
-/// facet.
+/// The default reach of a barrier relative to the mean edge, and its largest value relative to the shortest edge. The default reach is small compared
+/// with every facet.
 const REACH_OF_EDGE: f64 = 0.02;
 const REACH_OF_SHORTEST: f64 = 0.5;
 

@@ -5,11 +5,11 @@ use opruga_collide::Report;
 /// Whether two bodies touched in the last frame and in the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactPhase {
-    /// They touched only in the last frame.
+    /// The bodies touched only in the last frame.
     Began,
-    /// They touched in both.
+    /// The bodies touched in both frames.
     Persists,
-    /// They touched only in the frame before the last.
+    /// The bodies touched only in the frame before the last.
     Ended,
 }
 

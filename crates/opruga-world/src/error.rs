@@ -69,7 +69,7 @@ messages! {
     /// The reasons why a world could not be built, changed or stepped. The world is as it was before the call.
     #[derive(Clone, Debug, PartialEq)]
     pub enum WorldError {
-        /// A model, integrator or collider could not be built. The code is that of `source`.
+        /// A model, integrator or collider could not be built. The error has the code of `source`.
         "part.build" #[error("{}: {}", refusing(part, &source.kind), source.about)]
         #[allowed("{}", source.about.allowed().unwrap_or_default())] #[hint("{}", source.about.hint().unwrap_or_default())]
         Build { part: Part, source: BuildError },

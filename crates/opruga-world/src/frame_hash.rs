@@ -122,8 +122,8 @@ impl<const D: usize> Work for OfBodies<'_, D> {
 }
 
 impl<const D: usize> World<D> {
-    /// A 64-bit hash of all positions and velocities, coordinate by coordinate of every body, eight numbers at a time. It is so fast that every frame
-    /// of a recording has one.
+    /// A 64-bit hash of all positions and velocities, coordinate by coordinate of every body, eight numbers at a time. The hash is so fast that every
+    /// frame of a recording has one.
     pub fn frame_hash(&self) -> u64 {
         let hash = |system: &System<D>| system.simd.run(OfBodies(system));
         let of_islands: Vec<[u64; WIDTH]> = self.islands.iter().map(|island| hash(&island.system)).collect();

@@ -1,4 +1,4 @@
-//! Inputs of a program to a world that are not part of its scene. They are recorded on request, so that a recording can repeat them.
+//! Inputs of a program to a world that are not part of its scene. Such inputs are recorded on request, so that a recording can repeat them.
 
 use crate::blueprint::{Action, CommandBlueprint, Selector};
 use crate::bytes::{Reader, Writer};

@@ -94,7 +94,7 @@ impl<const D: usize> World<D> {
         (!self.blueprint.surroundings.unfold).then_some(UnfoldHint::Unfold)
     }
 
-    /// The hint, besides more substeps, that helps against inverted cells of a body. It never names a law that the body already has.
+    /// The hint that helps against inverted cells of a body, apart from more substeps. The hint never names a law that the body already has.
     fn what_rights_cells(&self, body: usize) -> CellHint {
         let solids = self.blueprint.bodies[body].models.iter().filter(|model| model.spec().has_role(Role::OwnsCells));
         let laws: Vec<&str> = solids.filter_map(|model| model.text("material")).collect();

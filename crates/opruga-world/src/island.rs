@@ -96,7 +96,7 @@ impl<const D: usize> Saved<D> {
         system.time = self.time;
     }
 
-    /// Swaps the state with that of a system.
+    /// Swaps the state with the state of a system.
     fn swap(&mut self, system: &mut System<D>) {
         std::mem::swap(&mut self.x, &mut system.state.x);
         std::mem::swap(&mut self.v, &mut system.state.v);

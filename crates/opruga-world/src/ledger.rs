@@ -117,7 +117,7 @@ pub(crate) struct Survey<const D: usize> {
     pub(crate) finite: bool,
 }
 
-/// Adds up eight parts: those of a single body, or those of the bodies of a batch without its unused lanes.
+/// Adds up eight parts: the parts of a single body, or the parts of the bodies of a batch without its unused lanes.
 pub(crate) fn total_of<const D: usize>(system: &System<D>, parts: &[f64; WIDTH]) -> f64 {
     match system.layout {
         Layout::Single => sum_in_fixed_order(parts),
@@ -336,7 +336,7 @@ pub(crate) struct Flows {
     pub(crate) limited_forces: u64,
     pub(crate) limited_velocities: u64,
     pub(crate) limited_pulls: u64,
-    /// Bodies that went too far and were removed.
+    /// The number of bodies that were removed because they went too far.
     pub(crate) lost_bodies: u64,
     /// The work of implicit integrators.
     pub(crate) solver: SolverWork,

@@ -13,7 +13,7 @@ impl<const D: usize> World<D> {
 
     /// Calls `look` with the world in each state that was kept within the last frame, one after another; then restores the world.
     ///
-    /// Positions, velocities, time, energy, momentum, readings and probes are those of that state.
+    /// Positions, velocities, time, energy, momentum, readings and probes then belong to that state.
     pub fn look_within(&mut self, mut look: impl FnMut(&mut World<D>)) {
         let every = self.looks.every;
         if every == 0 || !self.looks.fresh {

@@ -10,7 +10,7 @@ use opruga_core::system::Workspace;
 use opruga_math::WIDTH;
 use std::sync::Arc;
 
-/// Bodies of a cluster. They are stepped through a frame together because they may touch.
+/// Bodies of a cluster. The bodies are stepped through a frame together because they may touch.
 #[derive(Debug)]
 pub(crate) struct Meeting<const D: usize> {
     pub(crate) touching: Touching<D>,
@@ -30,7 +30,7 @@ pub(crate) struct Meeting<const D: usize> {
     rules: Vec<u32>,
     /// The bodies with different integrators that met in the frame, by their index in the scene, ascending.
     pub(crate) mixed: Vec<[usize; 2]>,
-    /// The corners and edges of obstacles, each with the number of its first point. The points of obstacles follow those of bodies.
+    /// The corners and edges of obstacles, each with the number of its first point. The points of obstacles follow the points of bodies.
     pub(crate) outlines: Vec<(Arc<Outline<D>>, usize)>,
     /// The bodies whose steps include contact forces in their balance of forces.
     pub(crate) pushed: Vec<Pushed<D>>,
@@ -226,8 +226,8 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
-    /// Adds the contact forces of the last substep of h [s] on the nodes of a body [N], without those of obstacles on nodes. `stride` is the number
-    /// of bodies side by side in its island.
+    /// Adds the contact forces of the last substep of h [s] on the nodes of a body [N], except for the forces of obstacles on nodes. `stride` is the
+    /// number of bodies side by side in its island.
     pub(crate) fn add_forces(&self, body: usize, h: f64, stride: usize, forces: &mut [[f64; D]]) {
         let Some(number) = self.bodies.iter().position(|other| *other == body) else { return };
         let own = self.touching.surface.points_of(number);

@@ -35,8 +35,8 @@ impl<const D: usize> World<D> {
         let pinned: std::collections::BTreeSet<usize> = system.pins.iter().map(|pin| pin.index).collect();
         (0..system.nodes as u32).filter(|node| pinned.contains(&system.layout.index(*node as usize, lane))).collect()
     }
-    /// The contact forces on the nodes of a body [N]. The forces of obstacles are those in the coming substep, f = m (v' − v*)/h. The forces of
-    /// bodies, and of corners and edges of obstacles, are those in the last substep: the impulse divided by h.
+    /// The contact forces on the nodes of a body [N]. The forces of obstacles are the forces in the coming substep, f = m (v' − v*)/h. The forces of
+    /// bodies, and of corners and edges of obstacles, come from the last substep: the impulse divided by h.
     ///
     /// v* is the velocity that the present forces would give a node within h without obstacles, and v' is the velocity with obstacles. The force
     /// consists of the normal force and friction; in an impact, it is the impulse over h. Pinned nodes have no contact force, because the pin takes

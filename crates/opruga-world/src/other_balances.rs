@@ -1,4 +1,4 @@
-//! Bodies of finite elements that end in an equilibrium other than that of their own shape.
+//! Bodies of finite elements that end in an equilibrium other than their own shape.
 //!
 //! A body may come to rest folded, inverted, contracted to a point or snapped through, although no present force would take it there. The cells do
 //! not show this: an arch that has snapped through consists of good cells. The energy shows it. Let fᵢ = ∂U/∂xᵢ be the forces that hold the shape
@@ -32,7 +32,7 @@ const REST: f64 = 1e-2;
 /// A cell counts as strained if its volume, or the distance of two of its nodes, has changed by more than this fraction.
 const STRAINED: f64 = 1e-3;
 
-/// The weight of all masses together in the fit, relative to a weight of 1 for all forces. It makes the fit unique if the forces do not.
+/// The weight of all masses together in the fit, relative to a weight of 1 for all forces. This weight makes the fit unique if the forces do not.
 const LITTLE: f64 = 1e-6;
 
 /// The largest ratio of the mean force along the path of a pinned node to the force at its end. The force may decrease along the path if a law
@@ -270,7 +270,7 @@ pub(crate) fn turn_in_space(m: &[[f64; 3]; 3]) -> [Vector; 3] {
     })
 }
 
-/// The kinetic energy beyond that of the rigid motion nearest to the velocities [J].
+/// The kinetic energy beyond the energy of the rigid motion nearest to the velocities [J].
 fn beyond_whole(nodes: &[Node], dimension: usize) -> f64 {
     let (mut mass, mut center, mut speed) = (0.0, [0.0; 3], [0.0; 3]);
     for node in nodes {

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! G maps the coordinates to the relative motion of a pair. S is the stiffness of the barrier along the normal n of the pair (`opruga_collide`,
-//! `barrier.rs`), or that of its friction energy D over the slip s.
+//! `barrier.rs`), or the stiffness of its friction energy D over the slip s.
 
 use opruga_collide::{Pressed, Rubbing, Surface};
 

@@ -39,7 +39,7 @@ impl<const D: usize> World<D> {
     pub fn solver_work(&self) -> SolverWork {
         self.flows.solver
     }
-    /// Whether the results have the same bits on every processor, not only on those of one class.
+    /// Whether the results have the same bits on every processor, rather than only within one class of processors.
     pub fn same_bits_everywhere(&self) -> bool {
         self.islands.iter().all(|island| {
             let mut members = island.system.members.iter();
@@ -280,8 +280,8 @@ impl<const D: usize> World<D> {
         let there = self.laws_saved.iter().filter(|(body, _)| self.slots.is_there(**body));
         there.map(|(body, saved)| saved.saturating_sub(self.laws_on(*body))).sum()
     }
-    /// At the end of the run: the number of bodies in equilibrium under only a part of their load, the smallest of these parts, and the name of the
-    /// body under this part.
+    /// At the end of the run, the number of bodies in equilibrium under only a part of their load. Also the smallest of these parts, and the name of
+    /// the body under this part.
     fn load_left(&self) -> Option<(u64, f64, String)> {
         let time = &self.blueprint.time;
         if self.frames == 0 || self.time() < time.seconds - 0.5 * time.frame {

@@ -6,11 +6,11 @@ use std::sync::{Arc, RwLock};
 /// The progress of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Progress<const D: usize> {
-    /// Its time is yet to come.
+    /// The time of the command is yet to come.
     Waiting,
-    /// It is active. A drag grabs these nodes with these weights; a pin holds nodes at these positions.
+    /// The command is active. A drag grabs these nodes with these weights; a pin holds nodes at these positions.
     Acting { targets: Vec<(u32, f64)>, anchors: Vec<[f64; D]> },
-    /// It is over.
+    /// The command is over.
     Done,
 }
 

@@ -23,7 +23,7 @@ pub(crate) struct SceneContact<const D: usize> {
     pub(crate) seats: Vec<(usize, usize)>,
     /// The integrators of the bodies: equal numbers mean the same integrator.
     pub(crate) rules: Vec<u32>,
-    /// Corners and edges of obstacles; their numbers follow those of the bodies.
+    /// Corners and edges of obstacles; their numbers follow the numbers of the bodies.
     pub(crate) outlines: Vec<Arc<Outline<D>>>,
     pub(crate) laws: Laws,
     /// The margin of the search for candidates [m].
@@ -38,10 +38,10 @@ pub(crate) struct SceneContact<const D: usize> {
     distance: f64,
 }
 
-/// The state of the scene for which the data for contact were made. They are rebuilt if this state changes.
+/// The state of the scene for which the data for contact were made. The data are rebuilt if this state changes.
 #[derive(Clone, Debug)]
 pub(crate) struct MadeFor<const D: usize> {
-    /// The number of islands that had been built by then.
+    /// The number of islands that had been built when the data were made.
     pub(crate) built: u64,
     /// The number of islands.
     pub(crate) islands: usize,

@@ -109,7 +109,7 @@ pub fn side_of(name: &str) -> Option<(usize, bool)> {
     })
 }
 
-/// The nodes of the boundary: those of the facets; for an open surface, those of edges with only one triangle; for a chain, its free ends.
+/// The nodes of the boundary: the nodes of the facets; for an open surface, the nodes of edges with only one triangle; for a chain, its free ends.
 fn boundary<const D: usize>(mesh: &Mesh<D>) -> Vec<u32> {
     let mut nodes: Vec<u32> = mesh.facets.iter().flatten().copied().collect();
     let mut edges: Vec<[u32; 2]> = mesh

@@ -133,8 +133,8 @@ impl<const D: usize> World<D> {
         Ok(Head { version, frames: reader.count()?, delta: reader.bytes()? })
     }
 
-    /// Reads the bodies of the blueprint, the commands, and the ledger from a snapshot. `commands` are those of the scene. With `other_future`, the
-    /// commands that had not begun at the time of the snapshot may differ.
+    /// Reads the bodies of the blueprint, the commands, and the ledger from a snapshot. `commands` are the commands of the scene. With
+    /// `other_future`, the commands that had not begun at the time of the snapshot may differ.
     fn read_rest(
         &self,
         reader: &mut Reader<'_>,
@@ -247,8 +247,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// The commands with their progress in the snapshot, as far as it is known. Commands of the program follow those of the
-    /// scene.
+    /// The commands with their progress in the snapshot, as far as it is known. Commands of the program follow the commands of the scene.
     fn commands_then(&self, commands: &[Running<D>], rest: &Rest<D>) -> Vec<Running<D>> {
         let running = |(known, progress): (&Running<D>, &Progress<D>)| {
             // Bodies that will be added later do not count as gone.

@@ -13,7 +13,7 @@ use opruga_core::stability::estimate;
 use opruga_math::Lane;
 use opruga_solve::dot;
 
-/// The initial σ, relative to the square of the highest frequency of a body; the slowest vibrations of a body of ten cells have about this ratio.
+/// The initial σ, relative to the square of the highest frequency of a body. The slowest vibrations of a body of ten cells have about this ratio.
 const FIRST: f64 = 1e-2;
 
 /// The factor by which σ falls, and the smallest σ: below it, the rigid motion of a body hides its bending from the solution of contact.

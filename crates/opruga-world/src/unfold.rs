@@ -1,4 +1,5 @@
-//! Recovery of bodies that rest in a degenerate shape: flat, inverted or folded. It is active if the scene contains `[world] unfold = true`.
+//! Recovery of bodies that rest in a degenerate shape: flat, inverted or folded. The recovery is active if the scene contains `[world] unfold =
+//! true`.
 //!
 //! A body that was squeezed onto a plane, a line or a point, or that was inverted, may be in equilibrium by symmetry alone: no force acts out of the
 //! plane, although the energy falls on both sides of it. No solver can leave such a shape without help, because solvers follow the forces. The world
@@ -77,8 +78,7 @@ const BALANCED: f64 = 1e-2;
 /// The time that a displaced body has to leave, in units of L √(M/U).
 const PATIENCE: f64 = 12.0;
 
-/// The largest displacements of nodes, relative to the size of the body, which is the cube root of its volume, or the square
-/// root of its area.
+/// The largest displacements of nodes, relative to the size of the body. This size is the cube root of its volume, or the square root of its area.
 const SIZES: [f64; 3] = [1e-4, 1e-2, 0.1];
 
 /// The number of parts in which statics repeats a frame that ended folded.

@@ -93,11 +93,11 @@ pub fn time_fault(time: &Time) -> Option<Fault> {
 /// The reasons why a set of nodes does not fit a body.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SelectorFault {
-    /// It contains a node that does not exist.
+    /// The set contains a node that does not exist.
     NoNode(u32),
-    /// It names a group that the mesh does not have.
+    /// The set names a group that the mesh does not have.
     NoGroup(String),
-    /// It selects no node.
+    /// The set selects no node.
     Nothing,
 }
 

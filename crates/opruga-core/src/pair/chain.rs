@@ -82,7 +82,7 @@ impl<L: PairLaw<D>, const D: usize> Chain<'_, '_, L, D> {
         }
     }
 
-    /// The loop over the pairs. Node p receives the force of its own pair and that of the previous pair, which is in the pack of
+    /// The loop over the pairs. Node p receives the force of its own pair and the force of the previous pair. The latter force is in the pack of
     /// forces shifted by one node.
     ///
     /// `FRESH`: there is a weight, equal for all nodes, and the forces of the tile are overwritten instead of added. `SAME`: all

@@ -78,7 +78,7 @@ pub struct PairTable {
     pairs: Vec<[u32; 2]>,
 }
 
-/// Runs shorter than this are pulled, if pulling is allowed.
+/// The length of the shortest run that is not pulled, if pulling is allowed.
 const SHORTEST_RUN: u32 = 24;
 
 impl PairTable {

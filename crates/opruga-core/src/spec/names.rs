@@ -48,9 +48,9 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
 /// The largest number of candidates that are offered for a word.
 const MOST_OFFERED: usize = 4;
 
-/// All candidates that a word may mean, the closest first. Either the whole candidate or its beginning, up to the end of one of
-/// its parts, differs from the word by a few letters. For example, `ballon` may mean `balloon-in-a-box`. Of two equally close
-/// candidates, the one with the longer common beginning comes first.
+/// All candidates that a word may mean, the closest first. Either the whole candidate or its beginning, up to the end of one of its parts, differs
+/// from the word by a few letters. For example, `ballon` may mean `balloon-in-a-box`. Of two equally close candidates, the candidate with the longer
+/// common beginning comes first.
 pub fn close_matches<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<String> {
     let candidates: Vec<&str> = candidates.collect();
     let limit = word.chars().count() / 3 + 1;

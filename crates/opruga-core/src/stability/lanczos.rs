@@ -107,7 +107,7 @@ pub(super) fn extremes<const D: usize>(
     Ok([found[0].unwrap_or(0.0), found[1].unwrap_or(0.0)])
 }
 
-/// The start vector: a unit vector with pseudo-random entries where the weights are not zero. It is always the same.
+/// The start vector: a unit vector with pseudo-random entries where the weights are not zero. The start vector is always the same.
 fn start<const D: usize>(weights: &Columns<D>) -> Columns<D> {
     let mut out = weights.clone();
     let mut square = 0.0;

@@ -5,7 +5,7 @@ use opruga_math::Lane;
 
 /// A number and its derivative with respect to one variable (forward differentiation).
 ///
-/// Comparisons use only the value. If a formula selects one of two branches, the derivative is that of the selected branch.
+/// Comparisons use only the value. If a formula selects one of two branches, the derivative belongs to the selected branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<S> {
     /// The value of the number.

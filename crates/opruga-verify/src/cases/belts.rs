@@ -35,8 +35,8 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// A belt touches a round body over half a turn. It is pulled slowly at one end and held back by 10 N at the other. Returns the ratio of the tension
-/// at the pulled end to 10 N.
+/// A belt touches a round body over half a turn. The belt is pulled slowly at one end and held back by 10 N at the other. Returns the ratio of the
+/// tension at the pulled end to 10 N.
 fn belt(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let (thickness, tail, held_back, stiffness, speed) = (1e-3, 0.5, 10.0, 1e4, 0.0025);
     // The belt is light, so that waves along it have little effect. Their force ρ c v is 0.08 N.

@@ -24,8 +24,8 @@ pub(super) fn radius<const D: usize>(x: &[f64; D]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Pins that prevent rigid motions of a ball or a ring of `count` nodes. They have no reaction forces if the loads balance. In space, they are at the
-/// two poles and near the equator; in the plane, they are at both ends of a diameter.
+/// Pins that prevent rigid motions of a ball or a ring of `count` nodes. These pins have no reaction forces if the loads balance. In space, they are
+/// at the two poles and near the equator; in the plane, they are at both ends of a diameter.
 pub(super) fn pinned(dimension: usize, count: u32) -> String {
     let pin = |node: u32, axes: &str| format!("{{ select = {{ node = {node} }}, axes = \"{axes}\" }}");
     let pins = if dimension == 2 {

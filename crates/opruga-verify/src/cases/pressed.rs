@@ -275,9 +275,9 @@ fn hertz_line(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(2.0 * (moment / force).sqrt() / (4.0 * 2.0 * force / (std::f64::consts::PI * young)).sqrt())
 }
 
-/// The force between two blocks after 5 s, divided by the weight of the upper one. The mass and the stiffness of the upper block are given multiples
-/// of those of the lower block. The stiffness of both blocks grows with the mass of the upper one, so that it compresses the lower one equally in all
-/// cases.
+/// The force between two blocks after 5 s, divided by the weight of the upper one. The mass and the stiffness of the upper block are multiples of the
+/// mass and the stiffness of the lower block, with the given factors. The stiffness of both blocks grows with the mass of the upper one, so that it
+/// compresses the lower one equally in all cases.
 pub(super) fn weight(lab: &Lab, rule: &str, contact: &str, masses: f64, stiffness: f64) -> Result<f64, Trouble> {
     let base = 1e5 * masses.max(1.0);
     let block = |name: &str, x: f64, y: f64, width: f64, mass: f64, young: f64, more: &str| {

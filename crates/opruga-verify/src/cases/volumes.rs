@@ -231,7 +231,7 @@ fn wave(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(world.modes(0, 1)?.first().ok_or("too few modes")?.omega())
 }
 
-/// A cube between frictionless plates that are pulled apart in twenty steps. It consists of one box, which is cut into the given cells.
+/// A cube between frictionless plates that are pulled apart in twenty steps. The cube consists of one box, which is cut into the given cells.
 fn pull(lab: &Lab, material: &str, cells: Cells, stretch: f64) -> Result<f64, Trouble> {
     let scene = Scene::new(3, 0.05, 1, "equilibrium\ntolerance = 1e-11").add(&format!(
         "[[body]]\nname = \"cube\"\ndensity = 1.0\nshape = {{ kind = \"grid\", size = [1, 1, 1], cells = [1, 1, 1] }}\n{}\n{}\n\

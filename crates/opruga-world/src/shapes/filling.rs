@@ -24,7 +24,7 @@ pub enum Filling {
 /// The volume of a surface that its filling lacks, because the filling cuts off edges and omits thin parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loss {
-    /// The volume of the filling divided by that of the surface.
+    /// The volume of the filling divided by the volume of the surface.
     pub kept: f64,
     /// A spacing that keeps the volume within [`REPORTED_LOSS`], if one was found.
     pub finer: Option<f64>,

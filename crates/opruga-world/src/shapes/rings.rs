@@ -7,7 +7,7 @@ use opruga_mesh::{Mesh, MeshError, Quantity};
 /// Circles that are closer than this fraction of their radii touch, because their nodes are rounded.
 const TOUCHING: f64 = 1e-9;
 
-/// Rings, one after another; those with negative radius run clockwise.
+/// Rings, one after another; rings with negative radius run clockwise.
 pub(super) fn rings(shape: &Values) -> Result<Mesh<2>, MeshError> {
     let (centers, radii) = (points::<2>(shape.rows("centers")), shape.numbers("radii").unwrap_or(&[]));
     if radii.len() != centers.len() {
