@@ -55,9 +55,9 @@ impl<const D: usize> Candidates<D> {
     /// Finds all pairs of features with boxes closer than a distance [m] along every axis, given the boxes of the points [m]. The
     /// first distance is for pairs of bodies, the second for pairs with obstacles.
     ///
-    /// `meet` returns whether two bodies, or a body and itself, may touch. Two features do not form a pair if they share a
-    /// point, or if a node carries points of both. A facet of an obstacle does not form a pair with a vertex of a body whose
-    /// nodes are held by obstacles. If there are more than `most` pairs, the search ends and returns false.
+    /// `meet` returns whether two bodies, or a body and itself, may touch. Two features do not form a pair if they share a point, or if a node
+    /// carries points of both. A facet of an obstacle does not form a pair with a vertex of a body whose nodes are held by obstacles. The search ends
+    /// and returns false if it finds more than `most` pairs.
     pub fn find(
         &mut self,
         surface: &Surface<D>,

@@ -12,9 +12,9 @@ use opruga_math::Lane;
 /// d(t) ≥ d(t₀) − (s_a(t) − s_a(t₀)) − (s_b(t) − s_b(t₀))
 /// ```
 ///
-/// s is the path of the body of a feature: the largest displacement of its points, summed over the steps. Displacements are relative to the mean
-/// displacement of all points. If both features belong to one body, displacements are relative to the mean displacement of the points of this body.
-/// Bodies that fall together, or rotate little, therefore keep their bounds.
+/// s is the path of the body that has the feature: the largest displacement of the points of this body, summed over the steps. Displacements are
+/// relative to the mean displacement of all points. If both features belong to one body, displacements are relative to the mean displacement of the
+/// points of this body. Bodies that fall together, or rotate little, therefore keep their bounds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Clearance<const D: usize> {
     /// The positions at the end of the paths [m].

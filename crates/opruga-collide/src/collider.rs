@@ -35,7 +35,7 @@ pub(crate) enum Part<const D: usize> {
 }
 
 impl<const D: usize> Form<D> {
-    /// Whether it has flat faces (in the plane: straight lines) between corners.
+    /// Whether the shape has flat faces (in the plane: straight lines) between corners.
     pub(crate) fn has_faces(&self) -> bool {
         match self {
             Form::Box { inside, .. } => !inside,
@@ -155,7 +155,7 @@ impl<const D: usize> Collider<D> {
         let margin = |part: &Part<D>| if let Part::Facets(facets) = part { facets.skin() } else { 0.0 };
         self.parts.iter().map(margin).fold(0.0, |most, margin| margin.larger(most))
     }
-    /// Whether it has flat faces (in the plane: straight lines) between corners.
+    /// Whether the collider has flat faces (in the plane: straight lines) between corners.
     pub(crate) fn has_faces(&self) -> bool {
         self.form.has_faces()
     }
@@ -194,8 +194,8 @@ impl<const D: usize> Collider<D> {
         }
         length(&arm)
     }
-    /// Whether a part may touch something within a box. It may return true for parts that do not touch, but never false for parts
-    /// that do.
+    /// Whether a part may touch something within a box. If the part can touch something there, the function returns true. It may also return true
+    /// although the part cannot.
     pub(crate) fn may_touch(&self, part: &Part<D>, reach: &Reach<D>, low: &[f64; D], high: &[f64; D]) -> bool {
         let slack = 1e-9 * (self.law.extent + magnitude(low) + magnitude(high));
         let margin = self.law.thickness + reach.bend + slack;

@@ -45,7 +45,7 @@ pub(crate) struct Comparisons<'a, O, const D: usize> {
     pub(crate) counted: &'a AtomicUsize,
 }
 
-/// Combines the two numbers of a pair into one, which is compared faster than two.
+/// Combines the two numbers of a pair into one number, because one comparison is faster than two.
 pub(crate) fn key([a, b]: &[u32; 2]) -> u64 {
     u64::from(*a) << 32 | u64::from(*b)
 }

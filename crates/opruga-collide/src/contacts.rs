@@ -30,8 +30,7 @@ fn of_space(colliders: Arc<Colliders<3>>) -> Arc<dyn Contacts<3>> {
 #[derive(Clone, Debug)]
 pub struct Colliders<const D: usize> {
     all: Arc<[Collider<D>]>,
-    /// Whether colliders with faces leave nodes free, because bodies meet their faces in the same way as the faces of other
-    /// bodies.
+    /// Whether colliders with faces do not hold nodes, because the surfaces of bodies meet these faces like the faces of other bodies.
     without_faces: bool,
 }
 

@@ -81,7 +81,7 @@ impl<const D: usize> Coupled<D> {
         (body != NONE).then_some(body as usize)
     }
 
-    /// Whether a point belongs to a body of [`Coupled`], regardless of how it responds in this step.
+    /// Whether a point belongs to a body of [`Coupled`], even if it responds independently in this step.
     pub(crate) fn has(&self, point: u32) -> bool {
         self.of_point.get(point as usize).is_some_and(|body| *body != NONE)
     }

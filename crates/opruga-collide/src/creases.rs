@@ -7,7 +7,7 @@ use opruga_mesh::Mesh;
 /// The angle between the normals of two facets, in radians, from which their common side counts as an edge.
 const FLAT: f64 = 1e-9;
 
-/// A surface whose points are sorted: those within plane faces come first.
+/// A surface whose points are sorted: points within plane faces come first.
 pub(crate) struct Creases<const D: usize> {
     pub(crate) mesh: Mesh<D>,
     pub(crate) within_faces: usize,

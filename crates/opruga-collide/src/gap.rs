@@ -28,9 +28,9 @@ const ROUNDING: f64 = 1e-13;
 impl<const D: usize> Gap<D> {
     /// The gap of a vertex and a facet with the points at `x` [m].
     ///
-    /// A facet of a closed boundary has an inner side, where the gap is negative. If the closest point is inside the facet, the
-    /// side follows from the normal of the facet. If it is on an edge or corner, the side follows from the normals of all
-    /// facets around this edge or corner, each weighted by its angle there. Other facets act on both sides.
+    /// A facet of a closed boundary has an inner side, where the gap is negative. If the closest point is inside the facet, the side follows from the
+    /// normal of the facet. If the closest point is on an edge or corner, the side follows from the normals of all facets around this edge or corner,
+    /// each weighted by its angle there. Other facets act on both sides.
     ///
     /// # Source
     /// J. A. Bærentzen, H. Aanæs, Signed distance computation using the angle weighted pseudonormal, IEEE TVCG 11 (2005) 243–253.

@@ -17,9 +17,9 @@
 //! With `rest_speed = 0`, every crossing is an impact, even if the node lies on the floor. This is the rule v = −e v of the thesis.
 //!
 //! **Speed of an impact.** The force acts for the whole step, but the node meets the surface within it. The speed s of the impact therefore follows
-//! from s² = u² + 2 a g, with the approach u and the gap g at the start of the step and the acceleration a towards the surface. It is limited to the
-//! range between the approaches at both ends of the step. An impact therefore returns e² of the incoming energy, and forces do not create energy.
-//! With `rest_speed = 0`, the rule of the thesis, s is the approach at the end of the step.
+//! from s² = u² + 2 a g, with the approach u and the gap g at the start of the step and the acceleration a towards the surface. The speed is limited
+//! to the range between the approaches at both ends of the step. An impact therefore returns e² of the incoming energy, and forces do not create
+//! energy. With `rest_speed = 0`, the rule of the thesis, s is the approach at the end of the step.
 //!
 //! **Position.** Without friction the node is moved along the normal onto the surface, and its tangential motion does not change
 //! in any bit. With friction, a node that does not bounce moves from its previous position (carried along by the collider) with
@@ -35,7 +35,7 @@
 //!
 //! **Walking.** On a slope only a little less steep than the angle of friction, a vibrating soft body creeps down: it slips where it presses less,
 //! and gravity supplies the energy that damping dissipates. This is not an error of the step. A block of 1 m × 0.5 m is placed suddenly on a slope of
-//! tan θ = ½ with µ = 0.6. It walks at 0.0682, 0.0683, 0.0683 and 0.0683 m/s with steps of 1/3840 s to 1/30720 s. With velocity Verlet and
+//! tan θ = ½ with µ = 0.6. The block walks at 0.0682, 0.0683, 0.0683 and 0.0683 m/s with steps of 1/3840 s to 1/30720 s. With velocity Verlet and
 //! Runge–Kutta the block walks at 0.0681 m/s. With cells of half the size it walks at 0.0654 m/s. With µ = 0.65 it comes to rest. Once at rest, it
 //! stays at rest with any damping.
 //!

@@ -30,8 +30,9 @@ use opruga_math::{Lane, Simd, WIDTH};
 pub(crate) const MOST_UNKNOWNS: usize = 900;
 
 /// Limits for the fraction of the diagonal of W that restrains changes of impulses: its initial value, which is also the smallest, and its largest
-/// value. It is increased if Newton's method did not converge, which makes the problem easier, and decreased if it did, so that the next impulses are
-/// closer to the solution. With a constant fraction, `a_cube_of_space_comes_to_its_balance_on_a_slab` does not converge.
+/// value. The fraction is increased if Newton's method did not converge, which makes the problem easier. It is decreased if Newton's method did
+/// converge, so that the next impulses are closer to the solution. With a constant fraction, `a_cube_of_space_comes_to_its_balance_on_a_slab` does
+/// not converge.
 const LEAST_PROXIMAL: f64 = 1e-7;
 const MOST_PROXIMAL: f64 = 1.0;
 const FIRMER: f64 = 10.0;

@@ -18,8 +18,9 @@ pub(crate) struct Reach<const D: usize> {
     pub(crate) found_in: Vec<Bounds<D>>,
     /// For every body, the largest displacement that contact may add to the motion of one of its points [m].
     body_push: Vec<f64>,
-    /// For every body, whether a new search must find its candidates. This is necessary if a box of the step is not inside the box of the last search
-    /// with a quarter of a margin to spare, or if the box of the last search is far too large because it was made for a faster motion.
+    /// For every body, whether a new search must find its candidates. A new search is necessary if a box of the step is not inside the box of the
+    /// last search with a quarter of a margin to spare. It is also necessary if the box of the last search is far too large because it was made for a
+    /// faster motion.
     stale: Vec<bool>,
     /// For every body, whether it will soon be stale. The next search covers all such bodies at once.
     due: Vec<bool>,

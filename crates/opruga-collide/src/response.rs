@@ -75,7 +75,7 @@ pub(crate) struct Parting<S, const D: usize> {
 
 /// The distance [m] below which a gap consists of rounding errors.
 ///
-/// It has the same upper bound for all nodes, so that one comparison can skip a whole tile.
+/// The distance has the same upper bound for all nodes, so that one comparison can skip a whole tile.
 #[inline(always)]
 pub(crate) fn rounding<S: Lane, const D: usize>(law: &Law, x: &[S; D]) -> S {
     if law.rest_speed == 0.0 {

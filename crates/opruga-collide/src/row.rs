@@ -39,9 +39,9 @@ pub(crate) struct Row<const D: usize> {
 }
 
 /// The mobility below which a pair counts as immovable, as a fraction of the mobility that it would have if its points moved independently. If
-/// obstacles hold all of its points, a fraction of about 1e-16 remains, which is rounding. Half-spaces and round obstacles can hold the nodes of
-/// bodies with implicit integrators in this way. In contrast, a stiff body of a million nodes, which moves as a whole, has a fraction of 1e-6. The
-/// limit was introduced for corners of polylines, which form their own pairs now. No test of contact changes if it is 0.
+/// obstacles hold all of its points, only a rounding error of about 1e-16 remains. Half-spaces and round obstacles can hold the nodes of bodies with
+/// implicit integrators in this way. In contrast, a stiff body of a million nodes, which moves as a whole, has a fraction of 1e-6. The limit was
+/// introduced for corners of polylines, which form their own pairs now. No test of contact changes if it is 0.
 const IMMOBILE: f64 = 1e-12;
 
 impl<const D: usize> Row<D> {

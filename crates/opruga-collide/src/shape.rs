@@ -29,7 +29,7 @@ pub(crate) struct Met<const D: usize> {
     pub(crate) behind: f64,
     /// The number of faces that the node is on.
     pub(crate) faces: usize,
-    /// The number of these faces into which its path leads.
+    /// The number of these faces into which the path of the node leads.
     pub(crate) entered: usize,
 }
 
@@ -207,7 +207,7 @@ impl<const D: usize> Cuboid<D> {
         }
         Cuboid { center: pose.transform(&self.center), axes, half: self.half }
     }
-    /// The corner that the bits of a number select, one bit for each axis.
+    /// The corner that the bits of a number select. Each bit stands for one axis.
     pub(crate) fn corner(&self, bits: usize) -> [f64; D] {
         let mut out = self.center;
         for d in 0..D {
@@ -318,7 +318,7 @@ pub(crate) fn support<T: Shape<D>, const D: usize>(
 /// Finds where a node that moved from `a` to `b` entered a convex solid. Returns the distance of `b` behind the tangent plane
 /// at that point (negative) and the normal; `None` if the node did not enter from outside.
 ///
-/// This is sphere tracing: a step along the segment by the signed distance never crosses the surface.
+/// This method is sphere tracing: a step along the segment by the signed distance never crosses the surface.
 #[inline(never)]
 pub(crate) fn entry<T: Shape<D>, const D: usize>(
     shape: &T,

@@ -46,8 +46,8 @@ pub struct Touching<const D: usize> {
     pub after: [Vec<[f64; D]>; 2],
     /// The points that got an impulse or were moved, ascending.
     pub changed: Vec<u32>,
-    /// For every changed point, four energies [J]: those that contact and friction took, the one that obstacles and pins gave
-    /// by their motion, and the one that moving the point gave.
+    /// For every changed point, four energies [J]: what contact took, what friction took, what obstacles and pins gave by their motion, and what the
+    /// displacement of the point gave.
     pub losses: Vec<[f64; 4]>,
     /// Whether overlaps are removed by impulses within the step, and not by changes of positions. This is so for bodies at rest, which have no
     /// velocity.
@@ -259,9 +259,9 @@ impl<const D: usize> Touching<D> {
         self.counts.steps += 1;
     }
 
-    /// Finds the impulses of a substep of h [s] and the resulting motion; coupled bodies respond through `respond`. Returns
-    /// whether that motion is valid. It is invalid if coupled bodies do not respond, if their points would move too far, or if
-    /// pairs would still pass through one another and would have to move rigidly.
+    /// Finds the impulses of a substep of h [s] and the resulting motion; coupled bodies respond through `respond`. Returns whether that motion is
+    /// valid. The motion is invalid if coupled bodies do not respond, if their points would move too far, or if pairs would still pass through one
+    /// another and would have to move rigidly.
     ///
     /// # Errors
     /// [`Trouble`] as for [`Touching::step`].

@@ -96,8 +96,8 @@ pub(crate) fn magnitude<const D: usize>(a: &[f64; D]) -> f64 {
     }
     sum
 }
-/// The matrix Ω for which Ω r is the velocity of a rotating body at r. It is made from one number in 2D and from a vector along
-/// the axis in 3D.
+/// The matrix Ω for which Ω r is the velocity of a rotating body at r. The matrix is made from one number in 2D and from a vector along the axis in
+/// 3D.
 pub(crate) fn turning<const D: usize>(spin: &[f64]) -> [[f64; D]; D] {
     let mut out = [[0.0; D]; D];
     if D == 2 {

@@ -60,8 +60,8 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 impl<const D: usize> Zone<D> {
-    /// The rigid motion of a zone. It has the momentum of the points along every axis that is not prescribed. If no axis is prescribed, it also has
-    /// their angular momentum.
+    /// The rigid motion of a zone. This motion has the momentum of the points along every axis that is not prescribed. If no axis is prescribed, it
+    /// also has their angular momentum.
     pub(crate) fn of(
         points: &[u32],
         x: &[[f64; D]],

@@ -13,9 +13,8 @@ const LONGEST: f64 = 1e6;
 
 /// Collects real time and hands it out in frames.
 ///
-/// A frame may be handed out up to a thousandth of its length early. Otherwise displays whose period (such as 1/60 s) is not a
-/// whole number of units of time would be one frame behind now and then. Time handed out early is subtracted later, so there is
-/// no drift.
+/// A frame may be handed out up to a thousandth of its length early. Otherwise, a display whose period (such as 1/60 s) is not a whole number of
+/// units of time would sometimes be one frame behind. Time handed out early is subtracted later, so there is no drift.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Accumulator {
     /// The length of a frame [as].
@@ -85,7 +84,7 @@ fn attoseconds(seconds: f64) -> i128 {
 mod tests {
     use super::*;
 
-    /// The number of frames of 1/60 s that are due after some pictures at a given rate.
+    /// The number of frames of 1/60 s that are due after the given number of pictures at the given rate.
     fn frames(rate: u32, pictures: u32) -> u32 {
         let mut accumulator = Accumulator::new(1.0 / 60.0, 100).unwrap();
         (0..pictures).map(|_| accumulator.advance(1.0 / f64::from(rate)).frames).sum()

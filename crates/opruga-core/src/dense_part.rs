@@ -25,9 +25,9 @@ pub struct DensePart<'a, const D: usize> {
 /// A rank-one term c u uᵀ: c, and the entries of u by the indices of nodes.
 pub type RankOnePart<const D: usize> = (f64, Vec<(usize, [f64; D])>);
 
-/// How a frame follows displacements d, in the coordinates of the frame. It rotates about each axis by the spin θ = Jᵀ d, which
-/// displaces nodes by V θ. The remainder, d − V θ, strains the body. J, V and Q have one column for each axis. Columns are
-/// stored one after the other, with [`Dense::padded`] numbers each.
+/// How a frame follows displacements d, in the coordinates of the frame. The frame rotates about each axis by the spin θ = Jᵀ d, which displaces
+/// nodes by V θ. The remainder, d − V θ, strains the body. J, V and Q have one column for each axis. Columns are stored one after the other, with
+/// [`Dense::padded`] numbers each.
 #[derive(Clone, Debug, Default)]
 pub struct Following {
     /// The part of J that does not change with the state: the k-th column of J is Σ `mix[k][l]` times the l-th vector of

@@ -139,8 +139,7 @@ impl<const D: usize> System<D> {
         (0..self.nodes).flat_map(|node| columns.at(node)).collect()
     }
 
-    /// Computes the external force on every node, which is its weight and the loads on it [N], after [`System::evaluate`] in
-    /// the same state.
+    /// Computes the external force on every node, consisting of its weight and the loads on it [N], after [`System::evaluate`] in the same state.
     pub fn outer_forces(&mut self, stage: Stage, time: f64, out: &mut Columns<D>) {
         let now = self.time + time;
         let view = view(&self.state, self.nodes, self.layout, stage, now, self.threads);

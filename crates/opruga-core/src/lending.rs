@@ -5,7 +5,7 @@ use crate::workspace::Workspace;
 use opruga_math::WIDTH;
 
 impl<const D: usize> Workspace<D> {
-    /// Enlarges the workspace to the size that the steps of a system need.
+    /// Enlarges the workspace so that it suffices for the steps of a system.
     pub fn fit(&mut self, system: &System<D>) {
         self.grow(system.plan.buffer_length(), system.stages, system.index_count());
     }

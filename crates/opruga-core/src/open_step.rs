@@ -30,8 +30,8 @@ pub trait OpenStep<const D: usize>: Send {
     fn potential(&self, system: &System<D>) -> Option<[f64; 2]>;
     /// The rounding error of the terms of Φ that models compute [J].
     fn rounding(&self, system: &System<D>) -> f64;
-    /// The part of r that is due to rounding of positions, as the root of the sum of squares [N]. It is computed from the last derivatives, in the
-    /// free directions only.
+    /// The part of r that is due to rounding of positions, as the root of the sum of squares [N]. This part is computed from the last derivatives, in
+    /// the free directions only.
     fn rounding_of_forces(&self, system: &System<D>) -> f64;
     /// The residual r in the last evaluated state [N].
     fn residual(&self) -> &[f64];

@@ -10,10 +10,10 @@ impl<const D: usize> System<D> {
         self.pinned_nodes.learn(&self.pins, self.time, h);
     }
 
-    /// Gives pinned nodes the velocity of their path at the start of a frame if their velocity differs from it. It differs at the start of a run, or
-    /// if a command has just pinned the nodes. Otherwise dampers between them and their neighbours would act for one step with a velocity that no
-    /// longer exists, which reduces the order of every integrator. The change of kinetic energy is work of the pins. If a mass matrix couples nodes,
-    /// the change would be an impulse on other nodes too, and is left to the integrator.
+    /// Gives pinned nodes the velocity of their path at the start of a frame if their velocity differs from it. The velocity differs at the start of
+    /// a run, or if a command has just pinned the nodes. Otherwise dampers between these nodes and their neighbours would act for one step with a
+    /// velocity that no longer exists, which reduces the order of every integrator. The change of kinetic energy is work of the pins. If a mass
+    /// matrix couples nodes, the change would be an impulse on other nodes too, and is left to the integrator.
     pub fn take_hold(&mut self) {
         if self.inertia.is_some() {
             return;

@@ -225,8 +225,8 @@ pub trait Potential<const D: usize>: Observe<D> + Send + Sync + Debug {
     }
     /// Adds the whole force of the model, −∂U/∂x and damping [N], to every node of the tile.
     fn add_force(&self, simd: Simd, view: &View<D>, scratch: &[f64], tile: &mut Tile<D>);
-    /// Updates the memory after a substep; returns the energy that this gives to each body [J]. The scratch comes from the latest call of `prepare`,
-    /// and the method may overwrite it.
+    /// Updates the memory after a substep; returns the energy that this update gives to each body [J]. The scratch comes from the latest call of
+    /// `prepare`, and the method may overwrite it.
     fn remember(
         &self,
         _simd: Simd,

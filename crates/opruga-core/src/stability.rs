@@ -1,21 +1,21 @@
 //! The largest stable step, from the spectra of stiffness and damping and from the integrator.
 //!
-//! Near any state a system moves according to M x″ = −K x − C x′. Its fastest oscillation is ω = √λ(M⁻¹K) and its strongest
-//! damping is c = λ(M⁻¹C), where λ is the largest eigenvalue. Both are found before a run from the forces themselves:
+//! Near any state a system moves according to M x″ = −K x − C x′. Its fastest oscillation is ω = √λ(M⁻¹K) and its strongest damping is c = λ(M⁻¹C),
+//! where λ is the largest eigenvalue. Both values are found before a run from the forces themselves:
 //!
 //! K d ≈ (F(x − εd) − F(x + εd)) / 2ε,  C d = F(x, 0) − F(x, d),
 //!
 //! so every model takes part, including the gas as a whole and models without a Hessian, and the same fast code runs as in a
 //! step. Obstacles contribute nothing: explicit integrators treat them by impulses, which have no stiffness.
 //!
-//! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. It computes the same products as a power iteration
-//! from the same start vector, but uses the best combination of them. On a long chain of springs, whose spectrum is dense at its upper end, a power
-//! iteration still has an error of 2 % after 30 products. The estimate is the largest Ritz value plus its residual, and the resulting step is reduced
-//! by 2 %. Negative eigenvalues, which a body has when it is about to buckle, do not affect the step.
+//! **Which eigenvalue.** The products drive a Lanczos recurrence on the symmetric M^-½ K M^-½. The recurrence computes the same products as a power
+//! iteration from the same start vector, but uses the best combination of these products. On a long chain of springs, whose spectrum is dense at its
+//! upper end, a power iteration still has an error of 2 % after 30 products. The estimate is the largest Ritz value plus its residual, and the
+//! resulting step is reduced by 2 %. Negative eigenvalues, which a body has when it is about to buckle, do not affect the step.
 //!
 //! **Which modes.** A mode M μ² q + C μ q + K q = 0 with q*Mq = 1 satisfies μ² + c μ + ω² = 0 with c = q*Cq and ω² = q*Kq. Therefore, the pairs (ω²,
-//! c) of all modes are in the joint numerical range of K and C, whether or not K and C have the same eigenvectors. A polygon encloses this range. It
-//! follows from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
+//! c) of all modes are in the joint numerical range of K and C, whether or not K and C have the same eigenvectors. A polygon encloses this range. The
+//! polygon follows from the spectra of K, of C and of C − γK with γ = c_max/ω²_max:
 //!
 //! ```text
 //!     c │     ______________         0 ≤ ω² ≤ ω²_max,  c_min ≤ c ≤ c_max,
@@ -78,8 +78,8 @@ pub struct Spectrum {
 /// The spectra of a system, and the resulting limit of the step of an integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stability {
-    /// The spectra, with each residual added on the safe side. A smallest damping below 1 % of the strongest is replaced by the damping due to the
-    /// drag on every node, which is known.
+    /// The spectra, each widened by its residual so that the step is safe. A smallest damping below 1 % of the strongest is replaced by the damping
+    /// due to the drag on every node, which is known.
     pub spectrum: Spectrum,
     /// The largest step for which no mode grows, reduced by 2 % [s]. It is infinite for a free body and for integrators without a limit, and `None`
     /// if a mode grows at every step.
@@ -88,8 +88,7 @@ pub struct Stability {
 
 /// Estimates the spectra of a system in its present state, and the largest stable step of an integrator.
 ///
-/// This takes about 30 evaluations of all forces, 100 with damping; the system does not change. Pinned nodes and axes do not
-/// count.
+/// The estimate takes about 30 evaluations of all forces, or 100 with damping; the system does not change. Pinned nodes and axes do not count.
 ///
 /// # Errors
 /// [`StepError`] if a model refuses the state or its forces are not finite.

@@ -132,7 +132,7 @@ pub struct System<const D: usize> {
 }
 
 impl<const D: usize> System<D> {
-    /// Makes a system of bodies at positions `x` with velocities `v`, which are laid out in columns.
+    /// Makes a system of bodies at positions `x` with velocities `v`, both laid out in columns.
     pub fn new(
         simd: Simd,
         layout: Layout,

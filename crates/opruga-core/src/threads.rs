@@ -66,7 +66,7 @@ pub fn each<T: Send>(threads: usize, pieces: &mut [T], work: impl Fn(&mut T) + S
     }
 }
 
-/// Does the work on every piece on the threads of the pool in which the caller runs. The threads of a team stay awake between calls, whereas these
+/// Does the work on all pieces, on the threads of the pool in which the caller runs. The threads of a team stay awake between calls, whereas these
 /// threads sleep. This function is meant for pieces that take tens of microseconds, between longer work on one thread.
 ///
 /// A single piece needs no memory.

@@ -86,7 +86,7 @@ impl Cholesky {
         Ok(())
     }
 
-    /// Computes the factor of the scalars. This does not depend on the dimension, so it is compiled only once, with this crate.
+    /// Computes the factor of the scalars. The code does not depend on the dimension, so it is compiled only once, with this crate.
     fn factor(&mut self, anew: bool) -> Result<(), Indefinite> {
         let size = self.scalars.size();
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &self.scalars.start, None, &self.scalars.row);

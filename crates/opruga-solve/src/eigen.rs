@@ -5,7 +5,7 @@
 //!
 //! * *Few modes*: a block Lanczos recurrence. A block of several vectors also finds frequencies that occur several times, such as the frequencies of
 //!   round bodies. Every block is orthogonalised against all previous ones (twice), so no frequency is found again. The products of the
-//!   orthogonalisation give the projection T = Qᵀ M A Q. It is decomposed only when the basis has grown by a fraction of its size.
+//!   orthogonalisation give the projection T = Qᵀ M A Q. The projection is decomposed only when the basis has grown by a fraction of its size.
 //! * *Many modes*: with M = R Rᵀ, all eigenvectors of the dense symmetric matrix Rᵀ (K + s M)⁻¹ R.
 //!
 //! Products of dense matrices and their eigenvectors come from faer, so results have the same bits only on processors of one
@@ -50,8 +50,8 @@ const BLOCK: usize = 6;
 /// A Ritz pair whose residual is below this fraction of θ is as accurate as rounding permits.
 const CONVERGED: f64 = 1e-12;
 
-/// The basis is first decomposed when it has twice as many vectors as there are requested modes (fewer have never been enough).
-/// It is decomposed again each time it has grown by this fraction of its size. Each decomposition costs the cube of the size.
+/// The basis is first decomposed when it has twice as many vectors as there are requested modes (fewer have never been enough). The basis is
+/// decomposed again each time it has grown by this fraction of its size. Each decomposition costs the cube of the size.
 const GROWTH: f64 = 0.1;
 
 /// Bodies with up to this many free coordinates are decomposed as a whole, because the dense matrix takes only milliseconds.

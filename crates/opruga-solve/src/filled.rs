@@ -9,9 +9,9 @@ use faer::sparse::linalg::amd;
 
 /// A factor L Lᵀ = A with all its blocks, with nodes in minimum-degree order.
 ///
-/// It takes several times as long as [`crate::Cholesky`], and gives the same bits on every processor: the order is computed
-/// with whole numbers, and sums have a fixed order. Rank-one terms are omitted. For a nearly incompressible solid, conjugate
-/// gradients with an incomplete factor need as many products as the matrix has rows; with this factor they need a few.
+/// This factor takes several times as long as [`crate::Cholesky`]. It gives the same bits on every processor, because the order is computed with
+/// whole numbers and sums have a fixed order. Rank-one terms are omitted. For a nearly incompressible solid, conjugate gradients with an incomplete
+/// factor need as many products as the matrix has rows; with this factor they need a few.
 #[derive(Clone, Debug, Default)]
 pub struct FilledCholesky<const D: usize> {
     generation: Option<u64>,

@@ -1,8 +1,9 @@
 //! Sparse linear systems and eigenvalues of Opruga, for implicit integrators, equilibria and natural frequencies.
 //!
-//! A [`BlockMatrix`] collects the second derivatives that models deliver. It is solved by [`conjugate_gradients`], which gives the same bits on every
-//! processor because its sums have a fixed order ([`Packed`] does the same with vector instructions and threads). [`Cholesky`] and [`Factors`] (from
-//! the library faer) can also solve it; they choose their instructions by the class of the processor. [`eigen`] finds the lowest natural frequencies.
+//! A [`BlockMatrix`] collects the second derivatives that models deliver. The matrix can be solved by [`conjugate_gradients`], which gives the same
+//! bits on every processor because its sums have a fixed order ([`Packed`] does the same with vector instructions and threads). [`Cholesky`] and
+//! [`Factors`] (from the library faer) can also solve it; they choose their instructions by the class of the processor. [`eigen`] finds the lowest
+//! natural frequencies.
 
 mod beside;
 pub mod blocks;

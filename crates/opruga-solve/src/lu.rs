@@ -73,8 +73,7 @@ impl Factors {
         Ok(())
     }
 
-    /// Computes the factors of the scalars. This does not depend on the dimension, so it is compiled only once, with this
-    /// crate.
+    /// Computes the factors of the scalars. The code does not depend on the dimension, so it is compiled only once, with this crate.
     fn factored(&mut self, anew: bool) -> Result<Lu<usize, f64>, Indefinite> {
         let size = self.scalars.size();
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &self.scalars.start, None, &self.scalars.row);

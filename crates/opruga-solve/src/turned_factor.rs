@@ -26,8 +26,8 @@ pub(crate) struct TurnedFactor {
     /// address.
     made_of: Vec<u64>,
     matrix: Option<Arc<Dense>>,
-    /// The terms of a frame that follows its nodes, and the solutions for the vectors in [`SolvedBase`], which are kept as long
-    /// as the inverse.
+    /// The terms of a frame that follows its nodes, and the solutions for the vectors in [`SolvedBase`]. These solutions are kept as long as the
+    /// inverse.
     following: Option<FollowingFrame>,
     solved_base: Option<SolvedBase>,
 }
@@ -123,8 +123,7 @@ impl TurnedFactor {
         let all = matrix.rank_one().iter().chain(&of_frames);
         parts.update(matrix.rows() * D, all, positive, right, |sides| self.solve_all(&mut sides.collect::<Vec<_>>()))
     }
-    /// Replaces a right-hand side by the solution. This takes account of a frame that follows its nodes, but not of rank-one
-    /// terms.
+    /// Replaces a right-hand side by the solution. The solution takes account of a frame that follows its nodes, but not of rank-one terms.
     pub(crate) fn solve(&self, side: &mut [f64]) {
         let (Some(following), Some(Solver::Inverse(inverse))) = (&self.following, &self.solver) else {
             return self.solve_all(&mut [side]);

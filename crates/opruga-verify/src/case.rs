@@ -75,8 +75,8 @@ pub enum Check {
     /// The error at the finest level is within the tolerance. The error also decreases from level to level, and its order over all levels is at least
     /// this order minus 0.2.
     Order(f64),
-    /// The error at the finest level is within the tolerance. This is used if the reference has too few digits for an order, or belongs to a slightly
-    /// different body.
+    /// The error at the finest level is within the tolerance. This criterion is used if the reference has too few digits for an order, or belongs to
+    /// a slightly different body.
     Finest,
     /// The errors at all levels are within the tolerance.
     Everywhere,

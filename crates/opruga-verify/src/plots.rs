@@ -77,7 +77,7 @@ fn errors(rows: &[&Row]) -> Panel {
     Panel { height: 260.0, y: Axis::logarithmic("error", ""), lines, levels }
 }
 
-/// The names of cases without their common leading words, which the axis already contains.
+/// The names of cases without the leading words that all of them share, because the axis already contains these words.
 fn without_common_words(names: &[&str]) -> Vec<String> {
     let words: Vec<Vec<&str>> = names.iter().map(|name| name.split('-').collect()).collect();
     let most = words.iter().map(|words| words.len() - 1).min().unwrap_or(0);

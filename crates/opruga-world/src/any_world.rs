@@ -23,7 +23,7 @@ use opruga_core::system::SolverWork;
 use opruga_math::{Lane, Simd};
 use std::borrow::Cow;
 
-/// A world in the plane or in space. Vectors have three numbers; in the plane z is 0.
+/// A world in the plane or in space. Vectors have three numbers, of which z is 0 in the plane.
 ///
 /// [`AnyBlueprint::build`](crate::blueprint::AnyBlueprint::build) builds one from a scene. Every [`World`] implements this trait; its methods of the
 /// same names are documented in more detail.

@@ -4,10 +4,10 @@
 //! Σ Φ(u) + B(x₀ + u) + D(u) → min    Φ of each body, B the barrier, D friction at given normal forces
 //! ```
 //!
-//! Newton's method with conjugate gradients finds a direction. Its matrix consists of the matrices of the bodies, each with its own factor, and of
-//! the second derivatives of B and D, which are stored as short vectors. A correction ends before any pair meets, and it reduces the sum. Surfaces
-//! that are apart at the start of a substep are therefore apart at its end. Outer rounds find the friction multipliers and the normal forces on which
-//! friction depends.
+//! Newton's method with conjugate gradients finds a direction. The matrix of all bodies consists of the matrices of the bodies, each with its own
+//! factor, and of the second derivatives of B and D, stored as short vectors. A correction ends before any pair meets, and it reduces the sum.
+//! Surfaces that are apart at the start of a substep are therefore apart at its end. Outer rounds find the friction multipliers and the normal forces
+//! on which friction depends.
 //!
 //! Source: M. Li and others, Incremental potential contact, ACM Trans. Graph. 39 (2020), algorithm 1.
 
@@ -45,8 +45,8 @@ const SETTLED: f64 = 1e-3;
 /// motion, and the ledger of a tower closes to 2 % (`a_barrier_with_a_budget_leaves_bodies_where_exact_steps_do`).
 const ENOUGH: f64 = 0.05;
 
-/// The tolerance of the linear solver relative to `ENOUGH`, and its largest value relative to the right-hand side. These two numbers trade products
-/// for iterations; the residual at which a search ends does not depend on them.
+/// The tolerance of the linear solver relative to `ENOUGH`, and its largest value relative to the right-hand side. These two numbers reduce
+/// iterations at the price of more products, or the reverse. The residual at which a search ends does not depend on them.
 const LINEAR_SHARE: f64 = 0.5;
 const MOST_LEFT: f64 = 0.1;
 
@@ -237,7 +237,7 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(())
     }
 
-    /// The friction force of every pair with the opposite sign [N], which is the multiplier for the next search, by the features of the pairs.
+    /// The friction force of every pair with the opposite sign [N], by the features of the pairs. This force is the multiplier for the next search.
     pub(crate) fn multipliers(&self) -> Vec<(u64, [f64; D])> {
         self.rubbing.iter().map(|rub| (rub.id, scaled(&rub.force(&rub.slip(&self.moved)), -1.0))).collect()
     }

@@ -164,7 +164,8 @@ pub struct BodyBlueprint<const D: usize> {
     pub velocity: [f64; D],
     /// Angular velocity about the centre of mass at the start [rad/s]: one number in 2D, three in 3D.
     pub angular_velocity: Vec<f64>,
-    /// Velocity gradient at the start, G = ∂v/∂x, row by row [1/s]. It adds the velocity G (x − c) at the position x, where c is the centre of mass.
+    /// Velocity gradient at the start, G = ∂v/∂x, row by row [1/s]. The gradient adds the velocity G (x − c) at the position x, where c is the centre
+    /// of mass.
     pub velocity_gradient: [[f64; D]; D],
     /// The additional velocity of every node at the start [m/s], one row per node; empty if there is none.
     pub node_velocities: Arc<[[f64; D]]>,
@@ -281,7 +282,7 @@ pub enum LoadKind<const D: usize> {
     Traction([f64; D]),
     /// A pressure on the selected part of the boundary, along its present inner normal [Pa].
     Pressure(f64),
-    /// A force per volume at rest [N/m³]. It acts on the cells whose nodes are all selected, and their shape functions distribute it.
+    /// A force per volume at rest [N/m³]. The force acts on the cells whose nodes are all selected, and their shape functions distribute it.
     BodyForce([f64; D]),
     /// A force of the same size on every selected node, towards a fixed point.
     Central {
@@ -395,7 +396,7 @@ pub enum Recorded {
     Reaction,
     /// Sum of the forces that obstacles exert [N].
     Contact,
-    /// Mean Cauchy stress at the nodes, and the von Mises stress of that mean [Pa].
+    /// The mean Cauchy stress at the nodes, and the von Mises stress of this mean [Pa].
     Stress,
     /// Mean volume ratio J at the nodes.
     VolumeRatio,

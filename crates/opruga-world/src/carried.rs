@@ -8,7 +8,7 @@ use opruga_core::system::System;
 pub(crate) struct BodyState<const D: usize> {
     pub(crate) x: Vec<[f64; D]>,
     pub(crate) v: Vec<[f64; D]>,
-    /// The memory of each model of the blueprint: the numbers of this body, which are every eighth number of the memory in a system.
+    /// The memory of each model of the blueprint: the numbers of this body, taken from every eighth number of the memory in a system.
     pub(crate) memory: Vec<Vec<f64>>,
     pub(crate) history: BodyHistory<D>,
 }

@@ -1,6 +1,6 @@
 //! Parameters of a scene that change during a run. Their values at the start are kept. A snapshot contains the differences from these values.
 //! Therefore, a snapshot of a changed scene can be restored in a world of the original scene, and an earlier snapshot can be restored in a changed
-//! world. This takes at most as much memory as the parameters of the scene, however often they are set.
+//! world. The kept values take at most as much memory as the parameters of the scene, however often these are set.
 
 use crate::at_start::AtStart;
 use crate::blueprint::{Surroundings, Time};

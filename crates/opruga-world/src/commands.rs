@@ -33,7 +33,7 @@ impl<const D: usize> Action<D> {
         }
     }
 
-    /// Whether it acts over a period with an end rather than instantaneously.
+    /// Whether the action lasts for a period with an end, rather than acting instantaneously.
     pub fn lasts(&self) -> bool {
         matches!(self, Action::Drag { .. } | Action::Push { .. } | Action::Pin { .. })
     }

@@ -9,8 +9,8 @@ use opruga_core::spec::{Role, Value, Values};
 use opruga_math::Lane;
 use opruga_mesh::{Mesh, TouchingSurface};
 
-/// The default distance of surfaces in contact, relative to the mean edge. It is small compared with every facet, but much larger than the errors of
-/// gaps that sweeps and rounding cause.
+/// The default distance of surfaces in contact, relative to the mean edge. This distance is small compared with every facet, but much larger than the
+/// errors of gaps that sweeps and rounding cause.
 const THICKNESS_OF_EDGE: f64 = 0.01;
 
 impl<const D: usize> BodyBlueprint<D> {

@@ -22,7 +22,8 @@ pub struct Contact<const D: usize> {
     pub phase: ContactPhase,
     /// The mean position of its points, weighted by the normal impulse at each [m]. For a contact that ended, its last position.
     pub position: [f64; D],
-    /// The mean of its normals, from the second body to the first, of length 1; zero if they cancel. For a contact that ended, its last normal.
+    /// The unit vector along the mean of the normals of the contact, from the second body to the first; zero if the normals cancel. For a contact
+    /// that ended, its last normal.
     pub normal: [f64; D],
     /// The impulse on the first body in the frame [N s]; divided by the length of the frame, it is the mean force. Zero for a contact that ended, and
     /// for a body with itself, because the impulses cancel.

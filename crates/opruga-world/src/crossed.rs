@@ -124,8 +124,8 @@ impl<const D: usize> World<D> {
         bounds(nodes.map(|node| self.position(body, node)))
     }
 
-    /// Warns once about bodies that pass through one another in a scene without contact. Call it after every frame. It checks in frames 1, 2, 4, 8,
-    /// …, so that it costs little in long runs. It is not part of a frame, because it allocates memory and games do not need it.
+    /// Warns once about bodies that pass through one another in a scene without contact. Call it after every frame. The check runs in frames 1, 2, 4,
+    /// 8, …, so that it costs little in long runs. The check is not part of a frame, because it allocates memory and games do not need it.
     pub fn warn_of_missing_contact(&mut self) {
         const NONE: &str = "contact.none";
         let due = self.frames.is_power_of_two() && self.blueprint.contact.is_none() && self.blueprint.bodies.len() > 1;

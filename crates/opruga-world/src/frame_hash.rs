@@ -30,7 +30,7 @@ fn join(hash: u64, other: u64) -> u64 {
 /// which every set of vector instructions has.
 ///
 /// The upper half of a number is combined with its lower half, so that different numbers have terms that differ by less than 2³². Two changed numbers
-/// in one lane therefore never cancel: if their terms add up to zero, the sums of sums differ by one term times the distance, which is not a multiple
+/// in one lane therefore never cancel. If their terms add up to zero, the sums of sums differ by one term times the distance, which is not a multiple
 /// of 2⁶⁴. More than two changes cancel only by chance.
 struct Sums {
     first: [u64; WIDTH],

@@ -413,13 +413,13 @@ impl<const D: usize> Island<D> {
 
     /// The bounding box swept within the frame: the present one, moved by v·dt + ½g·dt², plus a margin for the deformation of the bodies.
     ///
-    /// It determines whether obstacles are checked, and therefore how implicit steps are solved. For this reason it depends only on positions and
-    /// velocities, which snapshots contain: earlier frames of an island must not enlarge it.
+    /// This box determines whether obstacles are checked, and therefore how implicit steps are solved. For this reason it depends only on positions
+    /// and velocities, which snapshots contain: earlier frames of an island must not enlarge it.
     fn swept_bounds(&self, plan: &FramePlan<D>) -> [[f64; D]; 2] {
         self.sweep(plan, self.survey.position, self.survey.velocity)
     }
 
-    /// The box swept by points that lie in a box and whose velocities are in a range [m/s].
+    /// The box that points sweep if they lie in a box and their velocities are in a range [m/s].
     fn sweep(&self, plan: &FramePlan<D>, [mut low, mut high]: Bounds<D>, [slow, fast]: Bounds<D>) -> Bounds<D> {
         let dt = f64::from(plan.substeps) * plan.h;
         for d in 0..D {

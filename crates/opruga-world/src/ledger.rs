@@ -69,7 +69,7 @@ impl Energy {
     }
 }
 
-/// Linear [kg m/s] and angular [kg m²/s] momentum; in the plane the latter is one number, in space three.
+/// The linear [kg m/s] and the angular [kg m²/s] momentum; the angular momentum is one number in the plane and three in space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Momentum<const D: usize> {
     /// Σ m v.
@@ -294,8 +294,8 @@ impl<const D: usize> Work for Look<'_, D> {
 /// The unexplained energy, relative to the energy in motion, above which a frame is counted and causes a warning.
 pub(crate) const LARGEST_CLOSURE: f64 = 0.1;
 
-/// The numerical loss, relative to the energy in motion, above which a frame is counted. It is half of the limit for the unexplained energy, because
-/// the loss is known and has the same sign in every step.
+/// The numerical loss, relative to the energy in motion, above which a frame is counted. This limit is half of the limit for the unexplained energy,
+/// because the loss is known and has the same sign in every step.
 pub(crate) const LARGEST_DAMPING: f64 = 0.05;
 
 /// The relative error of a number after many roundings.

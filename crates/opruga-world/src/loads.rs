@@ -177,8 +177,7 @@ impl<const D: usize> Potential<D> for FollowerPressure<D> {
 
 impl<const D: usize> Observe<D> for FollowerPressure<D> {}
 
-/// The symmetric part of −∂F/∂x of a pressure on sides. It is exact for a closed surface, because a pressure on it has a
-/// potential.
+/// The symmetric part of −∂F/∂x of a pressure on sides. This derivative is exact for a closed surface, because a pressure on it has a potential.
 impl<const D: usize> FollowerPressure<D> {
     fn add_hessian(&self, view: &View<D>, sink: &mut dyn Sink<D>) {
         let strength = 0.5 * self.pressure * factor(&self.curve, view.time);

@@ -11,6 +11,6 @@ pub(crate) struct Looks {
     pub(crate) fresh: bool,
     /// The flows before the last frame.
     pub(crate) flows: Flows,
-    /// The time of the state that is being shown [s].
+    /// The time of the state that `look_within` shows at present [s].
     pub(crate) time: Option<f64>,
 }

@@ -2,8 +2,8 @@
 //!
 //! The small motion q obeys M q″ + K q = 0. K is ∂²U/∂x∂x of all present models and loads. M contains the masses of the nodes, lumped or consistent
 //! depending on the models. The solutions are q = φ cos ωt with K φ = ω² M φ. Damping is ignored. The state should be an equilibrium; in any other
-//! state the frequencies follow from the stiffness that springs and gas have in that state. A negative ω² is reported as it is. It shows that the
-//! state is unstable, for example because the body is about to buckle.
+//! state the frequencies follow from the stiffness that springs and gas have in that state. A negative ω² is reported as it is. A negative ω² shows
+//! that the state is unstable, for example because the body is about to buckle.
 
 use crate::any_scene::three;
 use crate::error::{Part, WorldError};

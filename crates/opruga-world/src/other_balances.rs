@@ -62,8 +62,8 @@ struct Node {
 }
 
 impl<const D: usize> World<D> {
-    /// The warnings so far, and warnings about the shapes in the present state: [`World::inverted_cells`] and [`World::other_balances`]. This is
-    /// meant for the end of a run, because every call examines the shapes again.
+    /// The warnings so far, and warnings about the shapes in the present state: [`World::inverted_cells`] and [`World::other_balances`]. This method
+    /// is meant for the end of a run, because every call examines the shapes again.
     pub fn warnings_at_the_end(&self) -> Vec<Warning> {
         let shapes = self.inverted_cells().into_iter().chain(self.other_balances());
         self.warnings().into_iter().chain(self.shape_warnings()).chain(shapes).collect()

@@ -24,7 +24,7 @@ impl<const D: usize> World<D> {
     /// the same number. [`World::handle`] distinguishes these bodies.
     ///
     /// # Errors
-    /// [`WorldError`] if its name is taken, if a scene could not contain it, or if a model refuses it; the world is then unchanged.
+    /// [`WorldError`] if the name of the body is taken, if a scene could not contain the body, or if a model refuses it; the world is then unchanged.
     pub fn add_body(&mut self, body: BodyBlueprint<D>) -> Result<usize, WorldError> {
         let name = body.name.clone();
         let number = self.include(body, Source::Program)?;

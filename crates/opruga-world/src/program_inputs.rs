@@ -15,7 +15,7 @@ impl<const D: usize> World<D> {
         self.inputs.get_or_insert_default();
     }
 
-    /// The inputs of the program since the last call, in order; empty without [`World::keep_inputs`].
+    /// The inputs of the program since the last call, in order; empty unless [`World::keep_inputs`] was called.
     pub fn take_inputs(&mut self) -> Vec<Input<D>> {
         self.inputs.as_mut().map(std::mem::take).unwrap_or_default()
     }

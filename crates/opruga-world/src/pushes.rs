@@ -121,7 +121,7 @@ impl<const D: usize> Meeting<D> {
         }
     }
 
-    /// Repeats steps and the solution of contact until they agree; returns whether they do.
+    /// Repeats the steps and the solution of contact until both agree; returns whether they do.
     pub(crate) fn iterate_with_contact(
         &mut self,
         islands: &mut [&mut Island<D>],

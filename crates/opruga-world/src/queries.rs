@@ -12,13 +12,13 @@ use opruga_mesh::winding_number;
 pub struct SurfacePoint<const D: usize> {
     /// The body, by its index in the scene.
     pub body: usize,
-    /// The nodes of its edge (2D) or triangle (3D). A wire in space has two: the second one is repeated with weight 0.
+    /// The nodes of its edge (2D) or triangle (3D). A wire in space has only two nodes, of which the second is repeated with weight 0.
     pub nodes: [u32; D],
     /// The weights of these nodes at the point; their sum is 1.
     pub weights: [f64; D],
     /// Its position [m].
     pub position: [f64; D],
-    /// The unit normal. It points out of a closed boundary; for an open surface or a wire it points towards the origin of the query.
+    /// The unit normal. The normal points out of a closed boundary; for an open surface or a wire it points towards the origin of the query.
     pub normal: [f64; D],
     /// The distance along the ray, or from the given point [m]. Negative if that point is inside a closed boundary.
     pub distance: f64,

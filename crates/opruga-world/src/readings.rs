@@ -71,7 +71,8 @@ impl<const D: usize> World<D> {
     pub fn body(&self, name: &str) -> Option<usize> {
         self.bodies().find(|b| self.blueprint.bodies[*b].name == name)
     }
-    /// A handle to a body. It becomes stale when the body is removed, because its number may be given to another body that the program adds.
+    /// A handle to a body. A handle becomes stale when its body is removed, because the number of this body may be given to another body that the
+    /// program adds.
     pub fn handle(&self, body: usize) -> Option<BodyHandle> {
         self.slots.handle(body)
     }

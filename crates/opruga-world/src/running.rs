@@ -21,7 +21,7 @@ pub(crate) struct Running<const D: usize> {
     pub(crate) progress: Progress<D>,
     /// The path of a drag, shared with its pull; empty for all other commands.
     pub(crate) path: Arc<RwLock<Vec<Vec<f64>>>>,
-    /// Whether it was given by [`World::act`] and belongs to the commands of the scene.
+    /// Whether the command was given by [`World::act`] and belongs to the commands of the scene.
     pub(crate) acted: bool,
     /// Whether the command was given by [`World::command`]. Such a command comes after the commands of the scene, and the world keeps nothing of it
     /// once it is over.

@@ -9,8 +9,8 @@ use opruga_core::spec::Values;
 use opruga_math::{Lane, Simd};
 use std::sync::Arc;
 
-/// The margin of the search for candidates, relative to the mean edge. Between two searches, points may move by half of it, which is a quarter of an
-/// edge and about the size of the gaps that are considered at all.
+/// The margin of the search for candidates, relative to the mean edge. Between two searches, points may move by half of this margin: a quarter of an
+/// edge, which is about the size of the gaps that are considered at all.
 const MARGIN_OF_EDGE: f64 = 0.5;
 
 /// The bodies of a scene that may touch, and their contact laws.
@@ -114,7 +114,7 @@ impl<const D: usize> SceneContact<D> {
         })
     }
 
-    /// Whether it was made for these islands and obstacles.
+    /// Whether the data were made for these islands and obstacles.
     pub(crate) fn is_for(&self, made_for: &MadeFor<D>) -> bool {
         self.made_for.is(made_for)
     }

@@ -247,7 +247,8 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// The commands with their progress in the snapshot, as far as it is known. Commands of the program follow the commands of the scene.
+    /// The commands with the progress that they have in the snapshot, as far as the snapshot contains it. Commands of the program follow the commands
+    /// of the scene.
     fn commands_then(&self, commands: &[Running<D>], rest: &Rest<D>) -> Vec<Running<D>> {
         let running = |(known, progress): (&Running<D>, &Progress<D>)| {
             // Bodies that will be added later do not count as gone.

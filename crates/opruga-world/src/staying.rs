@@ -20,8 +20,8 @@ const FIRST: f64 = 1e-2;
 const SOFTER: f64 = 0.1;
 const LEAST: f64 = 1e-6;
 
-/// The factor by which σ grows if corrections lead too far. Without it, contacts could alternate for ever (`high_stacks_come_to_their_balance`
-/// without friction).
+/// The factor by which σ grows if corrections lead too far. Without this factor, contacts could alternate for ever
+/// (`high_stacks_come_to_their_balance` without friction).
 const FIRMER: f64 = 4.0;
 
 /// The final residual, relative to the forces on a body.

@@ -110,7 +110,7 @@ impl<const D: usize> World<D> {
         Ok(())
     }
 
-    /// Restores the last good frame of islands, and discards the flows of all of them since then.
+    /// Restores the last good frame of some islands. The flows of all islands since then are discarded.
     fn restore_islands(&mut self, is_ahead: impl Fn(&Island<D>) -> bool) {
         for island in &mut self.islands {
             if is_ahead(island) {

@@ -1,8 +1,8 @@
 //! Cells of the law `linear` that have rotated.
 //!
 //! The strain of small motions is ε = sym F − 1. A rotation by θ has sym F = cos θ 1 in the plane perpendicular to its axis. The law treats this as a
-//! strain of cos θ − 1, whose pressure makes the body grow. The criterion is the rotation of every cell, which is the rotation nearest to its F
-//! (polar decomposition): the tip of a bar under large bending rotates, although the bar as a whole hardly does.
+//! strain of cos θ − 1, whose pressure makes the body grow. The criterion is the rotation of every cell: the rotation nearest to its F (polar
+//! decomposition). The tip of a bar under large bending rotates, although the bar as a whole hardly does.
 
 use crate::other_balances::{in_space, turn_in_plane, turn_in_space};
 use crate::warnings::{Warning, WorldWarning};

@@ -179,8 +179,8 @@ impl<const D: usize> Island<D> {
         Ok(())
     }
 
-    /// Solves a frame again from the present state, and returns whether this ended in an equilibrium. If it did not, the previous equilibrium is
-    /// kept. The work of the solver is counted in both cases.
+    /// Solves a frame again from the present state, and returns whether this ended in an equilibrium. If it did not, the world keeps the previous
+    /// equilibrium. The work of the solver is counted in both cases.
     fn solve_again(&mut self, plan: &FramePlan<D>, meets: bool, found: Saved<D>) -> Result<bool, StepError> {
         let before = found.work.solver;
         match self.attempt(plan, meets) {
@@ -344,7 +344,7 @@ fn degenerate_size<const D: usize>(system: &System<D>, mesh: &Mesh<D>) -> Option
     degenerate.then(|| if D == 2 { volume.sqrt() } else { Lane::exp(Lane::ln(volume) / 3.0) })
 }
 
-/// Whether a cell of a body that is upright at rest is certainly inverted somewhere, even if only between its integration points.
+/// Whether any cell that is upright at rest is now certainly inverted somewhere, even if only between its integration points.
 fn is_folded<const D: usize>(system: &System<D>, mesh: &Mesh<D>) -> bool {
     let (mut now, mut rest) = (Vec::new(), Vec::new());
     mesh.cells.iter().any(|(_, _, nodes)| {

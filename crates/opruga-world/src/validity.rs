@@ -52,7 +52,7 @@ fn range<const D: usize>(range: &Allowed, name: &'static str, value: Value) -> R
     range.accept(value, D).map(|_| ()).map_err(refused)
 }
 
-/// Whether a character could change how the rest of a line is shown.
+/// Whether a character could change the display of the rest of a line.
 pub fn unprintable(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{61c}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}')

@@ -68,7 +68,7 @@ impl Warning {
         fields.iter().find(|(known, _)| *known == name).map(|(_, value)| value.to_string())
     }
 
-    /// Whether it has this code, and the field with this name has this text.
+    /// Whether the warning has this code, and its field with this name has this text.
     pub fn is_about(&self, code: &str, name: &str, value: &str) -> bool {
         self.code == code && self.field(name).as_deref() == Some(value)
     }

@@ -1,4 +1,4 @@
-//! Separate pairs: the pair that closes an outline after its chain, and pairs that follow no other pair.
+//! Separate pairs: pairs that close an outline after its chain, and pairs that follow no other pair.
 
 use super::PairLaw;
 use super::parameters::law_parameters;

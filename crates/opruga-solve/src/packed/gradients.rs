@@ -12,7 +12,7 @@ pub struct Reached {
     pub iterations: u32,
     /// The remaining residual, in the norm of the preconditioner.
     pub size: f64,
-    /// Whether it ended at a direction without positive curvature; the solution is then incomplete.
+    /// Whether the method ended at a direction without positive curvature; the solution is then incomplete.
     pub indefinite: bool,
 }
 

@@ -125,7 +125,7 @@ fn chain(lab: &Lab, n: f64, load: f64) -> Result<f64, Trouble> {
     Ok(-displacement(&world, [1.0, 0.0])[1])
 }
 
-/// A strip in plane stress with EI = 1 N m². It has n cells along its length and `across` cells across its thickness.
+/// A strip in plane stress with EI = 1 N m². The strip has n cells along its length and `across` cells across its thickness.
 fn strip(lab: &Lab, n: f64, cells: Cells, across: f64) -> Result<f64, Trouble> {
     let thickness: f64 = 0.02;
     let scene = Scene::statics(2, 1e-8).add(&format!(
@@ -189,7 +189,7 @@ pub(super) fn roll_up_by(lab: &Lab, n: f64, models: &str) -> Result<f64, Trouble
     Ok(moment[0] + moment[1])
 }
 
-/// A beam that is clamped at one end and sags under its weight. It has n cells along its length and `n / slender` cells across its thickness.
+/// A beam that is clamped at one end and sags under its weight. The beam has n cells along its length and `n / slender` cells across its thickness.
 fn heavy(lab: &Lab, n: f64, cells: Cells, young: f64, slender: f64) -> Result<f64, Trouble> {
     let across = (n / slender) as u32;
     let mesh = mapped([n as u32, across, across], cells, |x| [x[0], 0.1 * x[1] - 0.05, 0.1 * x[2] - 0.05])?;

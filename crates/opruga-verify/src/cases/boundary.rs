@@ -256,8 +256,8 @@ fn tube(lab: &Lab, vertices: f64, stress: bool) -> Result<f64, Trouble> {
     Ok(strain / 0.91 - 0.3 / 0.7)
 }
 
-/// The stress concentration of a hole under tension along y, at the node on the x axis. It follows from the mean strain of the two edges at this
-/// node, which are chords of the circle.
+/// The stress concentration of a hole under tension along y, at the node on the x axis. The result follows from the mean strain of the two edges at
+/// this node, which are chords of the circle.
 fn hole(lab: &Lab, vertices: f64) -> Result<f64, Trouble> {
     let mesh = Mesh::ring(1.0, vertices as u32, [0.0, 0.0], 0.0)?;
     let mut pulls = vec![[0.0; 2]; mesh.positions.len()];
@@ -280,8 +280,8 @@ fn hole(lab: &Lab, vertices: f64) -> Result<f64, Trouble> {
     Ok(1.0 + 0.5 * (strain(0, 1) + strain(last, 0)) / SMALL)
 }
 
-/// The stress concentration of a cavity under tension along x, at its pole on the z axis. It follows from the mean strain of the triangles around the
-/// pole, weighted by their areas.
+/// The stress concentration of a cavity under tension along x, at its pole on the z axis. The result follows from the mean strain of the triangles
+/// around the pole, weighted by their areas.
 fn cavity(lab: &Lab, edges: f64, poisson: f64) -> Result<f64, Trouble> {
     let mesh = Mesh::icosphere(1.0, subdivisions(edges) as u32)?;
     let mut pulls = vec![[0.0; 3]; mesh.positions.len()];

@@ -240,8 +240,8 @@ impl Worlds<3> for Lab {
     }
 }
 
-/// A part of a cylinder with a radius of 1 m about the origin. It extends from x = 0 to `width`, and from the surface up to the height of the axis.
-/// Cells near the lowest line are small.
+/// A part of a cylinder with a radius of 1 m about the origin. This part extends from x = 0 to `width`, and from the surface up to the height of the
+/// axis. Cells near the lowest line are small.
 fn lens(n: u32, width: f64) -> Result<Mesh<2>, Trouble> {
     mapped([n; 2], Cells::Boxes, |[s, t]| {
         let x = width * s * s;

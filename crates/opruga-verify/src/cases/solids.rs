@@ -199,8 +199,8 @@ fn ball(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(outward(&world, &outer) / SMALL)
 }
 
-/// A quarter of the plate between the ellipses with semi-axes 2, 1 and 3.25, 2.75 m. It has E = 210 GPa and carries a thousandth of the tension of
-/// the reference.
+/// A quarter of the plate between the ellipses with semi-axes 2, 1 and 3.25, 2.75 m. The plate has E = 210 GPa and carries a thousandth of the
+/// tension of the reference.
 fn plate(lab: &Lab, n: f64, cells: Cells) -> Result<f64, Trouble> {
     let mesh = mapped([n as u32; 2], cells, |s| {
         let angle = std::f64::consts::FRAC_PI_2 * s[1];
