@@ -39,8 +39,8 @@ impl Spread {
         }
     }
 
-    /// Replaces the carried points by the nodes that carry them, and distributes their weights over these nodes. Returns the index of the first new entry
-    /// and the number of new entries; both are zero if no point is carried.
+    /// Replaces the carried points by the nodes that carry them, and distributes their weights over these nodes. Returns the index of the first new
+    /// entry and the number of new entries; both are zero if no point is carried.
     pub(crate) fn put<const D: usize>(&mut self, surface: &Surface<D>, (points, weights): Weighted<'_>) -> [u32; 2] {
         if !surface.carries_any(points) {
             return [0; 2];

@@ -146,8 +146,8 @@ impl<const D: usize> World<D> {
         Ok(best)
     }
 
-    /// The point nearest to a given point on the surfaces of all bodies, at most `reach` [m] away; `None` if there is no such point. If points have the
-    /// same distance, the first body and facet win.
+    /// The point nearest to a given point on the surfaces of all bodies, at most `reach` [m] away; `None` if there is no such point. If points have
+    /// the same distance, the first body and facet win.
     ///
     /// # Errors
     /// [`WorldError::Path`] for a point or reach that is not finite.

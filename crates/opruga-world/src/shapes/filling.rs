@@ -34,8 +34,8 @@ impl Filling {
     /// The filled body, and its loss of volume if that is more than [`REPORTED_LOSS`].
     ///
     /// # Errors
-    /// The errors of [`Mesh::lattice_filling`] and [`Mesh::tetrahedra_filling`]. Also [`MeshError::Lost`] for tetrahedra that lose more than a quarter
-    /// of the volume.
+    /// The errors of [`Mesh::lattice_filling`] and [`Mesh::tetrahedra_filling`]. Also [`MeshError::Lost`] for tetrahedra that lose more than a
+    /// quarter of the volume.
     pub fn of(self, surface: &Mesh<3>) -> Result<(Mesh<3>, Option<Loss>), MeshError> {
         let spacing = match self {
             // This filling extends beyond the surface, and carries the surface unchanged.
