@@ -289,7 +289,7 @@ fn time_text(time: f64) -> String {
     if time.abs() >= 100.0 { format!("t = {time:.1} s") } else { format!("t = {time:.3} s") }
 }
 
-/// Times as texts. All have the number of decimals that the longest of them needs, but at most three.
+/// Times as texts. All times have the number of decimals that the longest of them needs, but at most three.
 pub(crate) fn time_texts(times: &[f64]) -> Vec<String> {
     let exact = |digits: i32| {
         let scale = 10_f64.powi(digits);

@@ -62,7 +62,7 @@ impl Palette {
         &self.colours
     }
 
-    /// The number of the nearest colour for a pixel.
+    /// The index of the palette colour that is nearest to a pixel.
     pub(crate) fn nearest(&mut self, pixel: &[u8]) -> u8 {
         let index = coarse(pixel);
         if let Some(number) = self.nearest[index] {

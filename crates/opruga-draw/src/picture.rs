@@ -8,7 +8,7 @@ use crate::error::{DrawError, PictureList};
 pub struct Picture {
     /// The number of dimensions: 2 (seen along z) or 3 (seen by a camera, with y upwards).
     pub dimension: u8,
-    /// The time [s]; NaN for a picture without a moment, on which no time is written.
+    /// The time [s]; NaN if the picture belongs to no moment, and then no time is written on it.
     pub time: f64,
     /// The title; may be empty.
     pub title: String,
@@ -102,7 +102,7 @@ pub struct AreaPicture {
 pub struct RestPicture {
     /// The points [m].
     pub positions: Vec<[f64; 3]>,
-    /// The lines between them.
+    /// The lines between the points.
     pub segments: Vec<[u32; 2]>,
 }
 

@@ -115,7 +115,7 @@ const LARGE_ENOUGH: f32 = 130.0;
 /// The penalty of a strip whose bodies have half of the size `LARGE_ENOUGH`.
 const SMALL_BODIES: f32 = 1.2;
 
-/// The penalty for each panel fewer than nine.
+/// The penalty for each panel by which a strip falls short of nine.
 const MISSED: f32 = 0.12;
 
 /// Returns the number of panels that gives the best strip of a view, at most `most`. It is usually from nine to twelve, and smaller if the bodies

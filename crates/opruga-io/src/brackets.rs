@@ -7,7 +7,7 @@ use crate::source::end_of_string;
 pub(crate) struct Unclosed {
     /// The byte of the bracket.
     pub(crate) open: usize,
-    /// The character that would close it.
+    /// The character that would close the bracket.
     pub(crate) wanted: char,
     /// The byte where the next part begins, or the end of the text.
     pub(crate) until: usize,

@@ -34,18 +34,18 @@ messages! {
     /// Why a checkpoint was refused.
     #[derive(Clone, Debug, PartialEq)]
     pub enum CheckpointError {
-        /// It does not begin like a checkpoint.
+        /// The file does not begin like a checkpoint.
         "checkpoint.not_one" #[error("this is not a checkpoint of Opruga")] #[allowed("a complete checkpoint of version {VERSION}")]
         NotOne {},
         /// Another version of the program wrote it.
         "checkpoint.version" #[error("the checkpoint has version {found}; this program reads version {VERSION}")]
         #[allowed("a complete checkpoint of version {VERSION}")]
         Version { found: u32 },
-        /// It is shorter than its header says.
+        /// The checkpoint is shorter than its header says.
         "checkpoint.cut_off" #[error("the checkpoint is cut off: it has {found} of {expected} bytes")]
         #[allowed("a complete checkpoint of version {VERSION}")]
         CutOff { found: u64, expected: u64 },
-        /// Something follows its end.
+        /// Further bytes follow the end of the checkpoint.
         "checkpoint.too_long" #[error("{extra} bytes follow the end of the checkpoint")] #[allowed("a complete checkpoint of version {VERSION}")]
         TooLong { extra: u64 },
         /// A checksum does not match.

@@ -31,7 +31,7 @@ fn address_space(text: &str) -> Option<u64> {
     ["Max address space", "Max data size"].into_iter().filter_map(soft).min()
 }
 
-/// The lowest limit of the groups in `/proc/self/cgroup` and of their parents, in version 2 or 1.
+/// The lowest limit of the control groups in `/proc/self/cgroup` and of their parents, in version 2 or version 1 of control groups.
 fn group(text: &str, root: &Path) -> Option<u64> {
     let mut least: Option<u64> = None;
     for line in text.lines() {

@@ -30,7 +30,7 @@ pub struct OutputFolder {
 /// A prepared change of the folder.
 #[derive(Debug)]
 enum Change {
-    /// Gives a file its name. If there is a second name, the file that had the name before is kept under it.
+    /// Gives a file its final name. If there is a second name, the file that had the name before is kept under it.
     Name { file: Aside, second: Option<PathBuf> },
     /// Removes a file.
     Remove(PathBuf),
@@ -174,7 +174,7 @@ pub struct Together<'a> {
 }
 
 impl Together<'_> {
-    /// Writes a file that will replace the one with its name.
+    /// Writes a file that will replace the present file of the same name.
     ///
     /// # Errors
     /// `write.failed`.

@@ -40,7 +40,7 @@ struct Folder {
 /// A file identified independently of its name.
 #[derive(Clone, Debug, PartialEq)]
 struct Found {
-    /// Its path without links, `.` and `..`, as far as the path exists.
+    /// The path of the file without links, `.` and `..`, as far as the path exists.
     real: PathBuf,
     /// The numbers of the file and its device, which are the same for hard links; none if the file does not exist.
     number: Option<(u64, u64)>,

@@ -81,7 +81,7 @@ pub struct Excerpt {
 pub struct Notice {
     /// Its description, in the form of an error.
     pub about: SceneError,
-    /// How often it occurs.
+    /// How often the notice occurs.
     pub count: usize,
 }
 
@@ -243,10 +243,10 @@ impl SceneError {
     }
 }
 
-/// The code of the error that represents those that are not shown.
+/// The code of the error that stands for the errors that are not shown.
 const MORE: &str = "scene.more";
 
-/// The largest number of errors that are shown for a file. After fixing fifty, the user runs the check again.
+/// The largest number of errors that are shown for a file. After fixing fifty errors, the user runs the check again.
 pub const MOST_SHOWN: usize = 50;
 
 /// The first errors of a list, followed by one that gives the number of the others.

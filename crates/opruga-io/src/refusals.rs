@@ -208,7 +208,7 @@ pub fn of_command(
     }
 }
 
-/// The table of a command in a scene, and its number; none for a command that a program gave.
+/// The table in a scene that describes a command, and the index of this table; none if the command came from a program.
 fn written<'n>(root: &'n Node, command: &RefusedCommand<'_>) -> Option<(usize, &'n Node)> {
     let Data::Array(tables) = &root.get("command")?.data else { return None };
     let begins = |node: &Node| match node.data {

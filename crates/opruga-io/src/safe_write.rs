@@ -156,7 +156,7 @@ pub(crate) struct Aside {
     pub(crate) path: PathBuf,
     aside: PathBuf,
     bytes: u64,
-    /// Kept for its lock until the file has its name.
+    /// The open file, which stays locked until the file has its final name.
     _lock: File,
 }
 

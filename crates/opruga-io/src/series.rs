@@ -11,7 +11,7 @@ use std::io::{self, Write};
 /// A body in one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<'a> {
-    /// Its name, its elements, and its position when it was added, from which displacements are measured.
+    /// The body. It gives the name, the elements, and the positions when the body was added, from which displacements are measured.
     pub body: &'a dyn AnyBody,
     /// Positions, node by node; z is 0 in the plane [m].
     pub positions: &'a [[f64; 3]],
@@ -46,7 +46,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The ending of its files.
+    /// The ending of the files of this format.
     pub fn ending(self) -> &'static str {
         match self {
             Format::Vtk => "vtk",

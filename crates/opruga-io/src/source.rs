@@ -234,7 +234,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// The index after a string that begins at `at`; an unclosed string ends with its line or the text.
+/// The index after a string that begins at `at`; an unclosed string ends with its line or with the text.
 pub(crate) fn end_of_string(bytes: &[u8], at: usize) -> usize {
     let quote = bytes[at];
     let long = bytes[at..].starts_with(&[quote; 3]);

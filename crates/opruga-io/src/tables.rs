@@ -153,7 +153,7 @@ pub struct Summary {
     pub energy: EnergySummary,
     /// Momentum.
     pub momentum: MomentumSummary,
-    /// 16 hexadecimal digits over positions, then velocities.
+    /// The hash of positions, then velocities, as 16 hexadecimal digits.
     pub state_hash: String,
     /// Statistics of implicit integrators; omitted if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -246,7 +246,7 @@ pub struct WarningSummary {
     pub code: String,
     /// One sentence.
     pub message: String,
-    /// How often it occurred.
+    /// How often the warning occurred.
     pub count: u64,
 }
 

@@ -20,8 +20,8 @@ const INSCRIBED: [[[usize; 4]; 5]; 2] = [
 /// The number of tetrahedra into which a hexahedron is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cut {
-    /// Six around its diagonal 0–6, in the same way in every hexahedron. If neighbours would then cut a common face along different diagonals, all
-    /// hexahedra are cut into six from their node with the lowest number instead.
+    /// Six around the diagonal 0–6 of the hexahedron, in the same way in every hexahedron. If neighbours would then cut a common face along different
+    /// diagonals, all hexahedra are cut into six from their node with the lowest number instead.
     Six,
     /// Five: one inscribed and four at corners, mirrored from hexahedron to hexahedron so that common faces are cut in the same way.
     Five,

@@ -1,6 +1,7 @@
 //! Sorting of items by nodes: first into a bucket for each node, then within each bucket.
 
-/// Sorts items whose order begins with a node number below `nodes`. The result is that of `sort_unstable`, in time proportional to their number.
+/// Sorts items that are ordered first by a node number below `nodes`. The result is that of `sort_unstable`, but the time is proportional to the
+/// number of items.
 pub(crate) fn sorted_by_node<T: Copy + Ord>(items: &[T], nodes: usize, node: impl Fn(&T) -> u32) -> Vec<T> {
     let Some(first) = items.first() else { return Vec::new() };
     // The start of each bucket; while it is filled, the position of its next item.

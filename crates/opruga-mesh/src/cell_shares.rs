@@ -69,7 +69,7 @@ impl<const D: usize> Mesh<D> {
     /// a force per volume, it gives the nodal forces that do the same work in every motion of the cells.
     ///
     /// The values add up to the measure of these cells. Corners of quadratic tetrahedra have negative values, which is correct: the nodes at the
-    /// midpoints of their edges have larger ones. Numbers beyond the last node are ignored.
+    /// midpoints of their edges have larger ones. Node numbers beyond the last node are ignored.
     pub fn cell_shares(&self, selected: &[u32]) -> BTreeMap<u32, f64> {
         let chosen: BTreeSet<u32> = selected.iter().copied().collect();
         let mut shares = BTreeMap::new();

@@ -220,8 +220,8 @@ impl<const D: usize> Mesh<D> {
 
     /// The closed chambers, each as the ascending indices of the facets that enclose it.
     ///
-    /// A chamber is one component of positive volume together with the holes (components of negative volume) in it. A hole belongs to the smallest
-    /// positive component whose winding number about a node of the hole is 1. An outward component inside another is a chamber of its own.
+    /// A chamber consists of one component of positive volume and the holes in it, which are components of negative volume. A hole belongs to the
+    /// smallest positive component whose winding number about a node of the hole is 1. An outward component inside another is a chamber of its own.
     ///
     /// # Errors
     /// The errors of [`Mesh::components`], and [`MeshError::InsideOut`] for a hole without an enclosing component.
@@ -284,7 +284,7 @@ impl<const D: usize> Mesh<D> {
         Ok(reversed)
     }
 
-    /// The lowest and highest corners of the box around facets, with the highest repeated.
+    /// The lowest corner of the box around facets, followed by its highest corner, twice.
     pub(crate) fn box_of(&self, facets: &[[u32; D]]) -> [[f64; 3]; 3] {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for node in facets.iter().flatten() {

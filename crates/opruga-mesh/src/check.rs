@@ -42,7 +42,7 @@ pub enum Problem {
         element: Element,
         /// Index of the cell among its kind.
         index: u32,
-        /// The signed area [m²] or volume [m³] that the cell would have with the Jacobian of its worst node everywhere.
+        /// The signed area [m²] or volume [m³] that the cell would have if its Jacobian had the value at its worst node everywhere.
         measure: f64,
     },
     /// Two facets have the same nodes.
@@ -50,7 +50,7 @@ pub enum Problem {
     DuplicateFacet {
         /// The facet of lower index.
         first: u32,
-        /// The facet that repeats it.
+        /// The facet that repeats the nodes of the first one.
         second: u32,
     },
     /// No element uses these nodes.

@@ -85,7 +85,7 @@ struct Sorted {
     leaves: usize,
     boxes: Vec<Small>,
     facets: Vec<SortedFacet>,
-    /// The start of the facets of each leaf, and the end of the last ones.
+    /// The index of the first facet of each leaf, followed by the end of the facets of the last leaf.
     begins: Vec<u32>,
     points: Vec<[f64; 3]>,
 }
@@ -94,7 +94,7 @@ struct SortedFacet {
     bounds: Small,
     number: u32,
     nodes: [u32; 3],
-    /// Twice its area times its normal, rounded.
+    /// Twice the area of the facet times its normal, rounded.
     normal: [f64; 3],
     /// The largest error of the normal times a difference of points, per unit of the largest component of that difference.
     error: f64,

@@ -123,7 +123,7 @@ messages! {
         /// An operation that supports only triangles and tetrahedra was applied to another cell.
         "part.mesh" #[error("elements of the kind {element} are neither triangles nor tetrahedra; cut them into these first")]
         NotSimplices { element: Element },
-        /// Hexahedra that cannot be cut into five tetrahedra each such that common faces are cut in the same way.
+        /// Hexahedra cannot each be cut into five tetrahedra in such a way that neighbours cut their common faces alike.
         "part.mesh" #[error("hexahedra at the edge from node {} to node {} cannot be cut into five tetrahedra each, because a loop of an odd number of edges passes through this edge",
             edge[0], edge[1])]
         OddLoop { edge: [u32; 2] },

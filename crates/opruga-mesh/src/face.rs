@@ -16,7 +16,7 @@ const AS_LONG: f64 = 1e-9;
 /// Reasons why a face cannot be cut into triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FaceError {
-    /// Its edges cross or touch, or it encloses no area.
+    /// The edges of the face cross or touch, or the face encloses no area.
     Crossing,
     /// The largest distance of a corner from its plane, relative to its size.
     Folded(f64),
@@ -27,9 +27,9 @@ pub enum FaceError {
 pub struct CutFace {
     /// The triangles, given by the numbers of their corners and wound like the face. There are two fewer triangles than corners.
     pub triangles: Vec<[u32; 3]>,
-    /// Whether it has a corner that points inward.
+    /// Whether the face has a corner that points inward.
     pub concave: bool,
-    /// The largest distance of a corner from its plane, relative to its size, which is the longest side of its bounding box.
+    /// The largest distance of a corner from the plane of the face, relative to the size of the face, which is the longest side of its bounding box.
     pub bent: f64,
 }
 

@@ -21,8 +21,9 @@
 use crate::quadratic::{TETRAHEDRON_EDGES, TRIANGLE_SIDES};
 use std::collections::VecDeque;
 
-/// The maximum number of pieces of a cell that are examined. A quadratic cell that is nearly degenerate in a tenth of its size at one corner needs
-/// about ten. If a cell needs more than the maximum, its smallest determinant differs from zero by at most about a thousandth of its largest one.
+/// The maximum number of pieces of a cell that are examined. A quadratic cell that is nearly degenerate over a tenth of its size at one corner needs
+/// about ten pieces. If a cell needs more than the maximum, its smallest determinant differs from zero by at most about a thousandth of its largest
+/// one.
 const MOST_PIECES: usize = 512;
 
 /// The error of a coefficient, in units of the rounding error of a position times the derivative by that position. A coefficient is a sum of about
@@ -33,7 +34,7 @@ const ROUNDINGS: f64 = 16.0;
 /// the area or volume of a straight box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeastJacobian {
-    /// A lower bound.
+    /// A lower bound on the minimum.
     pub bound: f64,
     /// The smallest value found.
     pub found: f64,

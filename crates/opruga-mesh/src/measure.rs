@@ -18,7 +18,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// The number, in m, m² or m³.
+    /// The measure as a number in m, m² or m³.
     pub fn value(self) -> f64 {
         match self {
             Measure::Length(value) | Measure::Area(value) | Measure::Volume(value) => value,

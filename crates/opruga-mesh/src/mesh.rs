@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::{Element, MeshError, Must, Quantity, Skin};
 
-/// The maximum number of nodes of a mesh: 2²⁵, so that every index and every doubled index fits `u32`, and a mistyped count cannot exhaust the
-/// memory.
+/// The maximum number of nodes of a mesh: 2²⁵, so that every index and every doubled index fits into a `u32`, and so that a mistyped count cannot
+/// exhaust the memory.
 pub const MAXIMUM_NODES: u64 = 1 << 25;
 
 /// The filled interior of a body.

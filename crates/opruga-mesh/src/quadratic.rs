@@ -27,7 +27,8 @@ pub(crate) const TETRAHEDRON_FACES: [[usize; 6]; 4] =
 /// Structural Dynamics 4 (1976): 1/19 and 16/57 with straight sides. All are positive, whereas plain row sums give nothing to the corners.
 pub const TRIANGLE_SHARES: [f64; 6] = [1.0 / 19.0, 1.0 / 19.0, 1.0 / 19.0, 16.0 / 57.0, 16.0 / 57.0, 16.0 / 57.0];
 
-/// The nodes' shares in the mass of a quadratic tetrahedron, as [`TRIANGLE_SHARES`]: 1/36 and 4/27 (row sums would be −1/20 and 1/5).
+/// The shares of the nodes in the mass of a quadratic tetrahedron, computed as for [`TRIANGLE_SHARES`]: 1/36 and 4/27 (row sums would be −1/20 and
+/// 1/5).
 pub const TETRAHEDRON_SHARES: [f64; 10] = [
     1.0 / 36.0,
     1.0 / 36.0,

@@ -57,7 +57,7 @@ struct Work {
 impl Mesh<3> {
     /// This closed surface with edges of about the given length [m]; if the shape permits, nearly all of them have 0.6 to 1.45 times this length.
     /// Edges between triangles that meet at more than 40° are kept, and their corners do not move. If this surface does not cross itself, the result
-    /// does not either. Where the result otherwise would, its triangles remain smaller.
+    /// does not either. Where the result would otherwise cross itself, its triangles remain smaller.
     ///
     /// Nodes are renumbered. A group keeps its old nodes; a new node belongs to it if both ends of the edge that it divides do.
     ///
@@ -382,7 +382,7 @@ impl Work {
         }
     }
 
-    /// The smaller value, for two triangles, of the ratio of twice the area to the square of the longest side.
+    /// The ratio of twice the area to the square of the longest side, for the one of two triangles for which this ratio is smaller.
     fn smallest_height(&self, triangles: [[u32; 3]; 2]) -> f64 {
         let quality = |corners: [u32; 3]| {
             let [a, b, c] = corners;

@@ -136,7 +136,7 @@ impl<const D: usize> Mesh<D> {
     /// The sides of cells that are on the boundary and whose nodes are all selected, each with its nodes as seen from outside.
     ///
     /// In the plane these are two ends, and the node between them if the cell is quadratic. In space they are the three corners of a triangle, the
-    /// four of a quadrilateral, or three corners and the nodes between corners 0–1, 1–2, 2–0. Facets without cells are sides themselves. Numbers
+    /// four of a quadrilateral, or three corners and the nodes between corners 0–1, 1–2, 2–0. Facets without cells are sides themselves. Node numbers
     /// beyond the last node are ignored.
     pub fn boundary_sides(&self, selected: &[u32]) -> Vec<Vec<u32>> {
         let chosen: BTreeSet<u32> = selected.iter().copied().collect();

@@ -74,7 +74,7 @@ fn first_coincident(positions: &[[f64; 3]]) -> Vec<u32> {
     (0..positions.len() as u32).map(&mut first_of).collect()
 }
 
-/// For every point, the first earlier point within a distance that was not joined to another one; otherwise the point itself.
+/// For every point, the first earlier point within `distance` that was not itself joined to another point; if there is none, the point itself.
 fn first_within(positions: &[[f64; 3]], distance: f64) -> Vec<u32> {
     let cell = |x: f64| (x / distance).floor();
     let mut cells: BTreeMap<[i64; 3], Vec<u32>> = BTreeMap::new();
@@ -301,7 +301,7 @@ impl Mesh<3> {
         keys.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]).min_by_key(|p| p[1])
     }
 
-    /// Nodes of a closed surface at which several parts meet that share no edge at that node, ascending.
+    /// Nodes of a closed surface, ascending, at which several parts meet that have no common edge at the node.
     pub fn pinched_nodes(&self) -> Vec<u32> {
         // Every facet at a node connects one neighbour to another. If they form a single loop, no facet remains.
         let mut links: Vec<[u32; 3]> = Vec::with_capacity(3 * self.facets.len());

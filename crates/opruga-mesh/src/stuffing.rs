@@ -19,7 +19,7 @@ pub const LARGEST_DIHEDRAL_ANGLE: f64 = 164.8;
 /// below measures both over all stencils, with cuts at and around these limits.
 const WARP_LIMITS: [f64; 2] = [0.284, 0.400];
 
-/// The number of halvings that locate the intersection of an edge and the surface, to 10⁻¹² of the edge.
+/// The number of halvings that locate the intersection of an edge with the surface, to within 10⁻¹² of the length of the edge.
 const HALVINGS: u32 = 40;
 
 /// The side of the surface on which a lattice point is.
@@ -262,7 +262,8 @@ impl<'a> Stuffing<'a> {
         out
     }
 
-    /// If tetrahedra at an edge form several fans that share no face with one another, removes all but the largest; returns whether there were any.
+    /// If tetrahedra at an edge form several fans that share no face with one another, removes all fans but the largest; returns whether it removed
+    /// any.
     fn part_at_edges(&self, tetrahedra: &mut Vec<[Corner; 4]>) -> bool {
         let crowded = self.crowded_edges(tetrahedra);
         let mut gone = vec![false; tetrahedra.len()];

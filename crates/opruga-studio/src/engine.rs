@@ -18,9 +18,9 @@ use toml_edit::Table;
 
 /// A command that was given: its number in the world, and its table in the scene file.
 pub struct Given {
-    /// Its number in the world.
+    /// The number of the command in the world.
     pub number: usize,
-    /// Its table.
+    /// The table of the command in the scene file.
     pub table: Table,
 }
 
@@ -38,12 +38,12 @@ pub struct Common {
 pub struct State {
     /// The snapshot of its world.
     pub world: Vec<u8>,
-    /// If two scenes are side by side, the state of the right side, and why it has stopped.
+    /// If two scenes are side by side: the state of the right side, and the reason why it has stopped.
     pub right: Option<(Box<State>, Option<Report>)>,
 }
 
 impl State {
-    /// Its memory [bytes].
+    /// The memory of the state [bytes].
     pub fn bytes(&self) -> usize {
         self.world.len() + self.right.as_ref().map_or(0, |(right, _)| right.bytes())
     }

@@ -9,7 +9,7 @@ const WARM_UP: usize = 60;
 /// The measurements of one frame [ms].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Frame {
-    /// From the beginning of the previous frame to the beginning of this one.
+    /// The time from the beginning of the previous frame to the beginning of this one.
     whole: f64,
     /// The computation of the panels and the scene, up to the shapes to be drawn.
     interface: f64,

@@ -41,11 +41,11 @@ pub fn build(
 struct Pair {
     left: Box<dyn Engine>,
     right: Box<dyn Engine>,
-    /// The differences of the right one.
+    /// The differences of the right scene.
     differences: Vec<Difference>,
     /// The correspondence of nodes, for bodies with different nodes.
     twins: Twins,
-    /// The reason why the right one has stopped, if it has.
+    /// The reason why the right side has stopped, if it has.
     stopped: Option<Report>,
     /// Whether the right side has missed a command. It must then be rebuilt.
     behind: bool,

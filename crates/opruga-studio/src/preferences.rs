@@ -22,7 +22,7 @@ impl Default for Preferences {
 /// Where preferences are stored.
 #[derive(Clone, Debug, Default)]
 pub enum Store {
-    /// They are not stored, and are lost with the window.
+    /// The preferences are not stored, and are lost with the window.
     #[default]
     Nowhere,
     /// In this file.

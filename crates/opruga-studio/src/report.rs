@@ -39,7 +39,7 @@ pub enum Step {
     Pull,
     /// A body was pushed with the pointer.
     Push,
-    /// A point was pinned, or moved and pinned there.
+    /// A point was pinned, either where it was or after it was moved.
     Pin,
     /// A point was unpinned.
     Unpin,
@@ -128,7 +128,7 @@ pub enum Report {
     LinkCopied,
     /// A scene has too many characters for an address. Contains their number and the limit.
     AddressTooLong(usize, usize),
-    /// The address names no known scene. Contains the names that it could contain.
+    /// The address names no known scene. Contains the names that an address may contain.
     AddressUnknown(String),
     /// The scene in the address is truncated.
     AddressCut,

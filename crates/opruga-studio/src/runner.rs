@@ -22,13 +22,13 @@ use web_time::Instant;
 /// The data that are needed to run the scene again from its start: its text, the files that it names, and the number of frames.
 #[derive(Clone, Debug)]
 pub struct Copied {
-    /// Its name.
+    /// The name of the scene.
     pub name: String,
-    /// Its text with everything that was done.
+    /// The text of the scene with everything that was done.
     pub text: String,
     /// The location of the files that it names.
     pub files: Files,
-    /// The models and integrators that it can name.
+    /// The models and integrators that the scene can name.
     pub registries: Registries,
     /// The differences of the right scene, if there is one.
     pub differences: Option<Vec<Difference>>,

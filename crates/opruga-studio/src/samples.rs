@@ -85,7 +85,7 @@ impl Samples {
         self.kept.chunk_by(|a, b| b.frame - a.frame <= self.every)
     }
 
-    /// All of them.
+    /// All samples.
     pub fn all(&self) -> &[Sample] {
         &self.kept
     }

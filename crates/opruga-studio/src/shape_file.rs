@@ -8,7 +8,7 @@ use toml_edit::{DocumentMut, InlineTable};
 pub struct Shape {
     /// Its name.
     pub name: String,
-    /// Its file.
+    /// The file of the shape.
     pub file: String,
     /// A scene around it.
     pub text: String,

@@ -104,7 +104,7 @@ impl EnergyShown {
 /// The right side: the same scene in another configuration, at the same frame.
 #[derive(Clone, Debug)]
 pub struct Beside {
-    /// The data that the interface shows of the right side.
+    /// The data about the right side that the interface shows.
     pub right: Arc<Shown>,
     /// The root mean square and the largest distance between corresponding nodes of the two sides [m]; none if the bodies have different nodes or the
     /// right side has stopped.
@@ -173,7 +173,7 @@ pub struct Message {
     pub severity: Severity,
     /// Its contents.
     pub report: Report,
-    /// Its text in English.
+    /// The text of the message in English.
     pub text: String,
     /// The offered remedy.
     pub offer: Option<Offer>,
@@ -223,7 +223,7 @@ pub struct Shown {
     pub frames: u64,
     /// The number of the last frame of this run that was computed.
     pub latest: u64,
-    /// The time up to which the run is being computed again \[s\]; none if it is not.
+    /// The time up to which the run is being computed again \[s\]; none if the run is not being computed again.
     pub goal: Option<f64>,
     /// The length of a frame [s].
     pub frame: f64,
@@ -239,7 +239,7 @@ pub struct Shown {
     pub drag: f64,
     /// The integrator of the scene.
     pub integrator: Option<Values>,
-    /// The hash of the state, if it is displayed: that of `opruga run --json`.
+    /// The hash of the state, if it is displayed; `opruga run --json` prints the same hash.
     pub hash: Option<u64>,
     /// The bodies, in the same order as in the picture.
     pub bodies: Vec<BodyShown>,
@@ -247,7 +247,7 @@ pub struct Shown {
     pub obstacles: Vec<ObstacleShown>,
     /// The parameters of contact between bodies; none if they pass through one another.
     pub contact: Option<Values>,
-    /// The pulls: for each the position of the node, that of the pointer, and the force [m, m, N].
+    /// For each pull: the position of the node, the position of the pointer, and the force [m, m, N].
     pub pulls: Vec<[[f64; 3]; 3]>,
     /// The pushes of the pointer: for each the position of the node, the end of the arrow, and the force [m, m, N].
     pub pushes: Vec<[[f64; 3]; 3]>,
@@ -292,7 +292,7 @@ pub struct Shown {
     pub newest: Option<(u64, String)>,
     /// Whether bodies carry drawings with colours.
     pub has_drawings: bool,
-    /// The last frame that is as it was recorded; none if no recording is viewed.
+    /// The last frame that still agrees with the recording; none if no recording is viewed.
     pub recorded_until: Option<u64>,
     /// The number of commands of the user in the scene.
     pub recorded: usize,

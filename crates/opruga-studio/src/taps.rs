@@ -11,7 +11,7 @@ const TAP: f64 = 0.125;
 #[derive(Debug, Default)]
 pub(crate) struct Taps {
     later: Vec<Event>,
-    /// The time at which a press began whose release waits for the next picture [s]; none if no release waits.
+    /// The time [s] at which a press began if its release waits for the next picture; none if no release waits.
     pressed: Option<f64>,
 }
 

@@ -41,11 +41,11 @@ static AT_ONCE: AtomicBool = AtomicBool::new(false);
 /// How a window has ended, which determines the next action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
-    /// It was closed, or has reported an error.
+    /// The window was closed, or has reported an error.
     End(u8),
-    /// It was asked to end.
+    /// The window was asked to end.
     Ended,
-    /// It was lost.
+    /// The window was lost.
     Lost,
 }
 

@@ -69,7 +69,7 @@ pub(crate) enum Unit {
     Refresh = 0x65,
     /// Parameters of the whole stream.
     Sequence = 0x67,
-    /// Parameters of its pictures.
+    /// The parameters of the pictures of a stream.
     Picture = 0x68,
 }
 

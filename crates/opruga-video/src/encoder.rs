@@ -18,9 +18,9 @@ const STEPS: usize = 24;
 /// A picture of the stream.
 #[derive(Clone, Debug)]
 pub(crate) struct Coded {
-    /// Its unit, without a start code.
+    /// The unit of the picture, without a start code.
     pub(crate) unit: Vec<u8>,
-    /// Whether it does not depend on other pictures.
+    /// Whether this picture can be decoded without other pictures.
     pub(crate) refresh: bool,
 }
 

@@ -6,9 +6,9 @@ use std::io::{Result, Write};
 /// One picture of the film.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
-    /// Its length in bytes.
+    /// The length of the picture in bytes.
     pub(crate) size: u32,
-    /// Whether it does not depend on other pictures.
+    /// Whether the picture can be decoded without other pictures.
     pub(crate) refresh: bool,
 }
 

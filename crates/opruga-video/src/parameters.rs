@@ -66,7 +66,7 @@ impl Rate {
 pub(crate) struct Parameters {
     /// Parameters of the whole stream.
     pub(crate) sequence: Vec<u8>,
-    /// Parameters of its pictures.
+    /// The parameters of the pictures of the stream.
     pub(crate) picture: Vec<u8>,
 }
 

@@ -5,11 +5,11 @@ use super::frame::Frame;
 /// The prediction of a macroblock from its neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Direction {
-    /// Equal to the row above.
+    /// Every row equals the row above the macroblock.
     Down,
-    /// Equal to the column at the left.
+    /// Every column equals the column to the left of the macroblock.
     Right,
-    /// Equal to their mean.
+    /// All pixels equal the mean of that row and that column.
     Mean,
 }
 
@@ -22,7 +22,7 @@ impl Direction {
             Direction::Mean => true,
         }
     }
-    /// Its number for luma.
+    /// The number of this prediction for luma.
     pub(crate) fn luma(self) -> u32 {
         match self {
             Direction::Down => 0,
@@ -30,7 +30,7 @@ impl Direction {
             Direction::Mean => 2,
         }
     }
-    /// Its number for chroma.
+    /// The number of this prediction for chroma.
     pub(crate) fn chroma(self) -> u32 {
         match self {
             Direction::Mean => 0,

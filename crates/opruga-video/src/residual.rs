@@ -9,9 +9,9 @@ use super::transform::{Block, Quantiser, ZIGZAG, add_inverse, chroma_quantiser, 
 /// The quantisers of a film.
 #[derive(Clone, Debug)]
 pub(crate) struct Quantisers {
-    /// For predictions from neighbours: luma, chroma.
+    /// The quantisers of luma and chroma for predictions from neighbours.
     alone: [Quantiser; 2],
-    /// For predictions from the previous frame: luma, chroma.
+    /// The quantisers of luma and chroma for predictions from the previous frame.
     moved: [Quantiser; 2],
 }
 
@@ -38,14 +38,14 @@ pub(crate) struct Residual {
     colour: [[Block; 4]; 2],
     /// The quarters of the luma that have nonzero levels, one bit each.
     pub(crate) luma_coded: u32,
-    /// 0 if no chroma is encoded, 1 if only its DC values are, 2 if all of it is.
+    /// How much of the chroma is encoded: 0 for nothing, 1 for only the DC values, 2 for everything.
     pub(crate) colour_coded: u32,
 }
 
 /// The number of levels of every block. The codes of neighbouring blocks depend on it.
 #[derive(Clone, Debug)]
 pub(crate) struct Counts {
-    /// Blocks in a row of each plane.
+    /// The number of blocks in a row of each plane.
     wide: [usize; 3],
     planes: [Vec<u8>; 3],
 }

@@ -114,8 +114,8 @@ impl Translation {
         Some(self.resolved(&pattern.value, &message.fields())).filter(|text| !text.is_empty())
     }
 
-    /// The allowed values (`ALLOWED`) or the hint (`HINT`) of the message in the first argument. If the message has none, the text of the first of
-    /// the other arguments that has one.
+    /// The allowed values (`ALLOWED`) or the hint (`HINT`) of the message in the first argument. If the message has none, those of the first other
+    /// argument that has some are used.
     fn beside_of(
         &self,
         name: &str,

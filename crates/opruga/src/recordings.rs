@@ -53,7 +53,7 @@ const FRAME: f64 = 4_000.0;
 const WORK: [f64; 3] = [1.0, 3.0, 4.0];
 /// A lower bound on the duration of a step of an implicit integrator, divided by that of an explicit one.
 const IMPLICIT: f64 = 500.0;
-/// The fraction of the time of a run that may be spent on keeping states. The hashes of all frames may take as much again.
+/// The fraction of the time of a run that may be spent on keeping states. The hashes of all frames may take the same fraction again.
 const SHARE: f64 = 0.05;
 /// The computing time whose results may be lost if the process is killed [ns]. Small frames are written in groups, because writing each of them
 /// separately would take as long as computing it.
@@ -251,7 +251,7 @@ impl<R: Read + Seek> Playback<R> {
         self.recording.read(frame)
     }
 
-    /// Returns the hash of a frame, as [`AnyWorld::frame_hash`] returns it. Every frame has one.
+    /// Returns the hash of a frame, as [`AnyWorld::frame_hash`] returns it. Every frame has a hash.
     ///
     /// # Errors
     /// [`RecordingError`] if there is no such frame, or it is damaged.

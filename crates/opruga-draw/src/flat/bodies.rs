@@ -79,7 +79,7 @@ pub(crate) fn body_colour(index: usize, count: usize) -> [u8; 3] {
 struct Drawing<'a> {
     /// The body.
     body: &'a BodyPicture,
-    /// The pixels of its nodes.
+    /// The pixels of the nodes of the body.
     pixels: &'a [[f32; 2]],
     /// The left and upper limits of the body in pixels.
     low: [f32; 2],

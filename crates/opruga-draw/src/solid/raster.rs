@@ -98,7 +98,7 @@ impl Screen {
         }
     }
 
-    /// Fills a triangle; the function returns the colour from the perspective-correct weights of the corners.
+    /// Fills a triangle; `colour` returns the colour of a sample from the perspective-correct weights of the corners.
     #[inline(always)]
     pub(crate) fn triangle(&mut self, corners: [Seen; 3], colour: impl Fn([f32; 3]) -> [u8; 3]) {
         let Some(cover) = Cover::new(corners, self.width, self.height) else { return };

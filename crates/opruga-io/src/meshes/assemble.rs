@@ -181,7 +181,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Refuses elements of lower dimension that are not part of a cell: such elements only name parts of cells.
+    /// Refuses elements of lower dimension that are not part of a cell, because such elements only name parts of cells.
     fn lower(&self, dimension: usize, order: &[u32], nodes: usize) -> Result<(), SceneError> {
         let items = &self.found.items;
         if order.len() == items.len() {

@@ -68,9 +68,9 @@ impl Kind {
 pub(crate) struct Item {
     pub(crate) kind: Kind,
     nodes: [u32; 10],
-    /// Its number in the file.
+    /// The number of the element in the file.
     pub(crate) number: u64,
-    /// The byte at which it begins.
+    /// The byte at which the element begins.
     pub(crate) offset: usize,
 }
 
@@ -221,7 +221,7 @@ pub(super) fn is_kept(components: u64) -> bool {
     (1..=3).contains(&components)
 }
 
-/// Maps the numbers that a file gives its nodes to their indices.
+/// Maps the numbers of nodes in a file to the indices of these nodes.
 pub(super) struct Numbers(Vec<(u64, u32)>);
 
 impl Numbers {

@@ -323,7 +323,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Keeps values of cells with one component and values of nodes with up to three, and counts others.
+    /// Keeps cell values with one component and node values with up to three components; counts all other values.
     fn keep(
         &mut self,
         (name, at): (&str, usize),

@@ -218,7 +218,7 @@ impl Reader<'_> {
         self.data(piece, (cells, first_cell), (points, first as usize), found)
     }
 
-    /// Reads values of cells with one component, and values of points with up to three; others are counted.
+    /// Reads cell values with one component and point values with up to three components; counts all other values.
     fn data(
         &self,
         piece: Node<'_, '_>,
@@ -318,7 +318,8 @@ impl Reader<'_> {
         bytes.chunks_exact(size).map(|word| made(kind.of_bytes(word, self.big_endian))).collect()
     }
 
-    /// Counts numbers of binary arrays: compressed arrays take few bytes, and appended data may be referenced repeatedly.
+    /// Counts the numbers in binary arrays. The size of the file does not limit them: compressed arrays take few bytes, and appended data may be
+    /// referenced repeatedly.
     fn counted(&self, array: Node<'_, '_>, count: u64) -> Result<(), SceneError> {
         self.numbers.set(self.numbers.get().saturating_add(count));
         let available = (self.scanner.bytes.len() + self.appended.map_or(0, |(data, _)| data.len())) as u64;

@@ -130,7 +130,7 @@ fn listed(nodes: &[u32], shift: u32) -> String {
     nodes.iter().map(|node| (node + shift).to_string()).collect::<Vec<_>>().join(" ")
 }
 
-/// The result for a format that holds values of cells but no groups.
+/// The result for a file format that holds cell values but no groups.
 fn named_values<const D: usize>(ending: &'static str, bytes: Vec<u8>, mesh: &Mesh<D>) -> Written {
     let mut left_out = Vec::new();
     if !mesh.groups.is_empty() || !mesh.cell_groups.is_empty() {

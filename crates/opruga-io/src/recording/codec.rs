@@ -4,8 +4,8 @@
 //! Neighbouring frames differ little, so the upper bytes of a difference are mostly zero. The lower bytes are practically random, so a general
 //! compressor would gain nothing and would take ten times as long.
 
-/// Appends the code of a state: for every word, the number of bytes of its difference (four bits each); those bytes; then the bytes after the last
-/// whole word. `before` has the same length or is empty; if it is empty, the words themselves are encoded.
+/// Appends the code of a state: the number of bytes of the difference of every word (four bits each), then these bytes, and then the bytes after the
+/// last whole word. `before` has the same length or is empty; if it is empty, the words themselves are encoded.
 pub(super) fn encode(state: &[u8], before: &[u8], out: &mut Vec<u8>) {
     let (words, rest) = state.as_chunks::<8>();
     let (old, _) = before.as_chunks::<8>();

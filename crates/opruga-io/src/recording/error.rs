@@ -7,7 +7,7 @@ opruga_math::messages! {
     /// Why a recording, or a frame of it, was refused.
     #[derive(Clone, Debug, PartialEq)]
     pub enum RecordingError {
-        /// It does not begin like a recording.
+        /// The file does not begin like a recording.
         "recording.not_one" #[error("this is not a recording of Opruga")] #[allowed("a recording of version {VERSION}")]
         #[hint("opruga run SCENE --record FILE writes one")]
         NotOne {},
@@ -15,7 +15,7 @@ opruga_math::messages! {
         "recording.version" #[error("the recording has version {found}; this program reads version {VERSION}")] #[value("{found}")]
         #[allowed("a recording of version {VERSION}")] #[hint("use the version of the program that wrote the recording")]
         Version { found: u32 },
-        /// It ends within its header: the run that wrote it did not begin.
+        /// The file ends within its header: the run that wrote it did not begin.
         "recording.cut_off" #[error("the recording is cut off in its header: it has {found} of {expected} bytes")]
         #[allowed("a recording of version {VERSION}")]
         CutOff { found: u64, expected: u64 },
@@ -26,14 +26,14 @@ opruga_math::messages! {
         /// There is no such frame.
         "recording.no_frame" #[error("the recording has no frame {frame}")] #[value("{frame}")] #[allowed("frames {first} to {last}")]
         NoFrame { frame: u64, first: u64, last: u64 },
-        /// It has no frames.
+        /// The recording has no frames.
         "recording.no_frame" #[error("the recording has no frame {frame}")] #[value("{frame}")] #[allowed("none: it has no frames")]
         NoFrames { frame: u64 },
-        /// It does not contain the state of that frame, which must be computed from an earlier one.
+        /// The recording does not contain the state of that frame, which must be computed from an earlier one.
         "recording.not_kept" #[error("the recording keeps one state every {every} frames, but not that of frame {frame}")] #[value("{frame}")]
         #[allowed("one frame in {every}, and the last frame")]
         NotKept { frame: u64, every: u64 },
-        /// The system could not read it.
+        /// The system could not read the file.
         "read.failed" #[error("the recording cannot be read: {reason}")]
         Read { reason: String },
     }

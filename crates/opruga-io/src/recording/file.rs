@@ -37,7 +37,7 @@ impl core::fmt::Debug for RecordingFile {
 }
 
 impl RecordingFile {
-    /// Creates the file with its header, and its parent folders. With `force`, an earlier file is replaced as soon as the header is written.
+    /// Creates the parent folders, and the file with its header. With `force`, an earlier file is replaced as soon as the header is written.
     ///
     /// # Errors
     /// `write.exists` if the file exists and `force` is not given, `write.locked` if another process writes it, `write.failed` if it cannot be
@@ -218,7 +218,7 @@ impl Syncing {
     }
 }
 
-/// Inspects the file that has the name now, and locks it.
+/// Inspects the file that has this name at present, and locks it.
 fn earlier(path: &Path, force: bool) -> Result<Option<File>, WriteError> {
     let refuse = |fault: WriteFault| Err(WriteError::of(path, fault));
     match fs::metadata(path) {

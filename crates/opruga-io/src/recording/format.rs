@@ -3,14 +3,14 @@
 use super::error::RecordingError;
 use super::version::{BEFORE, VERSION};
 
-/// What every recording begins with.
+/// The bytes with which every recording begins.
 pub const MAGIC: &[u8; 8] = b"OPRREC\x1a\n";
 const END: &[u8; 8] = b"OPREND\x1a\n";
-/// Bytes before the header.
+/// The number of bytes before the header.
 pub(super) const HEAD: usize = 24;
-/// Bytes of the head of a chunk.
+/// The number of bytes of the head of a chunk.
 pub(super) const CHUNK: usize = 48;
-/// Bytes of the end.
+/// The number of bytes of the end.
 pub(super) const TRAILER: usize = 20;
 
 /// The description of a run in a recording, before the first frame.
@@ -59,9 +59,9 @@ impl Default for Header {
 /// A file that a scene names, as it was when the run began.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Asset {
-    /// Its name, as the scene has it.
+    /// The name of the file, as the scene gives it.
     pub name: String,
-    /// Its bytes.
+    /// The bytes of the file.
     pub bytes: Vec<u8>,
 }
 
@@ -92,7 +92,7 @@ impl Header {
         out
     }
 
-    /// Reads what [`Header::to_bytes`] wrote; none if it is something else.
+    /// Reads what [`Header::to_bytes`] wrote; none if the bytes are something else.
     fn read(mut bytes: &[u8]) -> Option<Header> {
         let mut part = || {
             let (length, rest) = bytes.split_first_chunk::<8>()?;
@@ -179,11 +179,12 @@ pub(super) enum Kind {
     Whole,
     /// The difference of a state from the previous kept one.
     Difference,
-    /// Frames whose states are not kept: the first in the head, the hashes of the others in the payload.
+    /// Frames whose states are not kept: the head of the chunk contains the hash of the first frame, and the payload contains those of the others.
     Passed,
     /// An action of the program before the step to a frame.
     Input,
-    /// The last frame whose state is kept, the number of chunks with complete states, their frames and offsets, then those of the inputs.
+    /// The last frame whose state is kept, the number of chunks with complete states, the frames and offsets of these chunks, and then the frames and
+    /// offsets of the inputs.
     Index,
 }
 
@@ -191,7 +192,7 @@ pub(super) enum Kind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ChunkHead {
     pub(super) kind: Kind,
-    /// The frame, or the first of several. For an input, the frame that follows it; for an index, the frame after the last.
+    /// The frame of this chunk, or the first of its frames. For an input, the frame that follows it; for an index, the frame after the last.
     pub(super) frame: u64,
     /// Size of the decoded payload [bytes].
     pub(super) state: u64,

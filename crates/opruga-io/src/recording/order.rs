@@ -24,7 +24,8 @@ impl Order {
         Order { every, span: None }
     }
 
-    /// The order of a recording that has ended, from its first and last frame and the last frame whose state is kept. None if these are inconsistent.
+    /// The order of a recording that has ended, from its first and last frame and the last frame whose state is kept. None if the given values are
+    /// inconsistent.
     pub(super) fn ended(every: u64, first: u64, last: u64, kept: u64) -> Option<Order> {
         let order = Order { every, span: Some(Span { first, last, kept }) };
         let apart = last.checked_sub(kept).is_some_and(|apart| apart < every) && kept >= first;
@@ -46,12 +47,12 @@ impl Order {
         self.span.is_none_or(|span| (frame - span.first).is_multiple_of(self.every))
     }
 
-    /// Whether this is the next frame. No frame follows a state that was kept before it was due: such a state ends the recording.
+    /// Whether this frame may be the next one. No frame follows a state that was kept before it was due: such a state ends the recording.
     pub(super) fn follows(&self, frame: u64) -> bool {
         self.span.is_some_and(|span| frame == span.last + 1 && self.due(span.kept)) && frame < u64::MAX
     }
 
-    /// Adds a frame whose state is not kept; returns whether it is allowed now.
+    /// Adds a frame whose state is not kept, if such a frame may follow; returns whether it was added.
     pub(super) fn pass(&mut self, frame: u64) -> bool {
         let may = self.follows(frame) && !self.due(frame);
         if let Some(span) = self.span.as_mut().filter(|_| may) {
@@ -60,7 +61,7 @@ impl Order {
         may
     }
 
-    /// Adds the frames of a chunk without states, whose payload has the hashes of all but the first: either all of them or none.
+    /// Adds either all frames of a chunk without states or none of them; the payload of the chunk contains the hashes of all but its first frame.
     pub(super) fn pass_all(&mut self, frame: u64, payload: u64) -> bool {
         let before = *self;
         let others = payload / 8;
@@ -72,7 +73,7 @@ impl Order {
         all
     }
 
-    /// Adds a frame with its state, or the state of the last frame, which ends the recording; returns whether it is allowed now.
+    /// Adds a frame with its state, or the state of the last frame, which ends the recording; returns whether it was added.
     pub(super) fn keep(&mut self, frame: u64) -> bool {
         let begins = self.span.is_none() && frame < u64::MAX;
         let ends = self.span.is_some_and(|span| frame == span.last && frame > span.kept);
@@ -90,7 +91,7 @@ impl Order {
         Some(if frame >= span.kept { span.kept } else { span.first + (frame - span.first) / self.every * self.every })
     }
 
-    /// The next frame whose state is kept, after one whose state is kept.
+    /// The next frame whose state is kept, after a given frame whose state is kept.
     pub(super) fn next_kept(&self, frame: u64) -> u64 {
         let last = self.span.map_or(0, |span| span.kept);
         if last.saturating_sub(frame) < self.every { last } else { frame + self.every }

@@ -10,14 +10,14 @@ use std::io::{ErrorKind, Read, Seek, SeekFrom};
 /// How the file of a recording ends.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ending {
-    /// It ends properly: the run that wrote it has finished it.
+    /// The recording ends properly: the run that wrote it has finished it.
     Closed,
-    /// It has no end: the run was killed, or is still running. All frames are intact.
+    /// The recording has no end: the run was killed, or is still running. All frames are intact.
     Open {
         /// Size of a chunk that was not written completely [bytes].
         lost: u64,
     },
-    /// It contains something that is not a chunk; frames after that cannot be found.
+    /// The recording contains something that is not a chunk; the frames after it cannot be found.
     Damaged(RecordingError),
 }
 
@@ -97,7 +97,8 @@ impl<R: Read + Seek> Recording<R> {
         self.order.kept(frame).ok_or_else(|| RecordingError::no_frame(frame, &self.frames()))
     }
 
-    /// The hash of a frame, as given by the program that computed it. Every frame has one. If frames are read in order, each chunk is read only once.
+    /// The hash of a frame, as given by the program that computed it. Every frame has a hash. If frames are read in order, each chunk is read only
+    /// once.
     ///
     /// # Errors
     /// [`RecordingError`] if the frame does not exist, or if a chunk before it that must be read is damaged.
@@ -128,7 +129,7 @@ impl<R: Read + Seek> Recording<R> {
         }
     }
 
-    /// How its file ends.
+    /// How the file of the recording ends.
     pub fn ending(&self) -> &Ending {
         &self.ending
     }

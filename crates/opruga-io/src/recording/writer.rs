@@ -19,7 +19,7 @@ pub struct Writer<W> {
     /// The chunk of frames without states to which more frames may be added: where it begins in `pending`, its first frame and the hash of that
     /// frame.
     passed: Option<(usize, u64, u64)>,
-    /// Size of the file, including bytes not given to it yet.
+    /// The size of the file [bytes], including bytes that have not been written to it yet.
     offset: u64,
     /// The last state that was kept.
     previous: Vec<u8>,
@@ -58,8 +58,7 @@ impl<W: Target> Writer<W> {
     /// Adds the next frame without its state, if the header does not require the state. Frames that go to the file together, with nothing between
     /// them, form one chunk.
     ///
-    /// # Errors
-    /// A frame out of order; it is not added. The file is not written before [`Writer::flush`].
+    /// # Errors An error if the frame is out of order; it is then not added. The file is not written before [`Writer::flush`].
     pub fn push(&mut self, frame: u64, hash: u64) -> io::Result<()> {
         if !self.order.pass(frame) {
             return Err(out_of_order(frame));
@@ -79,11 +78,10 @@ impl<W: Target> Writer<W> {
     }
 
     /// Adds a frame with its state: the first frame, which may have any number, or the next one. A state that is not due at its frame ends the
-    /// recording, and so does the state of the frame that was pushed last. To avoid copying, the bytes of `state` are taken, and other bytes are left
-    /// there.
+    /// recording, and so does the state of the frame that was pushed last. To avoid copying, this function takes the bytes of `state` and leaves
+    /// other bytes in it.
     ///
-    /// # Errors
-    /// A frame out of order; it is not added, and the state stays with its owner.
+    /// # Errors An error if the frame is out of order; the frame is then not added, and the state stays with its owner.
     pub fn keep(&mut self, frame: u64, hash: u64, state: &mut Vec<u8>) -> io::Result<()> {
         if !self.order.keep(frame) {
             return Err(out_of_order(frame));
@@ -106,8 +104,7 @@ impl<W: Target> Writer<W> {
 
     /// Adds an action of a program that precedes the step to the next frame.
     ///
-    /// # Errors
-    /// A frame out of order; it is not added.
+    /// # Errors An error if the frame is out of order; it is then not added.
     pub fn input(&mut self, frame: u64, bytes: &[u8]) -> io::Result<()> {
         if !self.order.follows(frame) {
             return Err(out_of_order(frame));
@@ -127,7 +124,7 @@ impl<W: Target> Writer<W> {
         from
     }
 
-    /// Writes the head of a chunk once its payload is there.
+    /// Writes the head of a chunk once its payload is complete.
     fn end(&mut self, from: usize, kind: Kind, frame: u64, state: u64, hash: u64) {
         let (head, payload) = self.pending[from..].split_at_mut(format::CHUNK);
         let payload_sum = crc32fast::hash(payload);

@@ -40,7 +40,7 @@ struct Draft<'n, const D: usize> {
     copies: Option<Copies<D>>,
     /// Whether its nodes have no errors, so that selectors of nodes can be checked.
     shaped: bool,
-    /// Whether it has no errors at all.
+    /// Whether the body has no errors at all.
     sound: bool,
 }
 
@@ -210,7 +210,7 @@ fn draft<'n, const D: usize>(
     })
 }
 
-/// Names occur in paths and in the heads of tables, so they must not contain the characters that separate those.
+/// Names occur in paths and in the heads of tables, so they must not contain the characters that separate the parts of paths and heads.
 pub(crate) fn check_name(reader: &mut Reader<'_>, node: &Node, path: &str, name: &str) {
     let Some(fault) = validity::name_fault(name) else { return };
     reader.report(node.location, SceneError::of(fault).path(path).value(visible(name)));

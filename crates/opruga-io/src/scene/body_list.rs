@@ -9,7 +9,7 @@ pub(crate) struct Bodies<const D: usize> {
     pub(crate) list: Vec<BodyBlueprint<D>>,
     /// The number of bodies at the start.
     pub(crate) initial: usize,
-    /// Number of an `add` command → index of its body in the list, and when it is added.
+    /// For the number of each `add` command: the index of its body in the list, and the time at which the body is added.
     pub(crate) later: BTreeMap<usize, (usize, f64)>,
     /// Name → index in the list.
     pub(super) names: BTreeMap<String, usize>,

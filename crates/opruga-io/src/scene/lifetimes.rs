@@ -12,13 +12,13 @@ use std::collections::BTreeMap;
 
 /// What a command requires of bodies, which are given by their indices in the list.
 enum Asks {
-    /// It adds this one.
+    /// The command adds this body.
     Adds(usize),
-    /// It removes this one.
+    /// The command removes this body.
     Removes(usize),
-    /// This one must exist.
+    /// This body must exist.
     Needs(usize),
-    /// At least one of these must exist: the copies of a body.
+    /// At least one of these bodies must exist: the copies of a body.
     NeedsOneOf(Vec<usize>),
 }
 
@@ -93,7 +93,7 @@ impl<'n> Lifetimes<'n> {
     }
 }
 
-/// The bodies that the path of a parameter names: one, or all copies; none if it is about something else.
+/// The bodies that the path of a parameter names: one, or all copies; none if the path names something else.
 fn named<const D: usize>(path: &str, bodies: &Bodies<D>) -> Option<Vec<usize>> {
     let name = path.strip_prefix("body.")?.split('.').next()?;
     if let Some(k) = bodies.names.get(name) {

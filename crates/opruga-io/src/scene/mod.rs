@@ -54,7 +54,7 @@ use std::sync::Arc;
 /// How a scene is read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
-    /// The limits of its cost.
+    /// The limits on the cost of the scene.
     pub limits: Limits,
     /// Whether unknown fields are notices instead of errors.
     pub lenient: bool,

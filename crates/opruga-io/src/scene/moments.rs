@@ -26,12 +26,12 @@ impl Frames {
         Frames { length: time.frame, end: end.map(|_| time.seconds) }
     }
 
-    /// The number of the first frame that begins at a time or later, rounded as in the world.
+    /// The number of the first frame that begins at or after a time, rounded as in the world.
     fn first_from(&self, time: f64) -> f64 {
         (time / self.length - 1e-9).ceil()
     }
 
-    /// Reports a command that never acts, and returns whether it does act; `until` is the end of a command that lasts.
+    /// Returns whether a command ever acts, and reports the command if it does not; `until` is the end of a command that lasts.
     pub(super) fn command(
         &self,
         reader: &mut Reader<'_>,
@@ -81,7 +81,7 @@ impl Frames {
 pub(super) struct Set {
     pub(super) at: f64,
     pub(super) parameter: String,
-    /// The location of its time.
+    /// The location of the time of the command.
     pub(super) location: Location,
     /// The path of the command.
     pub(super) path: String,

@@ -72,7 +72,7 @@ pub(crate) fn check<const D: usize>(
     }
 }
 
-/// Converts a list to whole numbers if the parameter needs them. Lists are at first read as lists of real numbers.
+/// Converts a list to whole numbers if the parameter needs them. A list is at first read as a list of real numbers.
 fn suited(value: Value, range: &Allowed) -> Value {
     match (range, &value) {
         (Allowed::Integers, Value::Numbers(x))

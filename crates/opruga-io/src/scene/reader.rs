@@ -65,7 +65,7 @@ impl<'a> Reader<'a> {
         self.errors.push(error);
     }
 
-    /// Adds an error. It is made only if it will be listed, because finding similar words takes time.
+    /// Adds an error. The error is made only if it will be listed, because finding similar words takes time.
     fn report_lazily(&mut self, location: Location, error: impl FnOnce() -> SceneError) {
         if self.errors.len() >= MOST_SHOWN {
             self.more += 1;
@@ -247,8 +247,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The names that misspelt fields probably mean, so that one mistake gives one error. If unknown fields are only warnings, the fields that they
-    /// may have meant are still reported as missing.
+    /// The names that misspelt fields probably mean, so that one mistake gives one error. If unknown fields cause only warnings, the fields that were
+    /// probably meant are still reported as missing.
     pub(crate) fn misspelt(&self, node: &Node, section: &Section, tag: Option<&str>) -> Vec<String> {
         if self.options.lenient {
             return Vec::new();
@@ -294,7 +294,7 @@ impl<'a> Reader<'a> {
         self.report(node.location, error);
     }
 
-    /// Reports choices between fields if none or several are given, except those that a misspelt name probably means.
+    /// Reports every choice between fields of which none or several are given, except choices with a field that a misspelt name probably means.
     fn choices(&mut self, node: &Node, path: &str, spec: &'static Spec, meant: &[String]) {
         for set in spec.choices().filter(|set| !set.iter().any(|name| meant.iter().any(|m| m == name))) {
             let given: Vec<&&str> = set.iter().filter(|name| node.get(name).is_some()).collect();

@@ -22,7 +22,7 @@ pub(super) struct ShapeLocation<'a> {
     pub(super) path: String,
 }
 
-/// Reads the file of a shape that has one. The file is read only if its own fields have no errors.
+/// Reads the file of a shape, if the shape has one. The file is read only if its own fields have no errors.
 pub(super) fn loaded<const D: usize>(
     reader: &mut Reader<'_>,
     node: &Node,

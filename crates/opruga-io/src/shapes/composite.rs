@@ -7,7 +7,7 @@ use crate::budget::EXPANSION;
 use std::collections::BTreeMap;
 use ttf_parser::{Face, GlyphId, Tag};
 
-/// The deepest nesting of letters; the library stops there.
+/// The deepest nesting of letters that the font library follows.
 const DEEPEST: u8 = 32;
 
 /// The total size [bytes] of the letters that a letter consists of, each counted as often as it is drawn; 0 for fonts of another format. Counting
@@ -23,7 +23,7 @@ struct Letters<'a> {
     glyf: &'a [u8],
     loca: &'a [u8],
     long: bool,
-    /// Letters at a depth whose bytes have already been counted.
+    /// The sizes that are already known, by letter and depth [bytes].
     known: BTreeMap<(u16, u8), u64>,
 }
 

@@ -47,9 +47,9 @@ impl Drawing<'_> {
 pub(super) enum Inside {
     /// Nothing: it is a skin of edges.
     Nothing,
-    /// Triangles that follow it, with sides of about this length [m].
+    /// Triangles that follow the outline, with sides of about this length [m].
     Triangles(f64),
-    /// Squares around it, with this side [m].
+    /// Squares that cover the area of the outline, with sides of this length [m].
     Squares(f64),
 }
 

@@ -11,7 +11,7 @@ const DEEPEST: usize = 10;
 /// Refuses a text that its entities would make much longer, for example with four thousand repetitions of a path that itself consists of four
 /// thousand squares.
 ///
-/// External entities, and those that contain themselves, are left to the XML reader, which refuses them.
+/// External entities and entities that contain themselves are left to the XML reader, which refuses them.
 pub(super) fn check(source: &Source<'_>) -> Result<(), SceneError> {
     let text = source.text;
     let Some(begin) = text.find("<!DOCTYPE") else { return Ok(()) };

@@ -21,13 +21,13 @@ pub(super) type Polygon = Vec<Vec<Point>>;
 /// Counts of the changes that were made.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct LaidOut {
-    /// Rings that cross the antimeridian.
+    /// The number of rings that cross the antimeridian.
     pub(super) over: usize,
-    /// Rings around a pole.
+    /// The number of rings around a pole.
     pub(super) polar: usize,
-    /// Polygons that were moved beyond 180° next to the others.
+    /// The number of polygons that were moved beyond 180°, so that they are next to the others.
     pub(super) beside: usize,
-    /// Polygons that were cut along the antimeridian.
+    /// The number of polygons that were cut along the antimeridian.
     pub(super) cut: usize,
 }
 
@@ -75,7 +75,7 @@ fn turns_into(x: f64, low: f64, high: f64) -> f64 {
 }
 
 /// Makes the longitudes of a ring continuous over the antimeridian. Returns the ring, and how much its longitudes grow in one round (0, or one turn
-/// for a ring around a pole); none if no step crosses it.
+/// for a ring around a pole); none if no step crosses the antimeridian.
 fn unrolled(ring: &[Point], stitched: bool) -> Option<(Vec<Point>, f64)> {
     let mut turns = 0.0;
     let mut flat = Vec::with_capacity(ring.len());
@@ -197,7 +197,7 @@ fn sewn<T>(polygons: &mut Vec<(Polygon, T)>) -> usize {
     cut.len()
 }
 
-/// The polygons whose border shares a part of its length with a border of the other side.
+/// The polygons with a border along a meridian that overlaps a border on the other side of this meridian.
 fn shared(borders: &[(usize, f64, [f64; 2], bool)]) -> Vec<usize> {
     // The borders of one meridian, from south to north.
     let turn = |x: f64| ((x - 180.0) / TURN).round();

@@ -65,8 +65,9 @@ pub(super) fn thinned(given: usize, before: &[Ring], rings: &[Ring], spacing: f6
     Some(SceneError::of(notice))
 }
 
-/// The notice that outlines became holes in the outline around them, although this one belongs to another element, on which they are painted. It
-/// gives their number. Also returns the part of the drawing with the first of them. Rings are nested; holes run clockwise.
+/// The notice that outlines became holes in the outline around them, although the outer outline belongs to another element, on which they are
+/// painted. The notice gives the number of these outlines. Also returns the part of the drawing with the first of them. Rings are nested; holes run
+/// clockwise.
 pub(super) fn nested(rings: &[Ring]) -> Option<(u32, SceneError)> {
     // A ring is a hole of the innermost of the rings around it.
     let around = outline::around(rings);

@@ -16,7 +16,7 @@ pub(super) enum Rule {
 }
 
 /// Replaces the rings of parts with the non-zero rule by rings that bound the same region under the even-odd rule. Also reports for how many parts
-/// without a rule the two differ.
+/// without a rule the two rules differ.
 pub(super) fn follow(rings: &mut Vec<Ring>, rules: &[Rule]) -> Option<SceneError> {
     let mut differing = 0;
     // Rings are sorted by part.

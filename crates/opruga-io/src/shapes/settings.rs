@@ -12,7 +12,7 @@ pub(super) fn union() -> Setting {
     Setting::with("overlap", "\"union\"")
 }
 
-/// The region that an odd number of areas encloses.
+/// The region that lies inside an odd number of areas.
 pub(super) fn parity() -> Setting {
     Setting::with("overlap", "\"even_odd\"")
 }

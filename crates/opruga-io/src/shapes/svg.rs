@@ -165,7 +165,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// The size to which percentages of a drawing refer: its `viewBox`, otherwise its width and height.
+    /// The size to which percentages of a drawing refer: that of its `viewBox` or, without a `viewBox`, its width and height.
     fn canvas_of(&self, root: Node<'_, '_>) -> Result<Option<Point>, SceneError> {
         let size = |name: &str| {
             let length = root.attribute(name)?.parse::<svgtypes::Length>().ok()?;
@@ -217,7 +217,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         frames.iter().try_for_each(|(ancestor, frame, map)| self.framed(*ancestor, frame, map, 0))
     }
 
-    /// Returns the coordinate map of an element and its fill, within those of its parent. Refuses properties that are not read but would cut or move
+    /// Computes the coordinate map and the fill of an element from those of its parent. Refuses properties that are not read but would cut or move
     /// the element.
     fn within(&mut self, node: Node<'_, '_>, map: &Affine, fill: Fill) -> Result<(Affine, Fill), SceneError> {
         let sheets = self.sheets;
@@ -321,7 +321,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         Ok(())
     }
 
-    /// Reads `use`: the element that it names, moved.
+    /// Reads `use`, which draws the element that it names at another position.
     fn used(&mut self, node: Node<'_, '_>, map: &Affine, path: &mut Vec<usize>, fill: Fill) -> Result<(), SceneError> {
         let link =
             node.attribute("href").or_else(|| node.attribute(("http://www.w3.org/1999/xlink", "href"))).unwrap_or("");

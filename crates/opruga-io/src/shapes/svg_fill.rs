@@ -12,7 +12,7 @@ use svgtypes::{Color, Paint, PaintFallback};
 /// The fill of an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fill {
-    /// Whether it is filled at all.
+    /// Whether the element is filled at all.
     pub(super) filled: bool,
     /// Red, green and blue.
     colour: [u8; 3],
@@ -22,7 +22,7 @@ pub(super) struct Fill {
     fill_opacity: f64,
     /// The fill rule.
     rule: Rule,
-    /// Whether a rule of a style sheet may apply to the element, or to an element around it, but the reader cannot decide if it does.
+    /// Whether a rule of a style sheet may apply to the element, or to an element around it, but the reader cannot decide whether it does.
     styled: bool,
 }
 

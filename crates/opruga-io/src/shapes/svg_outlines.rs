@@ -1,6 +1,6 @@
 //! The properties that change the outlines of a drawing.
 
-/// Properties that change outlines, each with the value that does not change them; none if every value does.
+/// Properties that change outlines, each with the value that leaves outlines unchanged; none if every value changes them.
 const OUTLINES: [(&str, Option<&str>); 22] = [
     ("display", Some("none")),
     ("visibility", Some("hidden")),

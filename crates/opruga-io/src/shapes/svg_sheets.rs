@@ -39,7 +39,7 @@ type LongStyle = BTreeMap<String, (usize, usize)>;
 /// A `style` with more bytes is parsed only once, and not at each look-up.
 const LONG_STYLE: usize = 1024;
 
-/// The rules that apply to an element, by their numbers.
+/// The rules that apply to an element: for each, its precedence and its number.
 type Obeyed = Rc<[(Weight, usize)]>;
 
 /// The precedence of rules: the one with more ids wins, then the one with more classes, then the one with more names.
@@ -48,10 +48,10 @@ type Weight = [usize; 3];
 #[derive(Debug)]
 struct Rule {
     selectors: Vec<Selector>,
-    /// If its selectors are not supported: the names of elements, `.class` and `#id` to which it may apply.
+    /// The names of elements, `.class` and `#id` to which the rule may apply, if its selectors are not supported.
     perhaps: Vec<String>,
     declarations: Vec<Declaration>,
-    /// The range of its sheet in the file.
+    /// The range of the rule's style sheet in the file.
     sheet: (usize, usize),
 }
 
@@ -196,7 +196,7 @@ impl Sheets {
         found
     }
 
-    /// Whether some rule may apply to an element, but the reader cannot decide if it does.
+    /// Whether some rule may apply to an element, but the reader cannot decide whether it does.
     ///
     /// # Errors
     /// `svg.style` for a rule that changes outlines.

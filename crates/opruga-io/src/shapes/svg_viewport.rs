@@ -14,9 +14,9 @@ use svgtypes::{Align, AspectRatio, ViewBox};
 
 /// The region in which the contents of an element are drawn.
 pub(super) struct Viewport {
-    /// The map from its coordinates to those around it.
+    /// The map from the coordinates inside the viewport to those around it.
     pub(super) map: Affine,
-    /// The corners of the rectangle that it shows, in the coordinates around it; none if it shows everything.
+    /// The corners of the rectangle that the viewport shows, in the coordinates around the viewport; none if it shows everything.
     pub(super) frame: Option<[Point; 4]>,
     /// The size to which percentages inside it refer.
     pub(super) canvas: Option<Point>,

@@ -8,7 +8,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 /// The largest number of elements and texts in a file.
 const MOST_NODES: u32 = 4 << 20;
 
-/// Whether an element belongs to the drawing: its namespace is that of SVG, or none.
+/// Whether an element belongs to the drawing: it has the namespace of SVG, or no namespace.
 pub(super) fn is_drawing(node: Node<'_, '_>) -> bool {
     matches!(node.tag_name().namespace(), None | Some("http://www.w3.org/2000/svg"))
 }

@@ -58,14 +58,14 @@ pub(super) struct Polygons {
 /// The locations of triangles in a file.
 #[derive(Debug, Default)]
 pub(super) enum Locations {
-    /// Only their numbers are known.
+    /// Only the numbers of the triangles are known.
     #[default]
     Numbers,
-    /// The byte of the text at which the line of each begins.
+    /// The byte of the text at which the line of each triangle begins.
     Lines(Vec<u32>),
-    /// The byte of the first one, and the size of each [bytes].
+    /// The byte at which the first triangle begins, and the size of each triangle [bytes].
     Bytes { first: usize, each: usize },
-    /// The byte at which each begins.
+    /// The byte at which each triangle begins.
     Starts(Vec<u64>),
 }
 
@@ -75,7 +75,7 @@ impl Triangles {
         Stored::of(&self.positions, self.triangles.iter().map(|triangle| &triangle[..]), self.single)
     }
 
-    /// Adds a polygon as triangles inside it, and returns their number, or why there are none.
+    /// Adds a polygon as triangles inside it; returns the number of these triangles, or the reason why there are none.
     pub(super) fn polygon(&mut self, corners: &[u32]) -> Result<usize, FaceProblem> {
         if corners.len() < 3 {
             return Err(FaceProblem::Few {});
@@ -221,7 +221,7 @@ pub(super) fn loaded(
     Ok(Loaded { notices, content: Content::Surface { mesh: Box::new(mesh), remesh, filling } })
 }
 
-/// Reports the number of triangles that are so thin that springs and bending along them need short time steps, and the thinnest.
+/// Reports the number of triangles that are so thin that springs and bending along them need short time steps; also reports the thinnest of them.
 fn slivers(mesh: &Mesh<3>) -> Option<SceneError> {
     let thinness = |facet: &[u32; 3]| {
         let [a, b, c] = facet.map(|node| mesh.positions[node as usize]);

@@ -73,8 +73,8 @@ pub fn carry(mesh: &mut Mesh<2>, rings: &[Ring], painted: &[Painted]) -> Result<
     Ok(())
 }
 
-/// The length of the contact edges of a lattice, relative to its cells. Longer edges would cut off curves and would not bend as the cells do; shorter
-/// ones would show details that no cell has.
+/// The length of the contact edges of a lattice, relative to the size of its cells. Longer edges would cut off curves and would not bend as the cells
+/// do; shorter ones would show details that no cell has.
 const EDGE: f64 = 0.5;
 
 /// Rings with edges of about this length [m]. If edges of this length would cross, the rings of the drawing are returned, with long edges divided.
@@ -94,7 +94,7 @@ fn followed(rings: &[Ring], length: f64) -> Vec<Ring> {
 }
 
 impl Skin {
-    /// Uses rings as the outline that touches others.
+    /// Uses rings as the outline with which the body touches others.
     fn follow(&mut self, grid: &Grid<'_>, rings: &[Ring]) {
         for ring in rings {
             let (first, count) = (self.carriers.len() as u32, ring.points.len() as u32);

@@ -10,9 +10,10 @@ const LONG_SIDE: usize = 500;
 /// The triangulation of rings and of points inside them, with the edges of the rings. Also returns the number of the point of every vertex; points of
 /// the rings come first.
 ///
-/// The library inserts many points at once, from their centre outwards, which is fast for points that cover an area. Along a long straight side it
-/// walks past all earlier points for each new one, so the time grows with the square of their number. Rings with such sides are therefore inserted
-/// from coarse to fine, see [`coarse_to_fine`]. (The triangulations are equal either way, but a refinement adds its points in another order.)
+/// The library inserts many points at once, from their centre outwards, which is fast for points that cover an area. Along a long straight side,
+/// however, the library walks past all earlier points for each new point, so the time grows with the square of the number of points. Rings with such
+/// sides are therefore inserted from coarse to fine, see [`coarse_to_fine`]. (The triangulations are equal either way, but a refinement adds its
+/// points in another order.)
 pub(super) fn constrained<V: HasPosition<Scalar = f64>>(
     rings: &[Ring],
     inside: &[[f64; 2]],

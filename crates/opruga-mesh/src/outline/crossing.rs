@@ -31,7 +31,8 @@ pub(crate) type EdgeOfRing = (usize, usize);
 /// hundred per edge. Without a limit, a hundred thousand long edges that fan out from one point, whose boxes all overlap, would take minutes.
 const MOST_COMPARED: [u64; 2] = [1 << 27, 500];
 
-/// The margin of boxes around their edges, relative to the extent: their ends were rounded during rotation, and [`segments_meet`] rounds too.
+/// The margin of boxes around their edges, relative to the extent. It is needed because the ends of edges were rounded during rotation, and
+/// [`segments_meet`] rounds too.
 const MARGIN: f64 = 64.0 * f64::EPSILON;
 
 /// The lowest pair of edges of closed rings that meet other than at a shared end.

@@ -19,7 +19,7 @@ messages! {
         /// There are no rings.
         "shape.no_area" #[error("there is no closed outline")]
         Empty {},
-        /// A ring has too few points or encloses no area. Contains the number of its points, and the first one.
+        /// A ring has too few points or encloses no area. Contains the number of points in the ring and the position of the first one.
         "shape.no_area" #[error("an outline encloses no area: {}, the first at {}", counted(*points as u64, "point", "points"), at(position))]
         #[value("{}", position.map(number).join(", "))]
         NoArea { part: u32, points: usize, position: [f64; 2] },

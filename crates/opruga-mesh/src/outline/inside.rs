@@ -152,7 +152,8 @@ mod tests {
         (0..rings.len()).map(of).collect()
     }
 
-    /// A square with nested squares; `tree` determines how deep each of nine is divided.
+    /// Adds a square with nested squares; for each square, `tree` gives whether it exists, whether it is divided into nine, and whether it runs
+    /// clockwise.
     fn nested(x: f64, y: f64, half: f64, tree: &mut impl Iterator<Item = (bool, bool, bool)>, out: &mut Vec<Ring>) {
         let Some((there, divided, clockwise)) = tree.next() else { return };
         if !there {

@@ -58,7 +58,7 @@ fn corners((i, j): Square) -> [(i64, i64); 4] {
     [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
 }
 
-/// Squares that a ring passes through: for every edge, column by column, the rows between its ends in that column.
+/// The squares that a ring passes through: in each column of squares, those between the two points where an edge enters and leaves the column.
 fn crossed(rings: &[Ring], origin: [f64; 2], spacing: f64) -> BTreeSet<Square> {
     let mut found = BTreeSet::new();
     for (a, b) in rings.iter().flat_map(Ring::edges) {
@@ -105,7 +105,7 @@ fn inside(rings: &[Ring], origin: [f64; 2], spacing: f64) -> Vec<Square> {
     found
 }
 
-/// Adds a square wherever two touch only at a corner, because the body would be connected there by a single point.
+/// Adds a square wherever two squares touch only at a corner, because the body would be connected there by a single point.
 fn close_corners(kept: &mut BTreeSet<Square>) {
     // A square that was just added may touch further ones.
     let mut added: Vec<Square> = kept.iter().copied().collect();

@@ -23,7 +23,7 @@ pub enum Cause {
 /// Triangles of a filling with angles below [`SMALLEST_ANGLE`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thin {
-    /// Their number.
+    /// The number of these triangles.
     pub count: usize,
     /// The smallest of all angles [°].
     pub angle: f64,

@@ -13,14 +13,14 @@ const PATIENCE: Duration = Duration::from_millis(300);
 /// The state of closing the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Closing {
-    /// It has not been requested.
+    /// The user has not asked to close the window.
     #[default]
     No,
     /// The user is being asked. `fresh` is set for the first picture that shows the question.
     Asking { fresh: bool },
     /// The scene is being saved; after that the window closes.
     Saving,
-    /// It closes.
+    /// The window closes now.
     Now,
 }
 

@@ -27,7 +27,7 @@ struct Piece {
     begun: bool,
     /// Whether its points are still close enough to a straight line.
     straight: bool,
-    /// The sides of the screen beyond which all of its points are, as bits.
+    /// The sides of the screen beyond which all points of the piece are, as bits.
     outside: u8,
 }
 

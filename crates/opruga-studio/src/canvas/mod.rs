@@ -37,8 +37,8 @@ pub use tool::Tool;
 enum Doing {
     #[default]
     Nothing,
-    /// The pointer holds a body. In space, the held point is at this distance behind the point in the centre of the view [m]. For a push, there are
-    /// also the point at which the pointer was pressed and the grabbed point of the body [m].
+    /// The pointer holds a body. In space, the held point is at this distance behind the point in the centre of the view [m]. A push also gives the
+    /// point at which the pointer was pressed and the grabbed point of the body [m].
     Holding(f64, Option<[[f64; 3]; 2]>),
     /// The view is moved.
     Panning,
@@ -64,7 +64,7 @@ pub struct Canvas {
     newest: Option<(u64, String)>,
     /// The rectangle of the scene in the window.
     rect: Option<Rect>,
-    /// The rectangle of the tools over it.
+    /// The rectangle of the tools over the scene.
     pub tools: Option<Rect>,
     /// The quantities and marks that the user wants to see.
     pub wanted: Show,
@@ -181,7 +181,7 @@ impl Canvas {
         left.chain(right).chain(self.written.iter().copied()).collect()
     }
 
-    /// The rectangles of the bodies within a part of the window. Bodies out of sight have none.
+    /// The rectangles of the bodies within a part of the window. Bodies out of sight have no rectangle.
     fn seen_in(&self, part: Rect, shown: &Shown) -> Vec<Rect> {
         let by = self.rect.map_or(Vec2::ZERO, |rect| part.min - rect.min);
         let of = |extent: &crate::shown::Extent| {

@@ -46,7 +46,7 @@ pub(crate) struct Outline {
 pub(crate) struct Part {
     /// The nodes of the line and of its holes.
     pub(crate) nodes: Vec<u32>,
-    /// The triangles between them, each as three indices of these nodes.
+    /// The triangles between these nodes, each given by three indices in `nodes`.
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 

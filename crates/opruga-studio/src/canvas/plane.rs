@@ -14,7 +14,7 @@ use opruga::draw::{BODIES, BodyPicture, ColliderPicture, ColourMap, Facets, form
 
 /// If there are more lines than this, they are drawn with hard borders.
 const SOFT_EDGES: usize = 6_000;
-/// The opacity of filled outlines. `FILLED_CELLS` is that of cells.
+/// The opacity of filled outlines. `FILLED_CELLS` is the opacity of filled cells.
 const FILLED: f32 = 0.34;
 const FILLED_CELLS: f32 = 0.62;
 

@@ -281,8 +281,8 @@ impl Canvas {
     }
 }
 
-/// Finds the pin under the pointer: its body, its node and its position [m]. The user has set it or, if `own_nodes` is set, the scene. `own_nodes`
-/// means that the nodes of the picture are those of the world to which requests refer.
+/// Finds the pin under the pointer: its body, its node and its position [m]. The pin was set by the user or, if `own_nodes` is set, by the scene.
+/// `own_nodes` is true if the nodes of the picture are those of the world to which requests refer.
 fn pin_under(shown: &Shown, under: &Under, own_nodes: bool) -> Option<(usize, u32, [f64; 3])> {
     let own = shown.bodies.iter().position(|body| body.number == under.body);
     let own = own.and_then(|index| shown.picture.bodies.get(index));

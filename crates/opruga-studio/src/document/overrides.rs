@@ -46,7 +46,7 @@ fn put(table: &mut dyn TableLike, parts: &[&str], value: Toml) -> Option<()> {
     }
 }
 
-/// Does the same within a list of tables or of numbers.
+/// Writes the value of an override within a list of tables or of numbers.
 fn put_in(array: &mut toml_edit::Array, parts: &[&str], value: Toml) -> Option<()> {
     let (head, rest) = parts.split_first()?;
     if rest.is_empty() {

@@ -11,7 +11,7 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 /// The window with the scenes.
 #[derive(Default)]
 pub struct Gallery {
-    /// Whether it is open.
+    /// Whether the gallery is open.
     pub open: bool,
     /// The models and integrators of their scenes.
     registries: Registries,

@@ -11,7 +11,7 @@ type Sample = (fn(Language) -> &'static str, &'static str, f64, &'static str);
 
 const GAS: &str = "{ kind = \"mass_spring\", stiffness = 1600.0, damping = 1.0 }, { kind = \"pressure\", nRT = 40.0 }, \
                    { kind = \"bending\", stiffness = 0.02 }";
-/// The springs of a lattice. Without those along the diagonals (`edges = "shear"`), nothing would prevent the cells from folding flat.
+/// The springs of a lattice. Without the springs along the diagonals (`edges = "shear"`), nothing would prevent the cells from folding flat.
 const JELLY: &str = "{ kind = \"mass_spring\", stiffness = 800.0, damping = 0.5, edges = \"shear\" }";
 const ROPE: &str = "{ kind = \"mass_spring\", stiffness = 800.0, damping = 0.5 }";
 const BALLOON: &str =

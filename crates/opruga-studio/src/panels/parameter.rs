@@ -12,9 +12,9 @@ pub struct FieldContext<'a> {
     pub path: &'a str,
     /// The part of a scene to which its kind belongs, such as a model or an integrator.
     pub part: Part,
-    /// Its kind.
+    /// The kind to which the field belongs.
     pub kind: &'a str,
-    /// Its specification.
+    /// The specification of the field.
     pub field: &'a Field,
     /// The dimension of the scene.
     pub dimension: usize,

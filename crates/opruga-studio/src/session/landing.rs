@@ -9,8 +9,8 @@ use toml_edit::InlineTable;
 /// The lowest and the highest corner of a box [m].
 type Ends = [[f64; 3]; 2];
 
-/// The spacing of the positions that are tried, in the plane and in space, relative to the size of the body. The positions are up to six times this
-/// size away in the plane, and up to four times in space.
+/// The spacing of the positions that are tried, in the plane and in space, relative to the size of the body. The positions that are tried are up to
+/// six body sizes away in the plane, and up to four in space.
 const APART: [f64; 2] = [0.25, 0.5];
 const TRIED: [i32; 2] = [24, 8];
 /// The gap between a body and its neighbours, relative to the size of the body.

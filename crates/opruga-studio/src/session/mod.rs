@@ -61,7 +61,7 @@ pub enum Request {
     Open {
         /// Its name.
         name: String,
-        /// Its text.
+        /// The text of the scene.
         text: String,
         /// The location of the files that it names.
         files: Files,
@@ -118,7 +118,7 @@ pub enum Request {
     Compare(bool),
     /// Add a difference of the right scene.
     Differ(Difference),
-    /// Note that the scene with this fingerprint was saved.
+    /// Records that the scene with this fingerprint was saved.
     Saved(u64),
 }
 

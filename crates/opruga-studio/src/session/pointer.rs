@@ -281,7 +281,8 @@ impl Session {
         Ok(())
     }
 
-    /// Begins a push with the present force. Returns the numbers of its command; none if the pointer is back at the point of the press.
+    /// Begins a push with the present force. Returns the two numbers of the command of the push; none if the pointer is back at the point of the
+    /// press.
     fn push_now(&mut self, grabbed: &Grabbed) -> Option<[usize; 2]> {
         let force = grabbed.force();
         if force == [0.0; 3] {

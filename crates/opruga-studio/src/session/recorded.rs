@@ -14,7 +14,7 @@ use std::io::{Read, Seek};
 /// A recording that is viewed: frames with recorded states are not computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Viewed {
-    /// The last frame that is as it was recorded.
+    /// The last frame that still agrees with the recording.
     until: u64,
     /// Whether the user has started a different run.
     left: bool,
@@ -81,7 +81,7 @@ impl Session {
         }
     }
 
-    /// The last frame that is as it was recorded.
+    /// The last frame that still agrees with the recording.
     pub(super) fn recorded_until(&self) -> Option<u64> {
         self.recording.map(|viewed| viewed.until).filter(|until| *until > 0)
     }

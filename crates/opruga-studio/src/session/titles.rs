@@ -36,7 +36,7 @@ impl Titles {
         if self.present.iter().any(|other| other == title) { name } else { title }
     }
 
-    /// Replaces the name in a name, or in a path such as `body.ball-2.models.0.damping`.
+    /// Replaces the name of a body, which may stand alone or in a path such as `body.ball-2.models.0.damping`.
     fn in_path(&self, path: &str) -> String {
         let Some(below) = path.strip_prefix("body.") else { return self.of(path).into() };
         let named = |(_, new): &&(String, String)| {

@@ -30,7 +30,7 @@ pub(super) struct Past {
 }
 
 impl Session {
-    /// Goes to a frame. Returns to the nearest keyframe before it if necessary, and computes the remaining frames in the next ticks.
+    /// Goes to a frame. Returns to the nearest keyframe before that frame if necessary, and computes the remaining frames in the next ticks.
     pub(super) fn seek(&mut self, frame: u64) {
         let frame = frame.min(self.latest);
         let now = self.engine.frames();

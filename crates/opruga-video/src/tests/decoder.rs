@@ -14,8 +14,8 @@ struct Reader {
 }
 
 impl Reader {
-    /// Reads the bits of a unit. Its header is skipped, and so are the bytes that were inserted so that nothing inside looks like the start of a
-    /// unit.
+    /// Reads the bits of a unit. The header of the unit is skipped, and so are the bytes that the encoder inserted so that nothing inside looks like
+    /// the start of a unit.
     fn new(unit: &[u8]) -> Reader {
         let mut bytes: Vec<u8> = Vec::new();
         for (place, &byte) in unit.iter().enumerate().skip(1) {

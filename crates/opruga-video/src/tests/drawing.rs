@@ -50,7 +50,7 @@ impl Drawing {
     pub(super) fn rectangle(&mut self, [x, y]: [f32; 2], [width, height]: [f32; 2], colour: [u8; 3]) {
         self.blend(colour, |px, py| if px >= x && py >= y && px < x + width && py < y + height { 1.0 } else { 0.0 });
     }
-    /// A number, with three pixels for each pixel of its digits.
+    /// Draws a number; each pixel of its digits becomes a square of three by three pixels.
     pub(super) fn number(&mut self, value: u32, [x, y]: [f32; 2], colour: [u8; 3]) {
         for (place, digit) in value.to_string().bytes().enumerate() {
             for (row, bits) in DIGITS[usize::from(digit - b'0')].iter().enumerate() {

@@ -77,8 +77,8 @@ pub struct Moment {
     coordinates: Vec<f32>,
     /// The quantity that the colours show.
     quantity: Quantity,
-    /// That quantity at every node. It is computed before the coordinates are rounded, because the rounded ones are not precise enough for strains.
-    /// Empty if bodies have plain colours.
+    /// The value of that quantity at every node. It is computed before the coordinates are rounded, because the rounded ones are not precise enough
+    /// for strains. Empty if bodies have plain colours.
     scalars: Vec<f32>,
     /// The existing bodies.
     bodies: Vec<usize>,
@@ -219,7 +219,7 @@ impl Scenery {
         Moment { time: world.time(), coordinates, quantity, scalars, bodies, pulls, colliders, arrows: drawn }
     }
 
-    /// Adds the arrows of a body: the pressure of its gas at some of its nodes or, without gas, the force on them.
+    /// Adds arrows to a body: at some of its nodes, they show the pressure of its gas or, without gas, the force on the node.
     fn push_arrows(&self, world: &mut dyn AnyWorld, body: usize, arrows: &mut Vec<ArrowPicture>) {
         let fixed = &self.bodies[body];
         let gas = world.scene().body(body).is_some_and(|body| body.has_role(Role::Gas));

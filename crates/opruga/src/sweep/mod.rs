@@ -54,7 +54,7 @@ use opruga_world::blueprint::AnyBlueprint;
 use opruga_world::{AnyScene, AnyWorld, Registries};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The total processor time of the runs that measure a speed, after which the speed is known precisely enough [s].
+/// The total processor time [s] of the runs that measure a speed; after this time, the speed is known precisely enough.
 const TIMED: f64 = 0.1;
 
 /// The question of a sweep. The same question always has the same answer, except for times.

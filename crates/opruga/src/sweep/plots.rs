@@ -136,8 +136,8 @@ impl Plots<'_> {
     }
 }
 
-/// Shortens a path to its last two words or, if the first of these is a number, to more of them, so that it does not begin with a number. The whole
-/// path is kept if the path of the other parameter ends in the same words.
+/// Shortens a path to its last two words, or to as many more as are needed so that the result does not begin with a number. The whole path is kept if
+/// the path of the other parameter ends in the same words.
 fn short_path(path: &str, other: &str) -> String {
     let words: Vec<&str> = path.split('.').collect();
     let mut kept = words.len().min(2);

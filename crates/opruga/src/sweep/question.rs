@@ -51,8 +51,7 @@ impl Question {
 
     /// Reads the JSON of a question.
     ///
-    /// # Errors
-    /// `sweep.damaged` if it is not one, or one of another version.
+    /// # Errors `sweep.damaged` if the bytes are not a question, or are a question of another version.
     pub fn read(bytes: &[u8]) -> Result<Question, SceneError> {
         let damaged = |reason: &serde_json::Error| SweepError::Question { reason: visible(&reason.to_string()) };
         let question: Question = serde_json::from_slice(bytes).map_err(|e| SceneError::of(damaged(&e)))?;

@@ -29,9 +29,9 @@ pub struct Row {
 /// How the run of a point ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// It ran to its end.
+    /// The run reached its end.
     Done,
-    /// It was refused or has diverged; the text is the code of the error.
+    /// The run was refused or has diverged; the text is the code of the error.
     Failed(String),
 }
 
