@@ -9,7 +9,7 @@ use crate::view::View;
 /// A camera that looks at a point from a direction, and shows a ball around that point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eye {
-    /// The point it looks at [m].
+    /// The point at which the camera looks [m].
     pub target: [f64; 3],
     /// The radius of the ball that fills the smaller side of the picture [m].
     pub radius: f64,

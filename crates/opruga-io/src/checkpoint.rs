@@ -26,7 +26,7 @@ const HEAD: usize = 32;
 pub struct Checkpoint {
     /// The text of the scene as it was read, so that the checkpoint needs no other file. Overrides belong in the payload.
     pub scene: String,
-    /// The bytes of the state, in the encoding of the world that wrote it.
+    /// The bytes of the state, in the encoding of the world that wrote the state.
     pub payload: Vec<u8>,
 }
 
@@ -37,7 +37,7 @@ messages! {
         /// The file does not begin like a checkpoint.
         "checkpoint.not_one" #[error("this is not a checkpoint of Opruga")] #[allowed("a complete checkpoint of version {VERSION}")]
         NotOne {},
-        /// Another version of the program wrote it.
+        /// Another version of the program wrote the checkpoint.
         "checkpoint.version" #[error("the checkpoint has version {found}; this program reads version {VERSION}")]
         #[allowed("a complete checkpoint of version {VERSION}")]
         Version { found: u32 },

@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 /// What happens if the folder contains the output of an earlier run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
-    /// It is an error.
+    /// Such output is an error.
     Refuse,
-    /// It is replaced, file by file.
+    /// The earlier output is replaced, file by file.
     Replace,
 }
 

@@ -21,7 +21,7 @@ pub struct Uses {
 
 /// A file of a call.
 struct Used {
-    /// Its role in the call.
+    /// The role of the file in the call.
     what: Use,
     named: PathBuf,
     file: Found,

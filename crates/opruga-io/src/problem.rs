@@ -79,7 +79,7 @@ pub struct Excerpt {
 /// Something unusual in a scene, with a count.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    /// Its description, in the form of an error.
+    /// The description of the notice, in the form of an error.
     pub about: SceneError,
     /// How often the notice occurs.
     pub count: usize,

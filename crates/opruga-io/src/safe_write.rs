@@ -279,7 +279,7 @@ pub struct Failing<W> {
     left: u64,
     /// The error number of the system; none means that no space is left.
     system: Option<i32>,
-    /// Whether it fails only when it is synced.
+    /// Whether the writer fails only when it is synced.
     at_sync: bool,
 }
 

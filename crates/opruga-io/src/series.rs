@@ -24,7 +24,7 @@ pub struct Shape<'a> {
 /// The values for every filled cell of a body, in the order of [`opruga_mesh::Cells::iter`].
 #[derive(Clone, Copy, Debug)]
 pub struct CellField<'a> {
-    /// Its name with its unit, such as `von Mises stress [Pa]`.
+    /// The name of the quantity with its unit, such as `von Mises stress [Pa]`.
     pub name: &'a str,
     /// Number of values per cell: 1, or 9 for a tensor, row by row.
     pub components: usize,

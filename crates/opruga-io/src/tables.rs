@@ -7,7 +7,7 @@ use std::io::{self, Write};
 /// The state of one body at the end.
 #[derive(Clone, Copy, Debug)]
 pub struct FinalBody<'a> {
-    /// Its name.
+    /// The name of the body.
     pub name: &'a str,
     /// Positions, node by node; z is 0 in the plane [m].
     pub positions: &'a [[f64; 3]],

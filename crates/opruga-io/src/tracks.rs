@@ -15,9 +15,9 @@ pub struct Track {
     pub name: String,
     /// Number of nodes.
     pub nodes: usize,
-    /// Triangles of its surface, facing outward.
+    /// The triangles of the body's surface, facing outward.
     pub triangles: Vec<[u32; 3]>,
-    /// Its wires, and outlines in the plane.
+    /// The wires of the body, and its outlines in the plane.
     pub lines: Vec<[u32; 2]>,
     /// Times of the frames [s].
     pub times: Vec<f32>,
@@ -55,7 +55,7 @@ impl Track {
         }
     }
 
-    /// Memory of its frames [bytes].
+    /// The memory of the frames [bytes].
     pub fn bytes(&self) -> usize {
         12 * self.positions.len()
     }

@@ -8,7 +8,7 @@ use crate::{Mesh, MeshError};
 /// A connected piece of the boundary.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Component {
-    /// Its facets, ascending.
+    /// The facets of the component, ascending.
     pub facets: Vec<u32>,
     /// Enclosed area [m²] or volume [m³]: positive for an outer skin, negative for a hole.
     pub signed_volume: f64,

@@ -32,7 +32,7 @@ pub enum Problem {
         element: Element,
         /// Index of the element among its kind.
         index: u32,
-        /// Its length [m], area [m²] or volume [m³].
+        /// The length [m], area [m²] or volume [m³] of the element.
         measure: f64,
     },
     /// A filled cell has negative area or volume, or a negative Jacobian at one of its nodes.

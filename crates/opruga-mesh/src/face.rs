@@ -18,7 +18,7 @@ const AS_LONG: f64 = 1e-9;
 pub enum FaceError {
     /// The edges of the face cross or touch, or the face encloses no area.
     Crossing,
-    /// The largest distance of a corner from its plane, relative to its size.
+    /// The face is folded too far: the largest distance of a corner from its plane, relative to the size of the face.
     Folded(f64),
 }
 

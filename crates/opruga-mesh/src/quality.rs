@@ -6,14 +6,14 @@ use crate::{Element, Mesh};
 /// The size of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellMeasure {
-    /// Its signed area [m²] or volume [m³].
+    /// The signed area [m²] or volume [m³] of the cell.
     pub whole: f64,
     /// The smallest det ∂x/∂ξ at its nodes, as the area or volume that a cell with this value everywhere would have. If the determinant is positive
     /// at the nodes but negative between them, this is its smallest value between them: see [`crate::least_jacobian`].
     pub least: f64,
-    /// The largest of these values at its nodes.
+    /// The largest of these values at the nodes of the cell.
     pub greatest: f64,
-    /// The longest distance between two of its nodes [m].
+    /// The longest distance between two nodes of the cell [m].
     pub longest: f64,
 }
 
@@ -25,7 +25,7 @@ pub struct CellQuality {
     pub cells: usize,
     /// Number of cells with a negative Jacobian anywhere.
     pub inverted: usize,
-    /// Area or volume of all of them [m², m³].
+    /// The area or volume of all cells [m², m³].
     pub measure: f64,
     /// The smallest angle [rad].
     pub smallest_angle: f64,

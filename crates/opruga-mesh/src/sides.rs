@@ -15,7 +15,7 @@ pub struct SidePoint {
     pub weight: f64,
     /// The shape functions Nₐ.
     pub shape: [f64; MOST_SIDE_NODES],
-    /// Their derivatives by the coordinates of the side; only one in the plane.
+    /// The derivatives of the shape functions by the coordinates of the side; only one in the plane.
     pub slope: [[f64; 2]; MOST_SIDE_NODES],
 }
 

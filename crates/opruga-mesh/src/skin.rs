@@ -16,7 +16,7 @@ pub struct Skin {
     pub outline: Vec<[u32; 2]>,
     /// The nodes that carry each point.
     pub carriers: Vec<[u32; 4]>,
-    /// Their weights, which add up to 1.
+    /// The weights of these nodes, which add up to 1.
     pub weights: Vec<[f64; 4]>,
 }
 

@@ -8,7 +8,7 @@ use crate::{Mesh, Skin};
 pub struct Carrier {
     /// The nodes. Unused entries repeat another node with weight 0.
     pub nodes: [u32; 4],
-    /// Their weights wᵢ, which add up to 1.
+    /// The weights wᵢ of these nodes, which add up to 1.
     pub weights: [f64; 4],
 }
 

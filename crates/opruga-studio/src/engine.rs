@@ -36,7 +36,7 @@ pub struct Common {
 /// The state of an engine, to which it can return.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// The snapshot of its world.
+    /// The snapshot of the world.
     pub world: Vec<u8>,
     /// If two scenes are side by side: the state of the right side, and the reason why it has stopped.
     pub right: Option<(Box<State>, Option<Report>)>,

@@ -5,7 +5,7 @@
 pub struct Exploded {
     /// The body.
     pub body: String,
-    /// The kind of its integrator.
+    /// The kind of the body's integrator.
     pub integrator: String,
     /// Whether that integrator is unstable with this step, as far as the world can determine it.
     pub unstable: bool,

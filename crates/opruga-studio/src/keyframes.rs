@@ -51,7 +51,7 @@ impl Keyframes {
         self.bytes = self.kept.iter().map(|(_, state)| state.bytes()).sum();
     }
 
-    /// Their memory [bytes].
+    /// The memory of the kept states [bytes].
     pub fn bytes(&self) -> usize {
         self.bytes
     }

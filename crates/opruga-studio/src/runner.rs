@@ -26,7 +26,7 @@ pub struct Copied {
     pub name: String,
     /// The text of the scene with everything that was done.
     pub text: String,
-    /// The location of the files that it names.
+    /// The location of the files that the scene names.
     pub files: Files,
     /// The models and integrators that the scene can name.
     pub registries: Registries,

@@ -6,15 +6,15 @@ use toml_edit::{DocumentMut, InlineTable};
 /// A shape from a file.
 #[derive(Clone, Debug)]
 pub struct Shape {
-    /// Its name.
+    /// The name of the shape.
     pub name: String,
     /// The file of the shape.
     pub file: String,
-    /// A scene around it.
+    /// The text of a scene around the shape.
     pub text: String,
     /// Whether the scene is in space.
     pub space: bool,
-    /// The location of its file.
+    /// The location of the shape's file.
     pub files: Files,
 }
 

@@ -19,11 +19,11 @@ const MOST_BYTES: u64 = 64 << 20;
 /// A scene that an address names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shared {
-    /// Its name.
+    /// The name of the scene.
     pub name: String,
-    /// Its text.
+    /// The text of the scene.
     pub text: String,
-    /// The files that it names.
+    /// The files that the scene names.
     pub files: Files,
 }
 

@@ -76,21 +76,21 @@ pub struct EnergyShown {
 /// One body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyShown {
-    /// Its index in the world.
+    /// The index of the body in the world.
     pub number: usize,
-    /// Its name.
+    /// The name of the body.
     pub name: String,
     /// The name under which the user knows the body. A body that replaces another one is shown under the name of the original.
     pub title: String,
     /// The number of nodes.
     pub nodes: usize,
-    /// Its models; empty if there are many bodies.
+    /// The models of the body; empty if there are many bodies.
     pub models: Vec<Values>,
-    /// Its own integrator.
+    /// The body's own integrator, if it has one.
     pub integrator: Option<Values>,
-    /// Its shape in the scene, if it has a table of its own.
+    /// The shape of the body in the scene, if the body has a table of its own.
     pub shape: Option<Values>,
-    /// Readings of its models, such as volume and pressure.
+    /// Readings of the body's models, such as volume and pressure.
     pub readings: Vec<Reading>,
 }
 
@@ -125,7 +125,7 @@ pub struct Beside {
 /// One obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObstacleShown {
-    /// Its kind and parameters.
+    /// The kind and the parameters of the obstacle.
     pub values: Values,
 }
 
@@ -169,9 +169,9 @@ pub enum Offer {
 pub struct Message {
     /// A running number, which distinguishes a new message from an earlier one with the same text.
     pub number: u64,
-    /// Its severity.
+    /// The severity of the message.
     pub severity: Severity,
-    /// Its contents.
+    /// The contents of the message.
     pub report: Report,
     /// The text of the message in English.
     pub text: String,
@@ -213,7 +213,7 @@ impl Extent {
 pub struct Shown {
     /// The name of the scene.
     pub name: String,
-    /// Its title.
+    /// The title of the scene.
     pub title: String,
     /// 2 or 3; 0 before the first scene.
     pub dimension: u8,
@@ -263,7 +263,7 @@ pub struct Shown {
     pub warnings: Vec<Warning>,
     /// The picture.
     pub picture: Picture,
-    /// The extent of each of its bodies.
+    /// The extent of each body in the picture.
     pub extents: Vec<Extent>,
     /// Whether time passes.
     pub playing: bool,

@@ -18,7 +18,7 @@ const DOT_SPACING: f32 = 15.0;
 struct Scalars {
     /// The colour map.
     map: ColourMap,
-    /// The values at its ends.
+    /// The values at the ends of the colour map.
     range: [f64; 2],
 }
 

@@ -86,7 +86,7 @@ pub struct MeshFile<'a> {
 struct Beside {
     name: String,
     bytes: Arc<[u8]>,
-    /// Whether it holds the nodes rather than the elements.
+    /// Whether this file holds the nodes rather than the elements.
     nodes: bool,
 }
 

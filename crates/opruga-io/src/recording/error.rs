@@ -11,7 +11,7 @@ opruga_math::messages! {
         "recording.not_one" #[error("this is not a recording of Opruga")] #[allowed("a recording of version {VERSION}")]
         #[hint("opruga run SCENE --record FILE writes one")]
         NotOne {},
-        /// Another version of the program wrote it.
+        /// Another version of the program wrote the recording.
         "recording.version" #[error("the recording has version {found}; this program reads version {VERSION}")] #[value("{found}")]
         #[allowed("a recording of version {VERSION}")] #[hint("use the version of the program that wrote the recording")]
         Version { found: u32 },

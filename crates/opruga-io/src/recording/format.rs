@@ -16,7 +16,7 @@ pub(super) const TRAILER: usize = 20;
 /// The description of a run in a recording, before the first frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
-    /// The program that wrote it, with its version.
+    /// The program that wrote the recording, with its version.
     pub program: String,
     /// The name of the scene.
     pub name: String,

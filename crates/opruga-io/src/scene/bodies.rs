@@ -45,7 +45,7 @@ struct Draft<'n, const D: usize> {
 }
 
 impl<const D: usize> Draft<'_, D> {
-    /// Whether one of its models owns its cells.
+    /// Whether one of the body's models owns the cells.
     fn owns_cells(&self) -> bool {
         self.models.iter().any(|model| model.spec().has_role(Role::OwnsCells))
     }

@@ -15,7 +15,7 @@ pub(crate) struct Bodies<const D: usize> {
     pub(super) names: BTreeMap<String, usize>,
     /// Name of a body with copies → index of the first copy, and the offset of each copy from the position that the body would have.
     pub(super) copied: BTreeMap<String, (usize, Vec<[f64; D]>)>,
-    /// The cost of all of them.
+    /// The cost of all bodies.
     pub(super) cost: Cost,
     /// Names of bodies that could not be made: a reference to one of them is not a further error.
     pub(super) broken: Vec<String>,

@@ -16,7 +16,7 @@ use opruga_world::shapes;
 
 /// The location of a shape in the scene.
 pub(super) struct ShapeLocation<'a> {
-    /// The name of its body.
+    /// The name of the body with this shape.
     pub(super) name: &'a str,
     pub(super) location: Location,
     pub(super) path: String,

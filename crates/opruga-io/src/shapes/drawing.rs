@@ -59,7 +59,7 @@ pub(super) struct Outline {
     /// The rings that the body is made of.
     pub(super) rings: Vec<Ring>,
     pub(super) inside: Inside,
-    /// The drawing that it carries for pictures.
+    /// The drawing that the body carries for pictures.
     pub(super) painted: Vec<Painted>,
 }
 

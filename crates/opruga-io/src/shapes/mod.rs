@@ -91,7 +91,7 @@ type Open<'o> = dyn FnMut(&str) -> Result<Arc<[u8]>, SceneError> + 'o;
 /// The contents of a shape's file, checked, before a mesh is made from it.
 #[derive(Clone, Debug)]
 pub(crate) struct Loaded {
-    /// Notices about it, with counts.
+    /// Notices about the file, with counts.
     pub(crate) notices: Vec<SceneError>,
     content: Content,
 }

@@ -18,7 +18,7 @@ pub(super) struct Viewport {
     pub(super) map: Affine,
     /// The corners of the rectangle that the viewport shows, in the coordinates around the viewport; none if it shows everything.
     pub(super) frame: Option<[Point; 4]>,
-    /// The size to which percentages inside it refer.
+    /// The size to which percentages inside the viewport refer.
     pub(super) canvas: Option<Point>,
 }
 

@@ -12,7 +12,7 @@ const MOST_BINS: f64 = 16.0;
 /// An area to be painted on a body.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Painted {
-    /// Its boundary; rings inside others are holes by the even-odd rule.
+    /// The boundary of the area; rings inside others are holes by the even-odd rule.
     pub rings: Vec<Ring>,
     /// Red, green, blue and opacity; none for the colour of the body.
     pub colour: Option<[u8; 4]>,

@@ -39,7 +39,7 @@ use crate::{Mesh, MeshError};
 /// A closed curve in the plane.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Ring {
-    /// Its points [m], without a repetition of the first at the end.
+    /// The points of the curve [m]; the first one is not repeated at the end.
     pub points: Vec<[f64; 2]>,
     /// The part of its source to which it belongs: a path of a drawing, a letter of a text, a polygon of a map. Rings of one part are holes of one
     /// another; [`Overlap`] determines the effect of parts on each other.
@@ -62,7 +62,7 @@ impl Ring {
         self.edges().map(|(a, b)| distance(a, b)).sum()
     }
 
-    /// Its edges as pairs of points, with the closing edge last.
+    /// The edges of the ring as pairs of points, with the closing edge last.
     pub(crate) fn edges(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
         let next = self.points.iter().cycle().skip(1);
         self.points.iter().zip(next).map(|(a, b)| (*a, *b))

@@ -27,9 +27,9 @@ pub struct Thin {
     pub count: usize,
     /// The smallest of all angles [°].
     pub angle: f64,
-    /// Its position [m].
+    /// The position of this angle [m].
     pub position: [f64; 2],
-    /// Its cause.
+    /// The cause of this angle.
     pub cause: Cause,
 }
 

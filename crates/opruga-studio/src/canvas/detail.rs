@@ -21,11 +21,11 @@ struct Piece {
     /// The range of directions in which a straight line from the beginning of the piece passes close enough to all of its points, given by the two
     /// outermost directions. None until a point is far enough from the beginning.
     cone: Option<[Vec2; 2]>,
-    /// The largest distance of its points from its beginning.
+    /// The largest distance of the points of the piece from its beginning.
     far: f32,
     /// Whether the piece has a second point. Between two neighbouring points the colour is interpolated, so the second point may have any colour.
     begun: bool,
-    /// Whether its points are still close enough to a straight line.
+    /// Whether the points of the piece are still close enough to a straight line.
     straight: bool,
     /// The sides of the screen beyond which all points of the piece are, as bits.
     outside: u8,

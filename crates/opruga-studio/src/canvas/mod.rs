@@ -70,13 +70,13 @@ pub struct Canvas {
     pub wanted: Show,
     /// The rectangles of legends and captions.
     written: Vec<Rect>,
-    /// The rectangle of the scene beside it.
+    /// The rectangle of the scene beside this one.
     other: Option<Rect>,
     /// The largest magnitude among the arrows of every kind.
     arrows: arrows::Longest,
     flat: Flat,
     space: space::Space,
-    /// The renderer of the scene beside it.
+    /// The renderer of the scene beside this one.
     beside: space::Space,
     kept_beside: plane::Kept,
     scales: Option<View>,
@@ -117,7 +117,7 @@ impl Canvas {
         self.space.is_drawing() || self.beside.is_drawing()
     }
 
-    /// Makes all pictures be uploaded again after their device was lost.
+    /// Causes all pictures to be uploaded again after their device was lost.
     #[cfg(target_arch = "wasm32")]
     pub fn forget_textures(&mut self) {
         self.space.forget_texture();

@@ -27,9 +27,9 @@ impl core::fmt::Debug for Outlines {
 /// The outline of a body.
 #[derive(Default)]
 pub(crate) struct Outline {
-    /// The numbers of nodes, edges and springs for which it was computed.
+    /// The numbers of nodes, edges and springs for which the outline was computed.
     counts: [usize; 3],
-    /// Its closed lines.
+    /// The closed lines of the outline.
     pub(crate) closed: Vec<Vec<u32>>,
     /// Edges that belong to no closed line.
     pub(crate) open: Vec<[u32; 2]>,

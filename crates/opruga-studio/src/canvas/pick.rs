@@ -11,13 +11,13 @@ const REACH: f64 = 18.0;
 /// The body under the pointer.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Under {
-    /// Its index in the world.
+    /// The index of the body in the world.
     pub(crate) body: usize,
-    /// Its name.
+    /// The name of the body.
     pub(crate) name: String,
     /// The point of the body that is nearest to the pointer [m].
     pub(crate) point: [f64; 3],
-    /// Its distance along the axis of the camera; 0 in the plane [m].
+    /// The distance of this point along the axis of the camera [m]; 0 in the plane.
     pub(crate) distance: f64,
     /// The size in the scene of a point of the screen at this distance [m].
     pub(crate) pixel: f64,

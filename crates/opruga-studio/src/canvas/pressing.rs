@@ -17,7 +17,7 @@ struct Press {
     /// Whether the space bar is held.
     space: bool,
     shift: bool,
-    /// Whether it is on the scene beside the main one.
+    /// Whether the press is on the scene beside the main one.
     beside: bool,
 }
 

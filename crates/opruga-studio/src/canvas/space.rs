@@ -69,7 +69,7 @@ impl Space {
         (self.last, self.seen) = (None, None);
     }
 
-    /// Makes the picture be uploaded again after its device was lost.
+    /// Causes the picture to be uploaded again after its device was lost.
     #[cfg(target_arch = "wasm32")]
     pub(crate) fn forget_texture(&mut self) {
         (self.texture, self.last) = (None, None);

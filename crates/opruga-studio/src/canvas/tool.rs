@@ -19,7 +19,7 @@ pub enum Tool {
 }
 
 impl Tool {
-    /// All of them, in the order of the toolbar.
+    /// All tools, in the order of the toolbar.
     pub const ALL: [Tool; 5] = [Tool::Pull, Tool::Push, Tool::Pin, Tool::Shift, Tool::Draw];
 
     /// The name of the tool and a text about what it does.

@@ -13,7 +13,7 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 pub struct Gallery {
     /// Whether the gallery is open.
     pub open: bool,
-    /// The models and integrators of their scenes.
+    /// The models and integrators that the scenes can name.
     registries: Registries,
     /// The folder in which pictures are stored between starts.
     #[cfg(not(target_arch = "wasm32"))]

@@ -16,7 +16,7 @@ const MOST_GRAVITY: f64 = 20.0;
 /// The panel with the state of its controls.
 #[derive(Debug)]
 pub struct Properties {
-    /// The specifications that it offers.
+    /// The specifications that the panel offers.
     catalogue: Catalogue,
     hand: Hand,
     /// The new value of a field of a shape, which is set when the pointer is released.

@@ -18,9 +18,9 @@ use toml_edit::{InlineTable, Value as Toml};
 pub struct Placed {
     /// The displacement [m].
     pub moved: [f64; 3],
-    /// The angle of rotation about its centre, counter-clockwise; in space about the y axis [rad].
+    /// The angle by which the body is rotated about its centre [rad]: counter-clockwise, in space about the y axis.
     pub turned: f64,
-    /// The factor by which its lengths are scaled.
+    /// The factor by which the lengths of the body are scaled.
     pub scaled: f64,
 }
 

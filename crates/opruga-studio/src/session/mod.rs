@@ -59,11 +59,11 @@ const SEEK_BUDGET: Duration = Duration::from_millis(40);
 pub enum Request {
     /// Open a scene.
     Open {
-        /// Its name.
+        /// The name of the scene.
         name: String,
         /// The text of the scene.
         text: String,
-        /// The location of the files that it names.
+        /// The location of the files that the scene names.
         files: Files,
     },
     /// Add a shape from a file to the scene, with its centre at a point and with this size [m]. If its dimension differs from that of the scene, open
@@ -75,7 +75,7 @@ pub enum Request {
     Step,
     /// Return to the start and remove what was recorded since.
     Reset,
-    /// Return to the start, keep what was recorded since, and replay it.
+    /// Return to the start and replay what was recorded since then.
     Replay,
     /// Go to a frame.
     Seek(u64),

@@ -64,9 +64,9 @@ pub(super) struct Pinned {
     body: usize,
     node: u32,
     command: [usize; 2],
-    /// The frame at which it was pinned.
+    /// The frame at which the point was pinned.
     at: u64,
-    /// The frame at which it was released.
+    /// The frame at which the point was unpinned.
     until: Option<u64>,
 }
 

@@ -51,11 +51,11 @@ struct Fixed {
     edges: Vec<([u32; 2], f64)>,
     pinned: Vec<u32>,
     nodes_drawn: bool,
-    /// The mean length of its edges at rest [m].
+    /// The mean length of the edges of the body at rest [m].
     node_spacing: f64,
-    /// Its larger side at rest [m].
+    /// The larger side of the body at rest [m].
     extent: f64,
-    /// Its outline or sharp edges at its initial position, if these are shown.
+    /// The outline or the sharp edges of the body at its initial position, if these are shown.
     rest: RestPicture,
     label: String,
     /// The depth of a body in the plane [m].

@@ -25,7 +25,7 @@ const SETTLED: f64 = 0.01;
 /// A number that is measured in every run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metric {
-    /// Its name, as requested and as in the table.
+    /// The name of the metric, as requested and as in the table.
     pub name: String,
     quantity: Quantity,
 }
