@@ -11,7 +11,7 @@ use crate::view::View;
 pub struct Eye {
     /// The point at which the camera looks [m].
     pub target: [f64; 3],
-    /// The radius of the ball that fills the smaller side of the picture [m].
+    /// The radius [m] of the ball that fills the smaller side of the picture.
     pub radius: f64,
     /// The angle around the y axis, from z towards x [degrees].
     pub azimuth: f64,
@@ -66,7 +66,7 @@ impl Lens {
         Some((seen.pixel.map(f64::from), 1.0 / f64::from(seen.inverse_distance)))
     }
 
-    /// The point behind a pixel at a distance along the camera axis [m].
+    /// The point behind a pixel, at a distance [m] along the camera axis.
     pub fn point(&self, pixel: [f64; 2], distance: f64) -> [f64; 3] {
         let [right, up, forward] = self.0.axes;
         let share = [0, 1].map(|axis| (pixel[axis] - self.0.middle[axis]) / self.0.focus * distance);

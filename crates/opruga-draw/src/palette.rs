@@ -24,8 +24,8 @@ fn coarse(pixel: &[u8]) -> usize {
 }
 
 impl Palette {
-    /// The palette for some frames: their own colours if there are few, otherwise the most frequent colours, and colours that a neural network learns
-    /// from the remaining ones (Dekker 1994, "Kohonen neural networks for optimal colour quantization").
+    /// The palette for some frames. If they have few colours, the palette contains these colours. Otherwise, it contains the most frequent colours,
+    /// and colours that a neural network learns from the remaining ones (Dekker 1994, "Kohonen neural networks for optimal colour quantization").
     pub(crate) fn of(samples: &[Image]) -> Palette {
         // The count of each coarse colour, and the sums of its channels.
         let mut sums = vec![[0u64; 4]; 1 << (3 * BITS)];

@@ -15,7 +15,7 @@ pub struct View {
     pub low: [f64; 3],
     /// The highest corner of the box that must be visible [m].
     pub high: [f64; 3],
-    /// The extreme points of the content in many directions, including shadows [m]. The camera keeps these points in sight.
+    /// The extreme points [m] of the content in many directions, including shadows. The camera keeps these points in sight.
     pub points: Vec<[f64; 3]>,
     /// The scalars at the ends of the colour map: the smallest and the largest, except for a few outliers. None if there are no scalars.
     pub scalars: Option<[f64; 2]>,
@@ -25,7 +25,7 @@ pub struct View {
     pub y_down: bool,
     /// For each kind of arrow, the magnitude that 95 per cent of its vectors do not exceed, in the unit of its kind.
     pub longest: BTreeMap<ArrowKind, f64>,
-    /// The length at which a vector of the magnitude `longest` is drawn [m].
+    /// The length [m] at which a vector of the magnitude `longest` is drawn.
     pub arrow: f64,
     /// The larger side of most bodies at the start [m]; 0 without bodies.
     pub body: f64,
@@ -51,7 +51,7 @@ impl View {
         (LONG_ARROW * extent).min(ARROW_OF_BODY * body)
     }
 
-    /// The drawn length of an arrow of a kind, per unit of its vector [m].
+    /// The drawn length [m] of an arrow of a kind, per unit of its vector.
     pub fn arrow_scale(&self, kind: ArrowKind) -> f64 {
         match self.longest.get(&kind) {
             Some(&longest) if longest > 0.0 => self.arrow / longest,

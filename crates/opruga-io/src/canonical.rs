@@ -4,8 +4,8 @@ use unicode_normalization::char::{canonical_combining_class, decompose_canonical
 
 /// The canonical decomposition of a text (NFD): `é` becomes two characters (U+0065 U+0301), whether it was one (U+00E9) or two.
 ///
-/// It uses the character tables of the library and not its iterators: the iterators also need the tables for compatibility, which add tens of
-/// kilobytes to a web page.
+/// This function uses the character tables of the library, not its iterators, because the iterators also need the tables for compatibility, which add
+/// tens of kilobytes to a web page.
 ///
 /// Source: Unicode Standard Annex 15.
 pub(crate) fn decomposed(text: &str) -> String {

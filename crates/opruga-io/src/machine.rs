@@ -6,8 +6,8 @@ use std::path::Path;
 /// The fraction of the memory that the bodies of a scene may take. The program, its threads and the scene reader need the rest.
 const PART: f64 = 0.8;
 
-/// The memory that bodies may take [bytes], if the machine reports how much it has. It is limited by the physical memory, by the limits of the
-/// process groups that contain this process (cgroups, as in containers), and by the limit of the address space; the least of these counts.
+/// The memory that bodies may take [bytes], if the machine reports how much it has. The limits are the physical memory, the limits of the process
+/// groups that contain this process (cgroups, as in containers), and the limit of the address space; the smallest of these counts.
 pub(crate) fn memory_bytes() -> Option<u64> {
     let physical = read_to_string("/proc/meminfo").ok().and_then(|text| physical(&text));
     let group = read_to_string("/proc/self/cgroup").ok().and_then(|text| group(&text, Path::new("/sys/fs/cgroup")));

@@ -131,8 +131,8 @@ impl From<&Warning> for SceneError {
     }
 }
 
-/// Adds the file and the line of its path to an error: the line of the parameter that the error is about, or of the nearest enclosing part if the
-/// path itself is not written. If an override set the parameter, the override is named instead.
+/// Adds to an error the file and the line of the error's path: the line of the parameter that the error is about or, if the path itself is not
+/// written, the line of the nearest enclosing part. If an override set the parameter, the override is named instead.
 #[must_use]
 pub fn in_scene(error: SceneError, text: &str, file: &str, overrides: &[(String, String)]) -> SceneError {
     let source = Source { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) };

@@ -31,7 +31,7 @@ const REFUSED: f64 = 0.1;
 /// Coordinates as stored in a file: their distance from the origin, and the distance between neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Stored {
-    /// Half of the difference between neighbouring numbers at the largest coordinate [m].
+    /// Half of the difference [m] between neighbouring numbers at the largest coordinate.
     rounding: f64,
     /// The largest coordinate [m].
     farthest: f64,

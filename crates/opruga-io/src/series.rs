@@ -11,7 +11,7 @@ use std::io::{self, Write};
 /// A body in one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<'a> {
-    /// The body. It gives the name, the elements, and the positions when the body was added, from which displacements are measured.
+    /// The body. It gives the name, the elements, and the positions at the time when it was added, from which displacements are measured.
     pub body: &'a dyn AnyBody,
     /// Positions, node by node; z is 0 in the plane [m].
     pub positions: &'a [[f64; 3]],

@@ -220,8 +220,7 @@ pub struct SolverSummary {
     pub halved: u64,
     /// Number of steps with `accuracy = "real_time"` that may be less accurate than this setting promises.
     pub cut_off: u64,
-    /// The largest residual of the steps counted in `cut_off`, as the displacement that it would cause if only one node could
-    /// move [m].
+    /// The largest residual of the steps counted in `cut_off`, as the displacement [m] that it would cause if only one node could move.
     pub largest_left: f64,
     /// How often a body at rest in a degenerate shape was displaced at random (`[world] unfold = true`).
     pub disturbed: u64,

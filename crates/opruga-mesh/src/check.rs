@@ -7,7 +7,8 @@ use opruga_math::words::{counted, number};
 /// An edge shorter than this fraction of the body's extent counts as degenerate [−].
 pub const SHORT_EDGE: f64 = 1e-12;
 
-/// An element whose area is below this fraction of its longest edge squared (volume: cubed) counts as degenerate [−].
+/// An element counts as degenerate if its area is below this fraction of its longest edge squared, or its volume below this fraction of its longest
+/// edge cubed [−].
 pub const THIN_ELEMENT: f64 = 1e-10;
 
 /// A body counts as flat if its extent in one direction is below this fraction of its largest extent [−].
@@ -149,7 +150,8 @@ impl<const D: usize> Mesh<D> {
     }
 }
 
-/// Extent of points along their longest direction from the first point, perpendicular to it, and out of the plane of both [m].
+/// The extents of points [m]: along their longest direction from the first point, perpendicular to this direction, and out of the plane of both
+/// directions.
 fn spread(points: &[Point]) -> [f64; 3] {
     let mut extents = [0.0; 3];
     let Some(&origin) = points.first() else {

@@ -100,9 +100,9 @@ struct SortedFacet {
     error: f64,
 }
 
-/// The rounding error of a product of a normal and a difference: two differences, six products and three sums for the normal, then one difference,
-/// three products and two sums. Each operation has a relative error of at most half of 2⁻⁵², and no intermediate result is larger than six products
-/// of largest components.
+/// The rounding error of a product of a normal and a difference. The normal takes two differences, six products and three sums; the rest takes one
+/// difference, three products and two sums. Each operation has a relative error of at most half of 2⁻⁵², and no intermediate result is larger than
+/// six products of largest components.
 const ERROR: f64 = 64.0 * f64::EPSILON;
 
 impl Sorted {

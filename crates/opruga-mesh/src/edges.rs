@@ -72,9 +72,9 @@ fn faces(cell: &[u32; 8]) -> [[u32; 4]; 6] {
 impl<const D: usize> Mesh<D> {
     /// The edges of the set, each once, with the lower node first, in the order of (b − a, a).
     ///
-    /// Edges with the same difference b − a are adjacent in the list, so that long runs (a+k, b+k) appear and a spring loop can stream through memory
-    /// without an index. A ring gives (0,1), (1,2), …, (n−2,n−1) and then (0,n−1); a grid gives all its horizontal edges, then each family of
-    /// diagonals and all its vertical edges. [`edge_runs`] lists the runs.
+    /// Edges with the same difference b − a are adjacent in the list, so that long runs (a+k, b+k) appear. A loop over springs can then stream
+    /// through memory without an index. A ring gives (0,1), (1,2), …, (n−2,n−1) and then (0,n−1); a grid gives all its horizontal edges, then each
+    /// family of diagonals and all its vertical edges. [`edge_runs`] lists the runs.
     pub fn edges(&self, set: EdgeSet) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
         for facet in &self.facets {
@@ -141,8 +141,9 @@ impl<const D: usize> Mesh<D> {
     /// membrane stiffness k = E₂D ΣA / l² (E₂D [N/m], l [m]) is √3/2·E₂D inside. On the border, where only one triangle adjoins the edge, k is half
     /// as large.
     ///
-    /// A quadrilateral (cell or sheet) is cut along the diagonal that the edge list contains. With both diagonals, or with none, it counts as the
-    /// mean of its two triangulations: a rectangle of area A then adds A/2 to each side and A/2 to each diagonal. Edges without adjacent area get 0.
+    /// A quadrilateral (cell or sheet) is cut along the diagonal that the edge list contains. With both diagonals, or with none, a quadrilateral
+    /// counts as the mean of its two triangulations: a rectangle of area A then adds A/2 to each side and A/2 to each diagonal. Edges without
+    /// adjacent area get 0.
     ///
     /// # Errors
     /// The errors of [`Mesh::validate`].

@@ -28,7 +28,7 @@ pub(crate) fn norm(a: Point) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Area vector of a triangle: half the cross product of two sides [m²].
+/// Area vector of a triangle [m²]: half the cross product of two sides.
 #[inline]
 pub(crate) fn area_vector(a: Point, b: Point, c: Point) -> Point {
     let doubled = cross(subtract(b, a), subtract(c, a));

@@ -108,7 +108,7 @@ pub fn least_jacobian<const D: usize>(nodes: &[[f64; D]]) -> Option<LeastJacobia
     Some(least)
 }
 
-/// The determinant det ∂x/∂ξ of a cell at a point, in the coordinates of [`LeastJacobian::at`] [m², m³].
+/// The determinant det ∂x/∂ξ of a cell [m², m³] at a point, which is given in the coordinates of [`LeastJacobian::at`].
 pub fn jacobian_at<const D: usize>(nodes: &[[f64; D]], at: [f64; 4]) -> Option<f64> {
     Some(Net::of(nodes)?.value(at))
 }

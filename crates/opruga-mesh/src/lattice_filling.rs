@@ -21,10 +21,10 @@ impl Mesh<3> {
 
     /// The inside of this closed surface as a body of equal tetrahedra, which carries the surface as its [`Skin`].
     ///
-    /// The nodes are the body-centred cubic lattice of cubes of side `spacing` [m]: corners and centres. Its tetrahedra are congruent; each has two
-    /// edges of length a (one between centres, and one along cubes) and four of √3/2·a. A tetrahedron is kept if its centre is inside the surface or
-    /// if it contains a node of the surface. Tetrahedra around edges at which the body would otherwise only touch itself are kept too. The body
-    /// therefore extends slightly beyond the surface; the skin shows the surface itself.
+    /// The nodes are the body-centred cubic lattice of cubes of side `spacing` [m]: corners and centres. The tetrahedra of the lattice are congruent;
+    /// each has two edges of length a (one between centres, and one along cubes) and four edges of length √3/2·a. A tetrahedron is kept if its centre
+    /// is inside the surface or if it contains a node of the surface. Tetrahedra around edges at which the body would otherwise only touch itself are
+    /// kept too. The body therefore extends slightly beyond the surface; the skin shows the surface itself.
     ///
     /// # Errors
     /// The errors of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive; [`MeshError::TooManyNodes`], also for a surface

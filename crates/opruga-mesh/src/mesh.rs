@@ -217,8 +217,8 @@ impl<const D: usize> Mesh<D> {
         Ok(())
     }
 
-    /// The number of vertices − edges + facets of the boundary, which is 2 for each sphere and 0 for each torus; for outlines, the number of vertices
-    /// − edges, which is 0 for each closed loop.
+    /// The Euler characteristic of the boundary: the number of vertices − edges + facets, which is 2 for each sphere and 0 for each torus. For
+    /// outlines, it is the number of vertices − edges, which is 0 for each closed loop.
     ///
     /// Only nodes of facets are counted.
     pub fn euler_characteristic(&self) -> i64 {

@@ -15,7 +15,7 @@ pub(crate) fn outline(positions: Vec<[f64; 2]>) -> Mesh<2> {
 /// The largest start angle [rad]: beyond it, rounding changes the angles between neighbouring vertices, and from 1e17 on they are zero.
 pub const LARGEST_ANGLE: f64 = 1e6;
 
-/// Refuses an angle so large that rounding would move nodes [rad].
+/// Refuses an angle [rad] so large that rounding would move nodes.
 fn angle(what: Quantity, value: f64) -> Result<(), MeshError> {
     if (-LARGEST_ANGLE..=LARGEST_ANGLE).contains(&value) {
         Ok(())
@@ -34,8 +34,8 @@ fn circle(radius: f64, vertices: u32, center: [f64; 2], start_angle: f64) -> Vec
 }
 
 impl Mesh<2> {
-    /// A round outline of radius r [m]: n vertices on a circle about `center` [m], counter-clockwise from `start_angle` [rad], facet i from node i to
-    /// node i + 1.
+    /// A round outline of radius r [m]: n vertices on a circle about `center` [m], counter-clockwise from `start_angle` [rad]. Facet i runs from node
+    /// i to node i + 1.
     ///
     /// Its area is ½ n r² sin(2π/n), its length 2 n r sin(π/n).
     ///

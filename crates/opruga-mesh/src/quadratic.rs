@@ -20,7 +20,7 @@ pub(crate) const TRIANGLE_PARTS: [[usize; 3]; 4] = [[0, 3, 5], [3, 1, 4], [5, 4,
 pub(crate) const TETRAHEDRON_FACES: [[usize; 6]; 4] =
     [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]];
 
-/// The nodes' shares in the mass of a quadratic triangle: the diagonal of its consistent mass matrix, scaled to the total.
+/// The shares of the nodes in the mass of a quadratic triangle: the diagonal of its consistent mass matrix, scaled to the total.
 ///
 /// # Source
 /// E. Hinton, T. Rock, O. C. Zienkiewicz, "A note on mass lumping and related processes in the finite element method", Earthquake Engineering and
@@ -58,8 +58,8 @@ pub(crate) fn triangle_area(nodes: &[Point; 6]) -> f64 {
     part(0, 1, 2) + 4.0 / 3.0 * (part(0, 3, 1) + part(1, 4, 2) + part(2, 5, 0))
 }
 
-/// Signed volume of a quadratic tetrahedron with curved sides [m³]: ∫ det ∂x/∂λ, a polynomial of degree 3, by a five-point rule that is exact for
-/// this degree.
+/// Signed volume of a quadratic tetrahedron with curved sides [m³]: ∫ det ∂x/∂λ, whose integrand is a polynomial of degree 3, computed by a
+/// five-point rule that is exact for this degree.
 pub(crate) fn tetrahedron_volume_of(nodes: &[Point; 10]) -> f64 {
     let mut sum = -0.8 * tetrahedron_jacobian(nodes, [0.25; 4]);
     for corner in 0..4 {

@@ -69,8 +69,8 @@ impl<const D: usize> Mesh<D> {
         lift(&self.positions[node as usize])
     }
 
-    /// Smallest and largest Jacobian at the nodes of a cell, as areas or volumes; the smallest is also searched between the nodes, if it is negative
-    /// only there.
+    /// The smallest and the largest Jacobian at the nodes of a cell, as areas or volumes. If the Jacobian is negative only between the nodes, the
+    /// smallest one is sought there.
     pub(crate) fn extreme_measures(&self, element: Element, nodes: &[u32], whole: f64) -> (f64, f64) {
         let at = |k: usize| self.point(nodes[k]);
         let side = |a: usize, b: usize| subtract(at(b), at(a));
@@ -174,7 +174,7 @@ impl<const D: usize> Mesh<D> {
         self.cells.iter().map(|(element, _, nodes)| self.angles_of(element, nodes).0).collect()
     }
 
-    /// The smallest and the largest angle of a cell, between faces of tetrahedra or sides of other cells [rad].
+    /// The smallest and the largest angle [rad] of a cell, between faces of tetrahedra or sides of other cells.
     fn angles_of(&self, element: Element, nodes: &[u32]) -> (f64, f64) {
         let at = |k: usize| self.point(nodes[k]);
         let corner = |o: usize, a: usize, b: usize| between(subtract(at(a), at(o)), subtract(at(b), at(o)));

@@ -125,8 +125,8 @@ impl Work {
         work
     }
 
-    /// Applies operations that add no nodes, except those that make the surface cross itself: the operations are repeated with the nodes of crossing
-    /// triangles locked, then with those around them, until nothing crosses.
+    /// Applies operations that add no nodes, except those that make the surface cross itself. For this purpose, the operations are repeated with the
+    /// nodes of crossing triangles locked, then with the nodes around them locked too, until nothing crosses.
     fn guard(&mut self, guarded: bool, moves: impl Fn(&mut Work)) {
         let before = guarded.then(|| self.clone());
         moves(self);

@@ -136,8 +136,8 @@ impl<const D: usize> Mesh<D> {
     /// The sides of cells that are on the boundary and whose nodes are all selected, each with its nodes as seen from outside.
     ///
     /// In the plane these are two ends, and the node between them if the cell is quadratic. In space they are the three corners of a triangle, the
-    /// four of a quadrilateral, or three corners and the nodes between corners 0–1, 1–2, 2–0. Facets without cells are sides themselves. Node numbers
-    /// beyond the last node are ignored.
+    /// four corners of a quadrilateral, or three corners and the nodes between corners 0–1, 1–2, 2–0. Facets without cells are sides themselves. Node
+    /// numbers beyond the last node are ignored.
     pub fn boundary_sides(&self, selected: &[u32]) -> Vec<Vec<u32>> {
         let chosen: BTreeSet<u32> = selected.iter().copied().collect();
         // The selected facets that are not part of a side yet: a map from their ascending nodes to their numbers.
@@ -183,7 +183,7 @@ impl<const D: usize> Mesh<D> {
         sides.into_iter().map(|(_, nodes)| nodes).collect()
     }
 
-    /// The shares ∫ Nₐ dA of nodes in the sides whose nodes are all selected, at rest: lengths [m] in the plane, areas [m²] in space; Nₐ are the
+    /// The shares ∫ Nₐ dA of nodes at rest, over the sides whose nodes are all selected: lengths [m] in the plane, areas [m²] in space. Nₐ are the
     /// shape functions of the cells.
     ///
     /// A uniform traction multiplied by the shares does the same work as the traction on the sides, for every displacement of the cells, if sides are

@@ -7,8 +7,8 @@ use crate::geometry::{lift, norm, subtract, triangle_area};
 use crate::{Mesh, MeshError, Must, Quantity, signed_volume};
 use std::collections::BTreeMap;
 
-/// Joins points that are at most `distance` [m] apart (0: at the same position) and lets triangles refer to the first point of each cluster; returns
-/// the number of points that were joined to another. The remaining points keep their order.
+/// Joins points that are at most `distance` [m] apart (0: at the same position), and makes triangles refer to the first point of each cluster.
+/// Returns the number of points that were joined to another point. The remaining points keep their order.
 ///
 /// A point joins the first earlier one that is near enough, so clusters do not grow along chains.
 ///

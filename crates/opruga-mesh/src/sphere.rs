@@ -80,8 +80,8 @@ impl Rows {
 }
 
 impl Mesh<3> {
-    /// A sphere of radius r [m] about the origin: an icosahedron with corners on the z axis, each face divided into four `subdivisions` times, with
-    /// each new node projected onto the sphere.
+    /// A sphere of radius r [m] about the origin. It is an icosahedron with corners on the z axis, whose faces are divided into four `subdivisions`
+    /// times; each new node is projected onto the sphere.
     ///
     /// It has 10·4ˢ + 2 nodes (12, 42, 162, 642, 2562, 10242, 40962, 163842) and 20·4ˢ facets. Twelve nodes have 5 neighbours, all others 6.
     ///

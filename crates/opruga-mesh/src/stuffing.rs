@@ -12,8 +12,8 @@ pub const SMALLEST_DIHEDRAL_ANGLE: f64 = 10.7;
 /// The largest angle between two faces of the tetrahedra of [`Mesh::tetrahedra_filling`] [°].
 pub const LARGEST_DIHEDRAL_ANGLE: f64 = 164.8;
 
-/// A lattice point moves to the point at which the surface cuts one of its edges, if that point is closer than this fraction of a long edge, or of a
-/// short edge.
+/// A lattice point moves to the point at which the surface cuts one of its edges if that point is close enough: closer than the first fraction of a
+/// long edge, or than the second fraction of a short edge.
 ///
 /// Of the pairs on a grid with steps of 0.003 and 0.005, this one gives the largest minimum angle, 10.76°, with a maximum angle of 164.38°. The test
 /// below measures both over all stencils, with cuts at and around these limits.
@@ -39,9 +39,9 @@ impl Mesh<3> {
     ///
     /// The nodes are a body-centred cubic lattice of cubes of side `spacing` [m]. If the surface cuts an edge of the lattice close to an end, this
     /// end moves to the cut; otherwise the cut becomes a node. All angles between faces are between [`SMALLEST_DIHEDRAL_ANGLE`] and
-    /// [`LARGEST_DIHEDRAL_ANGLE`] for any surface. All boundary nodes are on the surface, but its sharp edges and corners are cut off within a
-    /// spacing, and parts thinner than a spacing may be lost: compare the volumes. If parts of the body would touch only along an edge, the
-    /// tetrahedra of the smaller part at that edge are removed.
+    /// [`LARGEST_DIHEDRAL_ANGLE`] for any surface. All boundary nodes are on the surface. Sharp edges and corners of the surface, however, are cut
+    /// off within a spacing, and parts thinner than a spacing may be lost: compare the volumes. If parts of the body would touch only along an edge,
+    /// the tetrahedra of the smaller part at that edge are removed.
     ///
     /// # Errors
     /// The errors of [`Mesh::components`]; [`MeshError::Size`] for a spacing that is not positive, or so large that nothing remains;
@@ -365,9 +365,9 @@ impl<'a> Stuffing<'a> {
     /// Whether the diagonal of the quadrilateral p, q, cut of qm, cut of pm on a face of the lattice starts at p; otherwise it starts at q. Both
     /// tetrahedra at the face make the same choice.
     ///
-    /// If pm or qm is a long edge, the diagonal ends at the cut on this edge. If both are short, it starts at the point, p or q, for which an even
-    /// number of coordinates are greater than those of m. The diagonals of the two faces at p and q of a tetrahedron then start at different points
-    /// (the parity rule of Labelle and Shewchuk).
+    /// If pm or qm is a long edge, the diagonal ends at the cut on this edge. If both edges are short, the diagonal starts at the point, p or q, for
+    /// which an even number of coordinates are greater than those of m. The diagonals of the two faces at p and q of a tetrahedron then start at
+    /// different points (the parity rule of Labelle and Shewchuk).
     fn diagonal(&self, p: Key, q: Key, m: Key) -> bool {
         let long = |a: Key, b: Key| (a[0] - b[0]).rem_euclid(2) == 0;
         if long(p, m) {
@@ -380,8 +380,8 @@ impl<'a> Stuffing<'a> {
     }
 }
 
-/// A prism with ends a and b as three tetrahedra; `forward[k]` is true if its side k is cut from a\[k\] to b\[k + 1\], and false if from a\[k + 1\]
-/// to b\[k\].
+/// A prism with ends a and b, cut into three tetrahedra. Its side k is cut from a\[k\] to b\[k + 1\] if `forward[k]` is true, and from a\[k + 1\] to
+/// b\[k\] if it is false.
 ///
 /// The diagonals of the three sides must not form a cycle.
 fn prism(ends: [[Corner; 3]; 2], forward: [bool; 3], out: &mut Vec<[Corner; 4]>) {

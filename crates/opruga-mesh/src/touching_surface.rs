@@ -31,7 +31,8 @@ pub struct TouchingSurface<const D: usize> {
     pub carrying: usize,
     /// Points whose positions follow from those of nodes. The nodes are given by their numbers as points.
     pub carried: Vec<Carrier>,
-    /// The corners of every facet, as points: first of closed boundaries, then of open surfaces and, in the plane, of wires.
+    /// The corners of every facet, as points. The facets of closed boundaries come first, then those of open surfaces and, in the plane, those of
+    /// wires.
     pub facets: Vec<[u32; D]>,
     /// The number of facets that belong to closed boundaries.
     pub closed: usize,

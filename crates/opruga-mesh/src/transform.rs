@@ -57,7 +57,7 @@ impl<const D: usize> Mesh<D> {
         self.transform(&rows, about)
     }
 
-    /// Mirrors the body in a line (in 2D) or a plane (in 3D), given by a point [m] and a normal of any length; always reverses orientations and
+    /// Mirrors the body in a line (in 2D) or a plane (in 3D), given by a point [m] and a normal of any length. Always reverses orientations and
     /// returns true.
     ///
     /// # Errors

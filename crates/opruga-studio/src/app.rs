@@ -27,10 +27,10 @@ use std::time::Duration;
 /// The scene that is opened first.
 pub const FIRST_SCENE: &str = "ball";
 
-/// In a window that is no wider than this, such as on a phone held upright, the properties are in a drawer [points].
+/// In a window that is no wider than this [points], such as on a phone held upright, the properties are in a drawer.
 const NARROW: f32 = 700.0;
 
-/// Two pictures of the window with at least this time between them do not count as consecutive, unless time passes in the simulation [s].
+/// Two pictures of the window do not count as consecutive if at least this time [s] is between them, unless time passes in the simulation.
 const IDLE: f64 = 0.25;
 /// If a frame takes longer than this to compute, the window marks the picture as outdated.
 const STALE: Duration = Duration::from_millis(700);

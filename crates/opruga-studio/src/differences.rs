@@ -138,7 +138,7 @@ fn rest_positions(blueprint: &AnyBlueprint) -> Vec<(String, Vec<[f64; 3]>)> {
     blueprint.scene().bodies().map(|body| (body.name().into(), body.rest_positions())).collect()
 }
 
-/// Returns, for every point of `of`, the index of the nearest point of `among`; if several are equally near, that of the first.
+/// Returns, for every point of `of`, the index of the nearest point of `among`; if several are equally near, the index of the first of them.
 fn nearest(of: &[[f64; 3]], among: &[[f64; 3]]) -> Vec<u32> {
     // Points are sorted by x, so the search ends when the difference in x alone exceeds the best distance.
     let mut order: Vec<u32> = (0..among.len() as u32).collect();

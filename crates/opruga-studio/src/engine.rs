@@ -153,7 +153,7 @@ struct Living {
     known: usize,
     /// The warnings about the scene and its files.
     scene_warnings: Vec<Warning>,
-    /// The longest side of the box around all bodies at the start [m].
+    /// The longest side [m] of the box around all bodies at the start.
     size: f64,
 }
 

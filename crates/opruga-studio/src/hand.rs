@@ -1,4 +1,5 @@
-//! Exchanges scenes with the outside other than by saving: files that were dropped or chosen and, on a web page, the address that contains the scene.
+//! Exchanges scenes with the outside in other ways than by saving: files that were dropped or chosen and, on a web page, the address that contains
+//! the scene.
 
 use crate::report::Report;
 use crate::runner::Link;

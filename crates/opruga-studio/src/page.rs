@@ -22,7 +22,7 @@ use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 use wasm_bindgen::prelude::*;
 
-/// How long a frame may take before the user is asked whether to wait for it [s]. The limit is below five seconds, after which browsers offer to
+/// The time [s] that a frame may take before the user is asked whether to wait for it. The limit is below five seconds, after which browsers offer to
 /// close a page that does not respond.
 const PATIENCE: f64 = 2.0;
 

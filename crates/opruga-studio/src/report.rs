@@ -90,7 +90,7 @@ pub enum Report {
     AtTheEnd(f64, Vec<Warning>),
     /// The recording that is viewed ends at this time \[s\].
     RecordingEnds(f64),
-    /// The user's action starts a run that differs from the recording from this time on \[s\].
+    /// The user's action starts a run that differs from the recording from this time \[s\] on.
     OwnCourse(f64),
     /// A frame takes longer than this many seconds, and the page cannot respond in the meantime.
     TakesLong(f64),

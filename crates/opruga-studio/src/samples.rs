@@ -22,7 +22,7 @@ pub struct Sample {
     pub momentum: [f64; 3],
     /// The recent computing time of a frame [ms].
     pub cost: f64,
-    /// The mean and the largest distance between corresponding nodes of the two sides, the distance between their centres of mass, and the
+    /// Differences of the two sides: the mean and the largest distance between corresponding nodes, the distance between the centres of mass, and the
     /// differences in volume and in energy, right minus left; NaN if the sides cannot be compared.
     pub beside: Option<[f64; 5]>,
     /// The readings of the models of bodies, by the index of the body; empty if there are many bodies.

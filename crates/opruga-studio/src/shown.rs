@@ -111,8 +111,8 @@ pub struct Beside {
     pub distances: Option<[f64; 2]>,
     /// The distance between the centres of mass of both \[m\].
     pub center: Option<f64>,
-    /// The volume within the surfaces of the right side minus that of the left side \[m³\]; in the plane, the difference of the areas within the
-    /// outlines \[m²\].
+    /// The volume within the surfaces of the right side minus that within the surfaces of the left side \[m³\]; in the plane, the same for the areas
+    /// within the outlines \[m²\].
     pub volume: Option<f64>,
     /// The energy of the right side minus that of the left side [J].
     pub energy: Option<f64>,
@@ -247,11 +247,11 @@ pub struct Shown {
     pub obstacles: Vec<ObstacleShown>,
     /// The parameters of contact between bodies; none if they pass through one another.
     pub contact: Option<Values>,
-    /// For each pull: the position of the node, the position of the pointer, and the force [m, m, N].
+    /// For each pull: the position of the node [m], the position of the pointer [m], and the force [N].
     pub pulls: Vec<[[f64; 3]; 3]>,
-    /// The pushes of the pointer: for each the position of the node, the end of the arrow, and the force [m, m, N].
+    /// For each push of the pointer: the position of the node [m], the end of the arrow [m], and the force [N].
     pub pushes: Vec<[[f64; 3]; 3]>,
-    /// The points that the user has pinned: for each the body, the node and the position [m].
+    /// For each point that the user has pinned: the body, the node and the position [m].
     pub pins: Vec<(usize, u32, [f64; 3])>,
     /// The energy ledger.
     pub energy: EnergyShown,

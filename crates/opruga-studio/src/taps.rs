@@ -3,7 +3,7 @@
 
 use egui::{Context, Event, Plugin, PointerButton, RawInput};
 
-/// The longest duration that is assumed for a press that began and ended within one picture \[s\]. The press therefore counts as a click, however
+/// The longest duration \[s\] that is assumed for a press that began and ended within one picture. The press therefore counts as a click, however
 /// long the picture took.
 const TAP: f64 = 0.125;
 

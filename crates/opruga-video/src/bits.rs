@@ -73,7 +73,7 @@ pub(crate) enum Unit {
     Picture = 0x68,
 }
 
-/// Packs a unit: its header, and the bytes with a 3 inserted wherever they could be mistaken for the start of a unit.
+/// Packs a unit: its header, and its bytes, with a 3 inserted wherever bytes could be mistaken for the start of a unit.
 pub(crate) fn pack(unit: Unit, bytes: &[u8]) -> Vec<u8> {
     let mut out = Vec::with_capacity(bytes.len() + bytes.len() / 64 + 1);
     out.push(unit as u8);

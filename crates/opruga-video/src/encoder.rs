@@ -321,8 +321,8 @@ impl Encoder {
         Alone { luma, colour, expected: [brightness, blue, red], cost: cost + 12 * self.bit_cost }
     }
 
-    /// Encodes a macroblock predicted from its neighbours; `offset` is the number of macroblock types that come before these in the numbering for
-    /// this kind of picture.
+    /// Encodes a macroblock predicted from its neighbours; `offset` is the number of macroblock types that precede those of such macroblocks in the
+    /// numbering for this kind of picture.
     fn write_alone(&mut self, bits: &mut Bits, macroblock: [usize; 2], alone: &Alone, offset: u32) {
         let residual =
             Residual::new(&self.source, &mut self.drawn, macroblock, &alone.expected, true, &self.quantisers);

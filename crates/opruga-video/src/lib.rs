@@ -1,7 +1,7 @@
 //! Films as MP4 with H.264, constrained baseline profile, in pure Rust.
 //!
-//! The encoder is made for drawn pictures. An unchanged macroblock takes hardly any time and bits, a moved one is searched for in the previous frame,
-//! and there is no deblocking, so that lines and letters stay sharp. The same frames give the same bytes everywhere. ITU-T recommendation H.264 is
+//! The encoder is made for drawn pictures. An unchanged macroblock takes hardly any time and bits, and a moved one is searched for in the previous
+//! frame. There is no deblocking, so that lines and letters stay sharp. The same frames give the same bytes everywhere. ITU-T recommendation H.264 is
 //! the source of all tables and formulas.
 
 // Only tests use floating-point functions: they compare pictures, not physics.

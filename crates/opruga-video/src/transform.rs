@@ -9,7 +9,7 @@ pub(crate) const ZIGZAG: [usize; 16] = [0, 1, 4, 8, 5, 2, 3, 6, 9, 12, 13, 10, 7
 /// The largest level. Larger levels have no code in this profile.
 const LARGEST: i32 = 2063;
 
-/// The multipliers of the quantiser for numbers whose row and column are both even, both odd, and one even and one odd.
+/// The multipliers of the quantiser: for numbers whose row and column are both even, for those whose row and column are both odd, and for all others.
 const SCALES: [[i32; 3]; 6] = [
     [13107, 5243, 8066],
     [11916, 4660, 7490],

@@ -47,21 +47,21 @@ use std::path::{Path, PathBuf};
 const BYTE: f64 = 2.1;
 /// The time to keep a state, however small it is [ns].
 const STATE: f64 = 3_000.0;
-/// The time that every frame takes, however small the scene is [ns].
+/// The time [ns] that every frame takes, however small the scene is.
 const FRAME: f64 = 4_000.0;
-/// Lower bounds on the time that a node, a cell, and a facet in space each add to a step of an explicit integrator [ns].
+/// Lower bounds [ns] on the time that a node, a cell, and a facet in space each add to a step of an explicit integrator.
 const WORK: [f64; 3] = [1.0, 3.0, 4.0];
 /// A lower bound on the duration of a step of an implicit integrator, divided by that of an explicit one.
 const IMPLICIT: f64 = 500.0;
 /// The fraction of the time of a run that may be spent on keeping states. The hashes of all frames may take the same fraction again.
 const SHARE: f64 = 0.05;
-/// The computing time whose results may be lost if the process is killed [ns]. Small frames are written in groups, because writing each of them
+/// The computing time [ns] whose results may be lost if the process is killed. Small frames are written in groups, because writing each of them
 /// separately would take as long as computing it.
 const TOGETHER: f64 = 100_000.0;
 /// The largest number that the header of a recording can store for the frames from one kept state to the next.
 const FARTHEST: f64 = u32::MAX as f64;
 
-/// A lower bound on the time that a frame of a world takes on a common machine [ns]. It depends only on the scene, so that the same run gives the
+/// A lower bound [ns] on the time that a frame of a world takes on a common machine. It depends only on the scene, so that the same run gives the
 /// same recording everywhere.
 fn work(world: &dyn AnyWorld) -> f64 {
     let scene = world.scene();
@@ -76,9 +76,9 @@ fn work(world: &dyn AnyWorld) -> f64 {
     FRAME + f64::from(scene.time().substeps) * scene.bodies().map(step).sum::<f64>()
 }
 
-/// The default number of frames from one kept state to the next, chosen so that keeping states and the hashes of all frames slow the run down by less
-/// than a tenth. To show a frame that is not kept, at most this number of frames must be computed. In every scene, computing that many frames takes
-/// about twenty times as long as keeping a state: 0.05 s for a state of 100,000 numbers.
+/// The default number of frames from one kept state to the next. With this number, keeping states and the hashes of all frames slows the run down by
+/// less than a tenth. To show a frame that is not kept, at most this number of frames must be computed. In every scene, computing that many frames
+/// takes about twenty times as long as keeping a state: 0.05 s for a state of 100,000 numbers.
 pub fn states_apart(world: &dyn AnyWorld) -> u64 {
     let scene = world.scene();
     let nodes: usize = scene.bodies().map(|body| body.nodes()).sum();
@@ -88,7 +88,7 @@ pub fn states_apart(world: &dyn AnyWorld) -> u64 {
     if apart < FARTHEST { apart as u64 } else { FARTHEST as u64 }
 }
 
-/// The number of frames that are written together, and that may be lost if the process is killed: as many as are computed in a tenth of a
+/// The number of frames that are written together, and that may be lost if the process is killed. It is the number that is computed in a tenth of a
 /// millisecond, but at least one.
 pub fn frames_together(world: &dyn AnyWorld) -> u64 {
     let together = TOGETHER / work(world);
@@ -259,8 +259,8 @@ impl<R: Read + Seek> Playback<R> {
         self.recording.hash(frame)
     }
 
-    /// Brings a world to a frame. If the state of the frame is kept, no step is needed; otherwise, steps lead there from the nearest kept state
-    /// before it.
+    /// Brings a world to a frame. If the state of the frame is kept, no step is needed; otherwise, the world is stepped from the nearest kept state
+    /// before the frame.
     ///
     /// # Errors
     /// [`TapeError`] if the frame cannot be read or computed. The world does not change, unless a step was refused.

@@ -9,7 +9,7 @@ use crate::picture::{BodyPicture, Facets, Picture};
 use crate::view::View;
 use tiny_skia::{FilterQuality, Paint, Path, PathBuilder, Pattern, Pixmap, SpreadMode, Transform};
 
-/// An edge of a coloured outline that is shorter than this is joined to the next edge [pixels].
+/// An edge of a coloured outline that is shorter than this length [pixels] is joined to the next edge.
 const SHORT: f32 = 1.2;
 /// The smallest spacing of nodes at which they are drawn as dots, in units of the size of lines.
 const DOT_SPACING: f32 = 15.0;

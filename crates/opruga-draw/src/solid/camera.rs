@@ -58,7 +58,7 @@ fn must_see(view: &View) -> Vec<[f64; 3]> {
     (0..8).map(|corner| std::array::from_fn(|axis| end(corner, axis))).collect()
 }
 
-/// The width and the height of the part that the camera of a view must see, without perspective [m].
+/// The width and the height [m] of the part that the camera of a view must see, without perspective.
 pub(crate) fn seen_size(view: &View) -> [f64; 2] {
     let (axes, points) = (axes(view), must_see(view));
     [0, 1].map(|axis| {
@@ -78,7 +78,7 @@ pub(crate) struct Camera {
     pub(crate) position: [f64; 3],
     /// The directions to the right, upwards and forwards.
     pub(crate) axes: [[f64; 3]; 3],
-    /// The distance from the camera axis at which a direction at 45° to this axis is seen [pixels].
+    /// The distance [pixels] from the camera axis at which a direction at 45° to this axis is seen.
     pub(crate) focus: f64,
     /// The pixel on the camera axis.
     pub(crate) middle: [f64; 2],

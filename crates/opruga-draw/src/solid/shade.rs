@@ -4,13 +4,13 @@ use super::camera::{Camera, Seen, between, cross, dot, unit};
 use super::raster::Screen;
 use crate::colour::ColourMap;
 
-/// If the larger side of a triangle is shorter than this, the light is computed only at its corners [samples].
+/// If the larger side of a triangle is shorter than this [samples], the light is computed only at its corners.
 const SMALL: f32 = 40.0;
 
 /// An edge is sharp if the cosine of the angle between the normals of its faces is at most this.
 const SHARP: f64 = 0.77;
-/// No edge of a face is sharp at a corner if the cosine of the angle between the normal of the face and the mean of the normals at that corner is
-/// above this.
+/// If the cosine of the angle between the normal of a face and the mean of the normals at a corner is above this, no edge of the face is sharp at
+/// that corner.
 const BLUNT: f64 = 0.94;
 
 /// The light of a scene, in the directions of the camera.

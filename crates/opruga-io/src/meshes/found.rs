@@ -240,7 +240,7 @@ impl Numbers {
         Ok(Numbers(pairs))
     }
 
-    /// Returns the node with a number that an element or a value names; `offset` is the byte at which the number is, for the error.
+    /// Returns the node whose number an element or a value gives; `offset` is the byte of this number, for the error.
     ///
     /// # Errors
     /// `mesh.index`.

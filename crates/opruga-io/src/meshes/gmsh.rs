@@ -1,8 +1,8 @@
 //! Gmsh, versions 2.2 and 4.1, as text or as bytes of either order: sections, names of groups, values of elements and nodes.
 //!
-//! Physical groups become groups. Those of points, curves and surfaces become groups of nodes; those of the elements that fill the body become groups
-//! of nodes and of cells. A group without a name is named after its dimension and number, for example `curve 3`. `$ElementData` with one component
-//! becomes a value of cells; `$NodeData` with up to three components becomes a value of nodes.
+//! Physical groups become groups. Groups of points, curves and surfaces become groups of nodes; groups of the elements that fill the body become
+//! groups of nodes and of cells. A group without a name is named after its dimension and number, for example `curve 3`. `$ElementData` with one
+//! component becomes a value of cells; `$NodeData` with up to three components becomes a value of nodes.
 //!
 //! # Source
 //! C. Geuzaine, J.-F. Remacle, Gmsh reference manual, "MSH file format" and "Legacy formats".

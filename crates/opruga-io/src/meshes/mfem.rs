@@ -1,7 +1,7 @@
 //! MFEM meshes, version 1: straight elements with attributes.
 //!
-//! The attributes of elements become groups of nodes and cells, for example `attribute 1`; those of the boundary become groups of nodes, for example
-//! `boundary 3`.
+//! The attributes of elements become groups of nodes and cells, for example `attribute 1`; the attributes of the boundary become groups of nodes, for
+//! example `boundary 3`.
 //!
 //! # Source
 //! MFEM project, "Mesh formats", <https://mfem.org/mesh-format-v1.0/>.

@@ -128,7 +128,7 @@ impl<'a> Scanner<'a> {
         self.word("", Expected::Nothing).ok()
     }
 
-    /// Consumes the rest of the line with its end; returns it without surrounding blanks, and the byte at which it begins.
+    /// Consumes the rest of the line with its end; returns this rest without surrounding blanks, and the byte at which it begins.
     pub(super) fn line(&mut self) -> (String, usize) {
         self.skip(false);
         let from = self.at;

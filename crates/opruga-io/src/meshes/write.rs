@@ -366,8 +366,8 @@ fn linear<const D: usize>(mesh: &Mesh<D>, format: &'static str) -> Result<(), Sc
     Err(SceneError::of(MeshWriteError::SecondOrder { format, cells: quadratic }))
 }
 
-/// One number per cell: the number of its group, from 1; 0 if the cell is in no group. For a cell in several groups, it is the number of the first
-/// one by name.
+/// For each cell, the number of its group, from 1; 0 if the cell is in no group. If a cell is in several groups, this is the number of the first
+/// group by name.
 fn references<const D: usize>(mesh: &Mesh<D>, left_out: &mut Vec<LeftOut>) -> Vec<usize> {
     let mut out = vec![0; mesh.cells.len()];
     for (k, cells) in mesh.cell_groups.values().enumerate().rev() {

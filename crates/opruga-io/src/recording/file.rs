@@ -96,8 +96,8 @@ impl RecordingFile {
         })
     }
 
-    /// Adds the next frame, whose state is not kept, with its hash. It goes to the system with [`RecordingFile::flush`], or before the next action or
-    /// the next frame whose state is kept.
+    /// Adds the next frame, whose state is not kept, with its hash. The frame goes to the system with [`RecordingFile::flush`], or before the next
+    /// action or the next frame whose state is kept.
     ///
     /// # Errors
     /// [`WriteError`] if the file could not be written, now or earlier, or if a frame is out of order; the earlier frames are intact.

@@ -161,7 +161,7 @@ pub(super) fn header_bytes(head: &[u8], file: u64) -> Result<u64, RecordingError
     Ok(bytes)
 }
 
-/// The header and the checksum that identifies this recording, from the bytes of the header and the checksum after it.
+/// Reads the header, and the checksum that identifies this recording, from the bytes of the header and of the checksum after it.
 pub(super) fn header(bytes: &[u8]) -> Result<(Header, u32), RecordingError> {
     let damaged = || RecordingError::Damaged { from: HEAD as u64, to: (HEAD + bytes.len()) as u64 };
     let (header, sum) = bytes.split_last_chunk::<4>().ok_or_else(damaged)?;

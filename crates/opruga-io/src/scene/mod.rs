@@ -69,8 +69,8 @@ pub struct Options {
 /// The result of reading a scene.
 #[derive(Debug)]
 pub struct Reading {
-    /// The complete scene if there are no errors. Otherwise the scene without commands and probes, and without the bodies, obstacles, loads and pins
-    /// that have errors of their own; this is enough to find further errors in the rest. None if too little remains.
+    /// The complete scene if there are no errors. If there are errors, the scene without commands and probes, and without the bodies, obstacles,
+    /// loads and pins that have errors of their own; this is enough to find further errors in the rest. None if too little remains.
     pub blueprint: Option<AnyBlueprint>,
     /// All errors that can be found at once, in the order of their locations.
     pub errors: Vec<SceneError>,
@@ -111,7 +111,7 @@ pub fn read(
     }
 }
 
-/// Reads as much of a scene as its errors allow, for callers that look for further errors; all others use [`read`].
+/// Reads as much of a scene as its errors allow, for callers that look for further errors; all other callers use [`read`].
 pub fn survey(bytes: &[u8], file: &str, catalogue: &Catalogue, options: &Options) -> Reading {
     let nothing = |errors| {
         let (notices, files, unread) = Default::default();

@@ -109,8 +109,8 @@ fn centred(mut ring: Vec<Point>) -> Vec<Point> {
     ring
 }
 
-/// Closes a ring around a pole, whose longitudes grow by a turn of either sign in one round: cuts it where it first crosses the antimeridian, and
-/// closes it along the pole of the hemisphere that contains its mean latitude.
+/// Closes a ring around a pole, whose longitudes grow by a turn of either sign in one round. The ring is cut where it first crosses the antimeridian,
+/// and closed along the pole of the hemisphere that contains its mean latitude.
 fn closed_along_the_pole(flat: &[Point], winding: f64) -> Vec<Point> {
     let n = flat.len();
     let at = |k: usize| if k < n { flat[k] } else { [flat[k - n][0] + winding, flat[k - n][1]] };

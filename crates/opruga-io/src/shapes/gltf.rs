@@ -1,7 +1,7 @@
 //! glTF 2.0: the triangles of a scene, from a .gltf with its buffers or from one .glb.
 //!
 //! The reader takes meshes of triangles with positions in 32-bit numbers, from the node tree of one scene with its transforms. Materials, normals and
-//! cameras are irrelevant for a body. Everything that would move its vertices (skins, morph targets and animations) is omitted, and so are other
+//! cameras are irrelevant for a body. Everything that would move the vertices (skins, morph targets and animations) is omitted, and so are other
 //! scenes; all omissions are counted. Compressed or sparse data and other primitives are refused. Named nodes and meshes become groups.
 //!
 //! # Source

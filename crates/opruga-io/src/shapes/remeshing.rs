@@ -56,8 +56,8 @@ fn made(mesh: &Mesh<3>, length: f64) -> Result<Result<Mesh<3>, TooCoarse>, oprug
     Ok(if (kept - 1.0).abs() > DRIFT { Err(TooCoarse::Encloses(kept)) } else { Ok(made) })
 }
 
-/// Tries shorter and shorter lengths, each rounded to two digits, and returns the first that works; otherwise, as the error, the shortest one that
-/// was tried. Coarse surfaces are made quickly, so all attempts together take little longer than the last one.
+/// Tries shorter and shorter lengths, each rounded to two digits, and returns the first one that works. If none works, the error is the shortest
+/// length that was tried. Coarse surfaces are made quickly, so all attempts together take little longer than the last one.
 fn coarsest(mesh: &Mesh<3>, length: f64) -> Result<f64, f64> {
     let (mut tried, mut next) = (length, length);
     for _ in 0..TRIED {

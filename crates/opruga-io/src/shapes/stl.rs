@@ -1,8 +1,8 @@
 //! STL: triangles with separate corners, as text or as bytes.
 //!
 //! A file is binary if it has the size that its header announces, or if it cannot be text. The order of the corners determines which side of a
-//! triangle is outside; normals in the file that are not numbers or that contradict it are counted. Vertices at the same position are merged, because
-//! in this format triangles cannot share vertices.
+//! triangle is outside; normals in the file that are not numbers or that contradict this order are counted. Vertices at the same position are merged,
+//! because in this format triangles cannot share vertices.
 //!
 //! # Source
 //! 3D Systems, StereoLithography Interface Specification (1989).

@@ -58,8 +58,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         Err(self.error(node, SvgError::Clipped { percent, value: visible(value) }))
     }
 
-    /// The map from the unit square to the bounding box of the contours from `begun` on, in the coordinates that `map` maps from; none if the box has
-    /// no area.
+    /// The map from the unit square to the bounding box of the contours from index `begun` on, in the coordinates from which `map` maps; none if the
+    /// box has no area.
     fn box_of(&self, begun: usize, map: &Affine) -> Option<Affine> {
         let [a, b, c, d, e, f] = *map;
         let det = a * d - b * c;

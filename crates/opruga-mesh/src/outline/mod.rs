@@ -41,8 +41,8 @@ use crate::{Mesh, MeshError};
 pub struct Ring {
     /// The points of the curve [m]; the first one is not repeated at the end.
     pub points: Vec<[f64; 2]>,
-    /// The part of its source to which it belongs: a path of a drawing, a letter of a text, a polygon of a map. Rings of one part are holes of one
-    /// another; [`Overlap`] determines the effect of parts on each other.
+    /// The part of the source to which the ring belongs: a path of a drawing, a letter of a text, a polygon of a map. Rings of one part are holes of
+    /// one another; [`Overlap`] determines the effect of parts on each other.
     pub part: u32,
 }
 

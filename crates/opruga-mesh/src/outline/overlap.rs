@@ -18,7 +18,7 @@ pub enum Overlap {
 /// Rings that bound the covered area and do not meet anywhere; they belong to part 0.
 ///
 /// Coordinates are rounded to a grid of about 2⁻³⁰ of the drawing's size. Areas that touch only at points are not connected there: each gets its own
-/// corner, which is set back by 2⁻³² of that size.
+/// corner, which is set back by 2⁻³² of the size of the drawing.
 pub fn joined(rings: &[Ring], how: Overlap) -> Vec<Ring> {
     let made = covered(rings, how, false);
     if matches!(nesting::meeting(&made), Ok(None)) {

@@ -1,4 +1,4 @@
-//! A tree of boxes over the edges of closed curves, which finds the edges near a position in a time that hardly grows with their number.
+//! A tree of boxes over the edges of closed curves. It finds the edges near a position in a time that hardly grows with the number of edges.
 
 /// Edges in a node of the lowest level.
 const LEAF: usize = 4;

@@ -56,7 +56,7 @@ impl Thin {
     }
 }
 
-/// The sharpest inner corner of the rings within a spacing of a position [°].
+/// The sharpest inner corner [°] of the rings within a spacing of a position.
 fn sharpest_corner(rings: &[Ring], position: [f64; 2], spacing: f64) -> Option<f64> {
     let mut sharpest: Option<f64> = None;
     for ring in rings {

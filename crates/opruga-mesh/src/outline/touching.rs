@@ -48,8 +48,8 @@ pub(super) fn apart(rings: &[Ring]) -> Vec<Ring> {
     made
 }
 
-/// Positions at which rings touch themselves or one another: for every ring the numbers of its points that are next to a point other than a
-/// neighbour, ascending.
+/// Positions at which rings touch themselves or one another. For every ring, these are the numbers of its points that are next to a point other than
+/// a neighbour, ascending.
 pub(super) fn touching(rings: &[Ring]) -> Vec<Vec<usize>> {
     let mut found = vec![Vec::new(); rings.len()];
     let Some((low, high)) = bounds(rings) else { return found };

@@ -12,7 +12,7 @@ use std::time::Duration;
 /// pointer; they report it only after the file was dropped.
 const PATIENCE: f64 = 0.3;
 
-/// Shapes that wait for the position of the pointer, each with the time since which it waits \[s\].
+/// Shapes that wait for the position of the pointer, each with the time \[s\] since which it waits.
 pub(super) type Waiting = Vec<(Shape, f64)>;
 
 impl Studio {

@@ -10,7 +10,7 @@ use egui::{
 };
 use opruga::draw::format_value;
 
-/// How long a notice stays on the screen [s]. `TO_READ` is the additional time for every letter after the first sixty [s].
+/// How long a notice stays on the screen [s]. `TO_READ` is the additional time [s] for every letter after the first sixty.
 const SHOWN_FOR: f64 = 6.0;
 const TO_READ: f64 = 0.05;
 

@@ -6,7 +6,7 @@ use opruga::draw::View;
 
 /// The margin around a scene [points].
 const BORDER: f32 = 36.0;
-/// The height of the tools above a scene that is assumed before they were drawn [points].
+/// The height [points] that is assumed for the tools above a scene before they were drawn.
 const TOOLS: f32 = 50.0;
 
 /// The point at the centre and the scale.

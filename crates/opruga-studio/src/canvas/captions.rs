@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub(super) struct Captions(Vec<(Rect, Arc<Galley>, Color32)>);
 
 impl Captions {
-    /// The height that is left free below a scene for captions and, above the captions, for the names of the lowest bodies [points]. The first number
+    /// The height [points] that is left free below a scene for captions and, above the captions, for the names of the lowest bodies. The first number
     /// is for scenes next to each other, the second for scenes one above the other.
     pub(super) const FOOT: [f32; 2] = [46.0, 32.0];
 

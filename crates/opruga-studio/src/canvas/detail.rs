@@ -18,8 +18,8 @@ pub(crate) struct Detail {
 /// A straight piece of a line that is extended point by point.
 struct Piece {
     from: (Pos2, Color32),
-    /// The range of directions in which a straight line from the beginning of the piece passes close enough to all of its points, given by the two
-    /// outermost directions. None until a point is far enough from the beginning.
+    /// The range of directions in which a straight line from the beginning of the piece passes close enough to all points of the piece. It is given
+    /// by its two outermost directions. None until a point is far enough from the beginning.
     cone: Option<[Vec2; 2]>,
     /// The largest distance of the points of the piece from its beginning.
     far: f32,
@@ -115,7 +115,7 @@ impl Detail {
 /// The largest number of corners of a large outline that is triangulated in every picture.
 const MOST_CORNERS: usize = 5_000;
 
-/// In a large outline, nodes that are closer to one another on the screen than this are merged [points].
+/// In a large outline, nodes that are closer to one another on the screen than this distance [points] are merged.
 const JOINED: f32 = 0.3;
 
 /// The nodes of a closed line that are separate on the screen: the first and cheapest reduction of a large outline.

@@ -37,15 +37,15 @@ pub use tool::Tool;
 enum Doing {
     #[default]
     Nothing,
-    /// The pointer holds a body. In space, the held point is at this distance behind the point in the centre of the view [m]. A push also gives the
+    /// The pointer holds a body. In space, the held point is at this distance [m] behind the point in the centre of the view. A push also gives the
     /// point at which the pointer was pressed and the grabbed point of the body [m].
     Holding(f64, Option<[[f64; 3]; 2]>),
     /// The view is moved.
     Panning,
     /// The view is rotated.
     Turning,
-    /// The body with this name is moved, beginning at this point of the world. In space, the point is at this distance behind the point in the centre
-    /// of the view [m].
+    /// The body with this name is moved, beginning at this point of the world. In space, the point is at this distance [m] behind the point in the
+    /// centre of the view.
     Shifting(String, [f64; 3], f64),
     /// A body is rotated or scaled by one of its handles.
     Handling(handles::GrabbedHandle),
@@ -352,7 +352,7 @@ impl Canvas {
         self.range = None;
     }
 
-    /// The length on the screen of the longest arrow of each kind at the point in the centre of the view, in space [points]; none in the plane.
+    /// The length on the screen of the longest arrow of each kind [points], in space at the point in the centre of the view; none in the plane.
     fn points_of_arrows(&self, shown: &Shown, rect: Rect) -> Option<f64> {
         let (eye, scales) = (self.space.eye()?, self.scales.as_ref()?);
         let side = f64::from(rect.width().min(rect.height()));
@@ -374,7 +374,7 @@ impl Canvas {
         distance - looked_at.unwrap_or(0.0)
     }
 
-    /// The point of the world under the pointer; in space, at the distance `depth` behind the point in the centre of the view.
+    /// The point of the world under the pointer. In space, it is at the distance `depth` behind the point in the centre of the view.
     fn point(&self, shown: &Shown, rect: Rect, at: Pos2, depth: f64) -> Option<[f64; 3]> {
         if shown.dimension == 3 {
             let scales = self.scales.as_ref()?;

@@ -129,8 +129,8 @@ fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Divides the edges of a body into closed lines, each with the direction of its edges and without repeated nodes, and edges that belong to no closed
-/// line. Lines that touch at a node are separated when the walk along the edges returns to this node.
+/// Divides the edges of a body into two sets: closed lines, each with the direction of its edges and without repeated nodes, and edges that belong to
+/// no closed line. Lines that touch at a node are separated when the walk along the edges returns to this node.
 fn loops(edges: &[[u32; 2]]) -> (Vec<Vec<u32>>, Vec<[u32; 2]>) {
     let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     edges.iter().rev().for_each(|[a, b]| next.entry(*a).or_default().push(*b));

@@ -19,7 +19,7 @@ pub(crate) struct Under {
     pub(crate) point: [f64; 3],
     /// The distance of this point along the axis of the camera [m]; 0 in the plane.
     pub(crate) distance: f64,
-    /// The size in the scene of a point of the screen at this distance [m].
+    /// The size [m] in the scene of a point of the screen at this distance.
     pub(crate) pixel: f64,
 }
 

@@ -129,7 +129,7 @@ impl Space {
         self.seen.as_ref().map(|(shown, _)| shown)
     }
 
-    /// The distance from the camera of the picture on the screen to the point in the centre of the view [m]. The distance of a held body is stored
+    /// The distance [m] from the camera of the picture on the screen to the point in the centre of the view. The distance of a held body is stored
     /// relative to this point, so that the body keeps its position when the camera moves closer.
     pub(crate) fn distance(&self, scales: &View, rect: Rect) -> Option<f64> {
         let target = self.seen.as_ref().map(|(_, eye)| *eye).or(self.eye)?.target;

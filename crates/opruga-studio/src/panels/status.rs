@@ -17,7 +17,7 @@ const TALL: f32 = 16.0;
 const GAP: f32 = 14.0;
 /// The smallest space for the text after the numbers [points].
 const REST: f32 = 100.0;
-/// The smallest width at which everything fits into one row in every language [points].
+/// The smallest width [points] at which everything fits into one row in every language.
 const BROAD: f32 = 1000.0;
 
 /// A number: its text, its longest usual form, whether it needs attention, and its explanation.

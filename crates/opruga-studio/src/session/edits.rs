@@ -13,7 +13,7 @@ use crate::shown::Severity;
 use opruga::core::spec::{Value, Values};
 use toml_edit::{InlineTable, Value as Toml};
 
-/// A transformation of a body: displacement, rotation about its centre and scale [m, rad].
+/// A transformation of a body: displacement [m], rotation about its centre [rad], and scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
     /// The displacement [m].
@@ -285,7 +285,7 @@ impl Session {
         self.document.body(name).ok_or_else(|| Report::Copy(name.to_string()))
     }
 
-    /// The displacement of the present centre of a body from its initial position [m].
+    /// The displacement [m] of the present centre of a body from its initial position.
     fn displacement_of(&mut self, name: &str) -> [f64; 3] {
         if self.at_start() {
             return [0.0; 3];

@@ -16,9 +16,9 @@ fn steady(registries: &Registries) -> Option<&'static Spec> {
 
 /// The user is informed about the computing time of a frame if it is longer than this [s].
 const LONG: f64 = 1.0;
-/// The longest computing time of a frame for which a remedy is offered [s]. During a longer frame, nothing else could be done for too long.
+/// The longest computing time [s] of a frame for which a remedy is offered. During a longer frame, nothing else could be done for too long.
 const TOO_LONG: f64 = 4.0;
-/// The computing time of a node in a substep that is assumed before anything was measured, and the lower limit of this time [s].
+/// The computing time [s] of a node in a substep: the time that is assumed before anything was measured, and the lower limit.
 const NODE: [f64; 2] = [2e-8, 1e-8];
 /// The part of the computing time of a substep that does not depend on the number of nodes is assumed to be at most this [s].
 const OVERHEAD: f64 = 5e-6;
@@ -183,7 +183,7 @@ impl Session {
         }
     }
 
-    /// Estimates the computing time of a frame with this many nodes and substeps from recent frames [s]. A part of the time of a substep is fixed,
+    /// Estimates the computing time [s] of a frame with this many nodes and substeps, from recent frames. A part of the time of a substep is fixed,
     /// and the rest is proportional to the number of nodes.
     fn frame_would_take(&self, nodes: usize, substeps: u32) -> f64 {
         let now = f64::from(self.engine.substeps().max(1));

@@ -7,7 +7,7 @@ use crate::report::{Report, Step};
 use crate::shown::Severity;
 use opruga::WorldError;
 
-/// The force of a push for each metre between the pointer and the point of the press [N/m].
+/// The stiffness of a push [N/m]: its force for each metre between the pointer and the point of the press.
 const PUSH_STIFFNESS: f64 = 20.0;
 
 /// The action of a press of the pointer.
@@ -343,7 +343,7 @@ impl Session {
         (*pointer, *force) = (grabbed.pointer, stretched.map(|f| share * f));
     }
 
-    /// The push of the pointer: the position of its node, the end of its arrow, and its force [m, m, N].
+    /// The push of the pointer: the position of its node [m], the end of its arrow [m], and its force [N].
     pub(super) fn push_shown(&self, position_of: &dyn Fn(usize, u32) -> Option<[f64; 3]>) -> Option<[[f64; 3]; 3]> {
         let grabbed =
             self.grabbed.as_ref().filter(|grabbed| grabbed.grip == Grip::Push && grabbed.pointer != grabbed.pressed)?;

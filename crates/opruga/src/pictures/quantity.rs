@@ -12,7 +12,7 @@ pub enum Quantity {
     /// The mean elongation of the edges at each node [%].
     #[default]
     Strain,
-    /// The force on each node from all models that store energy, except the gas [N].
+    /// The force on each node [N] from all models that store energy, except the gas.
     ElasticForce,
     /// The pressure of the gas in the chamber that the node bounds, or in the only chamber [Pa]; bodies without gas have no colour.
     Pressure,

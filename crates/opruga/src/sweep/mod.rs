@@ -238,7 +238,7 @@ impl Run<'_> {
         Ok(world.frame()?)
     }
 
-    /// Returns the processor time of a substep in the fastest of several runs [ns]. Runs are repeated until they have taken a tenth of a second
+    /// Returns the processor time [ns] of a substep in the fastest of several runs. Runs are repeated until they have taken a tenth of a second
     /// together. They are separate from the other runs and measure nothing else.
     fn speed(&self, blueprint: &AnyBlueprint, frames: u64) -> Result<Option<f64>, Failed> {
         let steps = frames as f64 * f64::from(blueprint.scene().time().substeps);
