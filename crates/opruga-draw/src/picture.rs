@@ -8,7 +8,7 @@ use crate::error::{DrawError, PictureList};
 pub struct Picture {
     /// The number of dimensions: 2 (seen along z) or 3 (seen by a camera, with y upwards).
     pub dimension: u8,
-    /// The time [s]; NaN if the picture belongs to no moment, and then no time is written on it.
+    /// The time [s]; if the picture belongs to no moment, this is NaN, and no time is written on the picture.
     pub time: f64,
     /// The title; may be empty.
     pub title: String,

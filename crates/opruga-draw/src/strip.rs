@@ -118,8 +118,8 @@ const SMALL_BODIES: f32 = 1.2;
 /// The penalty for each panel by which a strip falls short of nine.
 const MISSED: f32 = 0.12;
 
-/// Returns the number of panels that gives the best strip of a view, at most `most`. It is usually from nine to twelve, and smaller if the bodies
-/// would otherwise be too small to be seen well.
+/// Returns the number of panels that gives the best strip of a view, at most `most`. This number is usually from nine to twelve, and smaller if the
+/// bodies would otherwise be too small to be seen well.
 pub fn best_count(view: &View, dimension: u8, most: usize) -> usize {
     let style = StripStyle::default();
     let (aspect, available_width) = (view.aspect(dimension) as f32, style.width as f32);

@@ -1,8 +1,8 @@
-//! Files that are first written under a temporary name. This module distinguishes those that a process is still writing from abandoned ones.
+//! Files that are first written under a temporary name. This module distinguishes files that a process is still writing from abandoned files.
 //!
 //! A file is locked while its bytes are written. The system frees the lock when the process ends, however it ends. A file of this kind that can be
-//! locked was therefore left by a killed process, and is removed. Process numbers would not identify it: they are reused, and several machines may
-//! share a folder.
+//! locked was therefore left by a killed process, and is removed. Process numbers would not identify such a file: they are reused, and several
+//! machines may share a folder.
 
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions, TryLockError};

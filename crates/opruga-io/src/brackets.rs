@@ -1,4 +1,4 @@
-//! Brackets of a scene that are never closed. One such slip causes a parser to report many errors.
+//! Brackets of a scene that are never closed. One such bracket causes a parser to report many errors.
 
 use crate::source::end_of_string;
 

@@ -1,4 +1,4 @@
-//! The folder that a run writes to. It is locked, and several of its files can be replaced together.
+//! The folder that a run writes to. The folder is locked, and several of its files can be replaced together.
 
 use crate::aside::{aside_name, is_the_file, remove_the_dead};
 use crate::safe_write::{
@@ -164,8 +164,8 @@ impl OutputFolder {
     }
 }
 
-/// Changes to a folder. They are made right after one another, but only once all of them are ready. If the disk fills up before that, everything
-/// stays as it was.
+/// Changes to a folder. The changes are made right after one another, but only once all of them are ready. If the disk fills up before that,
+/// everything stays as it was.
 #[derive(Debug)]
 #[must_use = "nothing changes before the end"]
 pub struct Together<'a> {

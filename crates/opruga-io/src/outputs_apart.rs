@@ -1,6 +1,6 @@
 //! Finds outputs that would destroy an input or one another. They are refused before anything is computed, even with `--force`.
 //!
-//! `--force` lets a call replace the output of an earlier one. It does not let a call replace an input, because the lost file may be a drawing or a
+//! `--force` lets a call replace the output of an earlier call. It does not let a call replace an input, because the lost file may be a drawing or a
 //! scene that cannot be computed again.
 
 use crate::aside::is_aside;
@@ -102,7 +102,7 @@ fn twice(path: &Path, one: &Use, other: &Use) -> WriteError {
 }
 
 impl Folder {
-    /// The path under which the command would write this file; none if it would not.
+    /// The path under which the command would write this file; none if the command would not write the file.
     fn goal(&self, file: &Found) -> Option<PathBuf> {
         if let (Some(folder), Some(name)) = (file.real.parent(), file.real.file_name().and_then(|name| name.to_str()))
             && folder == self.real

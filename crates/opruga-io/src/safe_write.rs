@@ -239,7 +239,7 @@ fn fill_and_sync<'a>(file: &File, wrap: Wrap<'a>, fill: Fill<'a>) -> Result<u64,
     }
 }
 
-/// Makes a folder and its missing parents. If the last one cannot be made, those made before are removed.
+/// Makes a folder and its missing parents. If the last folder cannot be made, the folders made before are removed.
 pub(crate) fn make_folders(path: &Path) -> io::Result<()> {
     let missing: Vec<&Path> =
         path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists()).collect();

@@ -1,7 +1,7 @@
 //! Whole runs in one file: point caches of Blender and others (PC2, MDD), and glTF with one morph target per frame.
 //!
-//! A point cache contains only positions. It needs a mesh with the same nodes in the same order, such as a frame of the OBJ series. A glTF file
-//! includes the surface.
+//! A point cache contains only positions. Such a cache needs a mesh with the same nodes in the same order, such as a frame of the OBJ series. A glTF
+//! file includes the surface.
 
 use opruga_mesh::triangle_parts;
 use opruga_world::AnyBody;
@@ -140,7 +140,7 @@ impl Binary {
     }
 }
 
-/// Writes bodies as binary glTF 2.0 (`.glb`). Each is a mesh whose frames are morph targets, played one after the other by an animation.
+/// Writes bodies as binary glTF 2.0 (`.glb`). Each body is a mesh whose frames are morph targets, played one after the other by an animation.
 ///
 /// # Errors
 /// The errors of the writer; `InvalidInput` if the file would exceed 4 GiB, the limit of the format.

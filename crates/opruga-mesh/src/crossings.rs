@@ -173,7 +173,7 @@ impl Sorted {
         }
     }
 
-    /// Whether points are certainly strictly on one side of the plane of a facet. If rounding leaves a doubt, the exact signs decide later.
+    /// Whether it is certain that points are strictly on one side of the plane of a facet. If rounding leaves a doubt, the exact signs decide later.
     fn beside(&self, facet: &SortedFacet, nodes: &[u32]) -> bool {
         let origin = self.points[facet.nodes[0] as usize];
         let side = |node: u32| {

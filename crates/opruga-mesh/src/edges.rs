@@ -137,9 +137,9 @@ impl<const D: usize> Mesh<D> {
 
     /// The sum ΣA of the areas of the triangles beside each edge [m²], one value per edge of the list.
     ///
-    /// Triangles are the facets in space, sheet triangles, triangle cells and the four parts of quadratic ones. On a regular triangular lattice, the
-    /// membrane stiffness k = E₂D ΣA / l² (E₂D [N/m], l [m]) is √3/2·E₂D inside. On the border, where only one triangle adjoins the edge, k is half
-    /// as large.
+    /// Triangles are the facets in space, sheet triangles, triangle cells and the four parts of quadratic triangles. On a regular triangular lattice,
+    /// the membrane stiffness k = E₂D ΣA / l² (E₂D [N/m], l [m]) is √3/2·E₂D inside. On the border, where only one triangle adjoins the edge, k is
+    /// half as large.
     ///
     /// A quadrilateral (cell or sheet) is cut along the diagonal that the edge list contains. With both diagonals, or with none, a quadrilateral
     /// counts as the mean of its two triangulations: a rectangle of area A then adds A/2 to each side and A/2 to each diagonal. Edges without

@@ -11,9 +11,9 @@
 //! | hexahedron | 2 along each axis | 27 |
 //!
 //! Its values are between the smallest and the largest coefficient, and the values at the vertices are coefficients. If all coefficients are
-//! positive, the cell is nowhere inverted. A negative value proves that it is inverted somewhere. Otherwise the cell is bisected (de Casteljau),
-//! which brings the coefficients closer to the values: the gap between them falls with the square of the size. A piece without negative coefficients
-//! needs no further bisection. After [`MOST_PIECES`] pieces the bisection ends, and the minimum is known to lie between two bounds.
+//! positive, the cell is nowhere inverted. A negative value proves that the cell is inverted somewhere. Otherwise the cell is bisected (de
+//! Casteljau), which brings the coefficients closer to the values: the gap between them falls with the square of the size. A piece without negative
+//! coefficients needs no further bisection. After [`MOST_PIECES`] pieces the bisection ends, and the minimum is known to lie between two bounds.
 //!
 //! # Source
 //! A. Johnen, J.-F. Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements", Journal of Computational Physics 233 (2013).

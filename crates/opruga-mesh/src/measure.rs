@@ -49,8 +49,8 @@ impl<const D: usize> Mesh<D> {
         Ok(kind(total))
     }
 
-    /// Each node's share of the measure [m, m² or m³], one value per node. Multiplied by the density, it is the lumped mass. The shares add up to the
-    /// total.
+    /// Each node's share of the measure [m, m² or m³], one value per node. Multiplied by the density, this share is the lumped mass. The shares add
+    /// up to the total.
     ///
     /// # Errors
     /// The errors of [`Mesh::measure`].

@@ -37,7 +37,7 @@ impl Mesh<2> {
     /// A round outline of radius r [m]: n vertices on a circle about `center` [m], counter-clockwise from `start_angle` [rad]. Facet i runs from node
     /// i to node i + 1.
     ///
-    /// Its area is ½ n r² sin(2π/n), its length 2 n r sin(π/n).
+    /// The area of the outline is ½ n r² sin(2π/n), and its length is 2 n r sin(π/n).
     ///
     /// # Errors
     /// [`MeshError::Count`] for fewer than 3 vertices or too many; [`MeshError::Size`] for a radius that is not positive and finite, a centre that is

@@ -24,7 +24,7 @@ pub(crate) const TETRAHEDRON_FACES: [[usize; 6]; 4] =
 ///
 /// # Source
 /// E. Hinton, T. Rock, O. C. Zienkiewicz, "A note on mass lumping and related processes in the finite element method", Earthquake Engineering and
-/// Structural Dynamics 4 (1976): 1/19 and 16/57 with straight sides. All are positive, whereas plain row sums give nothing to the corners.
+/// Structural Dynamics 4 (1976): 1/19 and 16/57 with straight sides. All shares are positive, whereas plain row sums give nothing to the corners.
 pub const TRIANGLE_SHARES: [f64; 6] = [1.0 / 19.0, 1.0 / 19.0, 1.0 / 19.0, 16.0 / 57.0, 16.0 / 57.0, 16.0 / 57.0];
 
 /// The shares of the nodes in the mass of a quadratic tetrahedron, computed as for [`TRIANGLE_SHARES`]: 1/36 and 4/27 (row sums would be −1/20 and

@@ -69,8 +69,8 @@ impl<const D: usize> Mesh<D> {
         lift(&self.positions[node as usize])
     }
 
-    /// The smallest and the largest Jacobian at the nodes of a cell, as areas or volumes. If the Jacobian is negative only between the nodes, the
-    /// smallest one is sought there.
+    /// The smallest and the largest Jacobian at the nodes of a cell, as areas or volumes. If the Jacobian is negative only between the nodes, its
+    /// smallest value is sought there.
     pub(crate) fn extreme_measures(&self, element: Element, nodes: &[u32], whole: f64) -> (f64, f64) {
         let at = |k: usize| self.point(nodes[k]);
         let side = |a: usize, b: usize| subtract(at(b), at(a));

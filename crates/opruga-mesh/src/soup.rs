@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// Joins points that are at most `distance` [m] apart (0: at the same position), and makes triangles refer to the first point of each cluster.
 /// Returns the number of points that were joined to another point. The remaining points keep their order.
 ///
-/// A point joins the first earlier one that is near enough, so clusters do not grow along chains.
+/// A point joins the first earlier point that is near enough, so clusters do not grow along chains.
 ///
 /// # Errors
 /// [`MeshError::Size`] for a distance that is negative or not finite, [`MeshError::RepeatedNode`] with the first triangle that collapses; nothing is

@@ -16,7 +16,7 @@ pub const LARGEST_DIHEDRAL_ANGLE: f64 = 164.8;
 /// long edge, or than the second fraction of a short edge.
 ///
 /// Of the pairs on a grid with steps of 0.003 and 0.005, this one gives the largest minimum angle, 10.76°, with a maximum angle of 164.38°. The test
-/// below measures both over all stencils, with cuts at and around these limits.
+/// below measures both angles over all stencils, with cuts at and around these limits.
 const WARP_LIMITS: [f64; 2] = [0.284, 0.400];
 
 /// The number of halvings that locate the intersection of an edge with the surface, to within 10⁻¹² of the length of the edge.
@@ -30,8 +30,8 @@ enum Side {
     Inside,
 }
 
-/// A corner of a tetrahedron: a lattice point, or a point at which the surface cuts an edge. It is identified by the sum of both ends of the edge,
-/// which is unique.
+/// A corner of a tetrahedron: a lattice point, or a point at which the surface cuts an edge. Such a cut is identified by the sum of both ends of the
+/// edge, which is unique.
 type Corner = [i32; 3];
 
 impl Mesh<3> {
@@ -49,7 +49,7 @@ impl Mesh<3> {
     ///
     /// # Source
     /// F. Labelle, J. R. Shewchuk, "Isosurface stuffing: fast tetrahedral meshes with good dihedral angles", ACM Trans. Graphics 26 (2007), the
-    /// uniform variant (table 1 has the same bounds). Its stencils are cut here by one rule, see `Stuffing::diagonal`.
+    /// uniform variant (table 1 has the same bounds). The stencils of this method are cut here by one rule; see `Stuffing::diagonal`.
     pub fn tetrahedra_filling(&self, spacing: f64) -> Result<Mesh<3>, MeshError> {
         let lattice = Lattice::around(self, spacing)?;
         let inside = Inside::of(self)?;

@@ -57,7 +57,7 @@ pub struct Studio {
     drawer_open: bool,
     /// Whether the panel of properties shows and changes the right side only.
     right_only: bool,
-    /// A difference of the right side. It is applied only when the pointer is released, because both sides must then be computed again.
+    /// A difference of the right side. The difference is applied only when the pointer is released, because both sides must then be computed again.
     difference: Option<Request>,
     help_open: bool,
     /// The number of presses of the pointer so far.

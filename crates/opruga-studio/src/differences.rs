@@ -51,12 +51,12 @@ pub fn add_difference(differences: &mut Vec<Difference>, new: Difference) {
 pub struct Twins(BTreeMap<usize, [Vec<u32>; 2]>);
 
 impl Twins {
-    /// The node on the right that corresponds to one on the left.
+    /// The node on the right that corresponds to a node on the left.
     pub fn on_right(&self, body: usize, node: u32) -> u32 {
         self.0.get(&body).and_then(|both| both[0].get(node as usize)).copied().unwrap_or(node)
     }
 
-    /// The node on the left that corresponds to one on the right.
+    /// The node on the left that corresponds to a node on the right.
     pub fn on_left(&self, body: usize, node: u32) -> u32 {
         self.0.get(&body).and_then(|both| both[1].get(node as usize)).copied().unwrap_or(node)
     }

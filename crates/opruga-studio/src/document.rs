@@ -91,7 +91,7 @@ impl Document {
         item.as_array_of_tables().map(ArrayOfTables::len).or(item.as_array().map(Array::len)).unwrap_or(0)
     }
 
-    /// Adds a command at the end. Returns its number, which [`Document::end_command`] needs.
+    /// Adds a command at the end. Returns the number of the command, which [`Document::end_command`] needs.
     pub fn push_command(&mut self, table: Table) -> usize {
         let item = self.text.entry("command").or_insert_with(|| Item::ArrayOfTables(ArrayOfTables::new()));
         match tables(item) {
@@ -439,7 +439,7 @@ fn tables(item: &mut Item) -> Option<&mut ArrayOfTables> {
     item.as_array_of_tables_mut()
 }
 
-/// Replaces the indices of the nodes of a selection. If several of them become equal, only one remains.
+/// Replaces the indices of the nodes of a selection. If several indices become equal, only one of them remains.
 fn rename_selected(select: &mut dyn toml_edit::TableLike, renamed: &dyn Fn(i64) -> i64) {
     if let Some(node) = select.get("node").and_then(Item::as_integer) {
         select.insert("node", toml_edit::value(renamed(node)));

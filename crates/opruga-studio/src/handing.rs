@@ -65,7 +65,7 @@ mod window {
             Ok(path)
         }
 
-        /// Writes a scene. If it names files, it is written to its own folder together with them. The path of the scene comes first.
+        /// Writes a scene. If the scene names files, it is written to its own folder together with these files. The path of the scene comes first.
         ///
         /// # Errors
         /// The errors of the system; in this case no file is left behind.

@@ -26,7 +26,7 @@ impl Keyframes {
         frame.is_multiple_of(self.every) && self.kept.last().is_none_or(|(last, _)| *last < frame)
     }
 
-    /// Keeps a state. The first one is never dropped, because everything can be computed from it.
+    /// Keeps a state. The first state is never dropped, because everything can be computed from it.
     pub fn keep(&mut self, frame: u64, state: impl Into<State>) {
         let state = state.into();
         self.bytes += state.bytes();

@@ -26,7 +26,7 @@ use wasm_bindgen::prelude::*;
 /// close a page that does not respond.
 const PATIENCE: f64 = 2.0;
 
-/// The studio on a canvas of a page. It outlives its graphics device, which may be lost.
+/// The studio on a canvas of a page. The studio outlives its graphics device, which may be lost.
 #[wasm_bindgen]
 pub struct Page {
     studio: Shared,
@@ -287,7 +287,7 @@ impl Page {
     }
 }
 
-/// Computes the hash of the state of a scene after a number of frames, without a window. The scene is given by the name of one that comes with the
+/// Computes the hash of the state of a scene after a number of frames, without a window. The scene is given by its name, if it comes with the
 /// program, or by its text.
 ///
 /// # Errors

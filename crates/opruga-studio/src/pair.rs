@@ -73,7 +73,7 @@ impl Pair {
         [Some(square.sqrt()).filter(|far| far.is_finite()), volume]
     }
 
-    /// The root mean square and the largest distance between the nodes of both [m]; none if the bodies differ.
+    /// The root mean square and the largest distance between the nodes of both sides [m]; none if the bodies differ.
     fn distances(&self) -> Option<[f64; 2]> {
         let (left, right) = (self.left.positions(), self.right.positions());
         if self.stopped.is_some() || left.len() != right.len() || left.is_empty() {

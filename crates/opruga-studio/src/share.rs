@@ -1,5 +1,5 @@
-//! A whole scene in one piece: its text and the files that it names, compressed. An address contains them as letters after its `#`. Browsers do not
-//! send this part of the address to the server.
+//! A whole scene in one piece: its text and the files that it names, compressed. An address contains the compressed scene as letters after its `#`.
+//! Browsers do not send this part of the address to the server.
 
 use crate::report::Report;
 use flate2::read::DeflateDecoder;

@@ -109,7 +109,7 @@ pub struct Beside {
     /// The root mean square and the largest distance between corresponding nodes of the two sides [m]; none if the bodies have different nodes or the
     /// right side has stopped.
     pub distances: Option<[f64; 2]>,
-    /// The distance between the centres of mass of both \[m\].
+    /// The distance between the centres of mass of both sides \[m\].
     pub center: Option<f64>,
     /// The volume within the surfaces of the right side minus that within the surfaces of the left side \[m³\]; in the plane, the same for the areas
     /// within the outlines \[m²\].
@@ -245,7 +245,7 @@ pub struct Shown {
     pub bodies: Vec<BodyShown>,
     /// The obstacles.
     pub obstacles: Vec<ObstacleShown>,
-    /// The parameters of contact between bodies; none if they pass through one another.
+    /// The parameters of contact between bodies; none if bodies pass through one another.
     pub contact: Option<Values>,
     /// For each pull: the position of the node [m], the position of the pointer [m], and the force [N].
     pub pulls: Vec<[[f64; 3]; 3]>,

@@ -30,7 +30,7 @@ const WITHIN: Duration = Duration::from_secs(60);
 const ENDED: u8 = 130;
 /// The interval at which the window is checked.
 const EVERY: Duration = Duration::from_millis(30);
-/// How long a window may take to end after it was asked to.
+/// How long a window may take to end after a request to end.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Whether Ctrl-C or a signal has asked the program to end.
@@ -160,7 +160,7 @@ fn window(arguments: &[OsString], kept: Option<&Path>, saved: Option<&str>) -> s
     wait(command.spawn()?, &END)
 }
 
-/// Waits for the end of a window. A window that does not end when it is asked to is killed.
+/// Waits for the end of a window. A window that does not end on request is killed.
 fn wait(mut child: Child, end: &AtomicBool) -> std::io::Result<ExitStatus> {
     // The input is taken out first, because waiting for the child would close its input and thus end it.
     let mut input = child.stdin.take();

@@ -30,7 +30,7 @@ mod threaded {
         receiver
     }
 
-    /// Does the work completely. It never waits, because [`breathe`] returns at once.
+    /// Does the work completely. This function never waits, because [`breathe`] returns at once.
     pub fn finish<T>(work: impl Future<Output = T>) -> T {
         let mut work = pin!(work);
         let mut context = Context::from_waker(Waker::noop());

@@ -43,7 +43,7 @@ pub(crate) struct Encoder {
     bit_cost: u32,
     /// The number of pictures from one independent picture to the next.
     period: u32,
-    /// The number of the next picture, counted from the last independent one.
+    /// The number of the next picture, counted from the last independent picture.
     number: u32,
     /// The number of independent pictures so far.
     refreshes: u32,

@@ -58,8 +58,8 @@ impl Frame {
 
     /// Copies a macroblock from an image. Beyond the edge of the image, its last column and row are repeated.
     ///
-    /// The colours are converted to BT.709 in the limited range. A chroma sample belongs to two columns and two rows. As decoders expect, it is at
-    /// the left column, and halfway between the rows.
+    /// The colours are converted to BT.709 in the limited range. A chroma sample belongs to two columns and two rows. As decoders expect, the sample
+    /// is at the left column, and halfway between the rows.
     pub(crate) fn take(&mut self, image: Image<'_>, [x, y]: [usize; 2]) {
         let (width, height) = (image.width() as usize, image.height() as usize);
         let pixels = image.pixels();

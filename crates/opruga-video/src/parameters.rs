@@ -39,7 +39,7 @@ pub(crate) struct Rate {
 }
 
 impl Rate {
-    /// Finds the fraction for a number of frames per second. It is exact for numbers such as 20, 12.5 and 30000/1001.
+    /// Finds the fraction for a number of frames per second. The fraction is exact for numbers such as 20, 12.5 and 30000/1001.
     pub(crate) fn new(frames_per_second: f64) -> Result<Rate, VideoError> {
         if !(1e-4..=1e4).contains(&frames_per_second) {
             return Err(VideoError::Rate { rate: frames_per_second });

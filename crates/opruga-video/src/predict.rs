@@ -148,7 +148,7 @@ pub(crate) fn difference(frame: &Frame, plane: usize, macroblock: [usize; 2], ex
     sum
 }
 
-/// The motion predicted from the neighbours, and that of a skipped macroblock.
+/// The motion predicted from the neighbours, and the motion of a skipped macroblock.
 ///
 /// A neighbour is `None` outside the picture, and `Some(None)` if it was not predicted from the previous frame.
 pub(crate) fn expected_motion(left: Neighbour, above: Neighbour, corner: Neighbour) -> [Motion; 2] {

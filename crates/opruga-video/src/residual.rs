@@ -42,7 +42,7 @@ pub(crate) struct Residual {
     pub(crate) colour_coded: u32,
 }
 
-/// The number of levels of every block. The codes of neighbouring blocks depend on it.
+/// The number of levels of every block. The codes of neighbouring blocks depend on these numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct Counts {
     /// The number of blocks in a row of each plane.

@@ -51,7 +51,7 @@ const STATE: f64 = 3_000.0;
 const FRAME: f64 = 4_000.0;
 /// Lower bounds [ns] on the time that a node, a cell, and a facet in space each add to a step of an explicit integrator.
 const WORK: [f64; 3] = [1.0, 3.0, 4.0];
-/// A lower bound on the duration of a step of an implicit integrator, divided by that of an explicit one.
+/// A lower bound on the duration of a step of an implicit integrator, divided by the duration of a step of an explicit integrator.
 const IMPLICIT: f64 = 500.0;
 /// The fraction of the time of a run that may be spent on keeping states. The hashes of all frames may take the same fraction again.
 const SHARE: f64 = 0.05;
@@ -61,8 +61,8 @@ const TOGETHER: f64 = 100_000.0;
 /// The largest number that the header of a recording can store for the frames from one kept state to the next.
 const FARTHEST: f64 = u32::MAX as f64;
 
-/// A lower bound [ns] on the time that a frame of a world takes on a common machine. It depends only on the scene, so that the same run gives the
-/// same recording everywhere.
+/// A lower bound [ns] on the time that a frame of a world takes on a common machine. The bound depends only on the scene, so that the same run gives
+/// the same recording everywhere.
 fn work(world: &dyn AnyWorld) -> f64 {
     let scene = world.scene();
     let dimension = scene.dimension();
@@ -88,8 +88,8 @@ pub fn states_apart(world: &dyn AnyWorld) -> u64 {
     if apart < FARTHEST { apart as u64 } else { FARTHEST as u64 }
 }
 
-/// The number of frames that are written together, and that may be lost if the process is killed. It is the number that is computed in a tenth of a
-/// millisecond, but at least one.
+/// The number of frames that are written together, and that may be lost if the process is killed. This is the number of frames that can be computed
+/// in a tenth of a millisecond, but at least one.
 pub fn frames_together(world: &dyn AnyWorld) -> u64 {
     let together = TOGETHER / work(world);
     if together > 1.0 { together as u64 } else { 1 }

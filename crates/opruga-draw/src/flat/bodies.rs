@@ -253,7 +253,7 @@ impl Drawing<'_> {
         self.lines(canvas, &edges, 0.6 * self.unit, colour, opacity);
     }
 
-    /// Whether its colour map begins with a light colour, over which lines must be dark.
+    /// Whether the colour map begins with a light colour, over which lines must be dark.
     fn is_light(&self) -> bool {
         !self.body.scalar.is_empty() && self.scalars.map.is_light_below()
     }

@@ -1,4 +1,4 @@
-//! The line around the visible part of a body. It lies entirely outside the region that the body covers.
+//! The line around the visible part of a body. The line lies entirely outside the region that the body covers.
 
 use super::camera::Seen;
 use super::raster::{Cover, SAMPLES, Screen, line_triangles};

@@ -135,7 +135,7 @@ impl Found {
     /// Refuses elements whose number another element already has.
     ///
     /// # Errors
-    /// `mesh.duplicate_element` with the offset of the second one.
+    /// `mesh.duplicate_element` with the offset of the second element.
     pub(super) fn distinct_elements(&self, scanner: &Scanner<'_>) -> Result<(), SceneError> {
         let mut order: Vec<(u64, usize)> = self.items.iter().map(|item| (item.number, item.offset)).collect();
         order.sort_unstable();

@@ -88,7 +88,7 @@ fn bounds(scanner: &mut Scanner<'_>, [low, high]: [Expected; 2]) -> Result<([u64
     Ok(([lowest, highest], from))
 }
 
-/// Refuses numbers if their lowest and highest are not the announced ones. Numbers between these may be missing.
+/// Refuses numbers if the lowest and the highest of them are not the announced ones. Numbers between these may be missing.
 fn within(
     scanner: &Scanner<'_>,
     ([lowest, highest], from): ([u64; 2], usize),

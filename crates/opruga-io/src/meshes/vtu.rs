@@ -142,7 +142,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the only element of a name within another one.
+    /// Returns the only element with this name within another element.
     fn only<'a>(
         &self,
         parent: Node<'a, 'a>,

@@ -85,7 +85,7 @@ impl Order {
         may
     }
 
-    /// The last frame up to this one whose state is kept.
+    /// The last frame, up to this one, whose state is kept.
     pub(super) fn kept(&self, frame: u64) -> Option<u64> {
         let span = self.span.filter(|span| (span.first..=span.last).contains(&frame))?;
         Some(if frame >= span.kept { span.kept } else { span.first + (frame - span.first) / self.every * self.every })

@@ -37,7 +37,7 @@ pub struct Recording<R> {
     end: u64,
     /// The last frame whose hash was read, and the offset of the next chunk.
     hashed: Option<(u64, u64)>,
-    /// The last chunk of frames without states whose hashes were read: its first frame and the hashes.
+    /// The last chunk of frames without states that was read: its first frame, and the hashes of its frames.
     passed: (u64, Vec<u64>),
     /// The last frame whose state was read, and the offset of the next chunk.
     read: Option<(u64, u64)>,
@@ -89,7 +89,7 @@ impl<R: Read + Seek> Recording<R> {
         self.order.frames()
     }
 
-    /// The last frame up to a given one whose state is kept; the frames after it must be computed from that state.
+    /// The last frame, up to a given frame, whose state is kept; the frames after it must be computed from that state.
     ///
     /// # Errors
     /// [`RecordingError::NoFrame`].
@@ -238,7 +238,7 @@ impl<R: Read + Seek> Recording<R> {
         }
     }
 
-    /// Reads the index of a file that was written completely; returns whether there was one.
+    /// Reads the index of a file that was written completely; returns whether there was an index.
     fn follow_index(&mut self, first: u64, length: u64) -> Result<bool, RecordingError> {
         let Some(end) = length.checked_sub(TRAILER as u64).filter(|end| *end >= first) else { return Ok(false) };
         self.source.seek(SeekFrom::Start(end))?;

@@ -58,7 +58,8 @@ impl<W: Target> Writer<W> {
     /// Adds the next frame without its state, if the header does not require the state. Frames that go to the file together, with nothing between
     /// them, form one chunk.
     ///
-    /// # Errors An error if the frame is out of order; it is then not added. The file is not written before [`Writer::flush`].
+    /// # Errors
+    /// An error if the frame is out of order; it is then not added. The file is not written before [`Writer::flush`].
     pub fn push(&mut self, frame: u64, hash: u64) -> io::Result<()> {
         if !self.order.pass(frame) {
             return Err(out_of_order(frame));
@@ -81,7 +82,8 @@ impl<W: Target> Writer<W> {
     /// recording, and so does the state of the frame that was pushed last. To avoid copying, this function takes the bytes of `state` and leaves
     /// other bytes in it.
     ///
-    /// # Errors An error if the frame is out of order; the frame is then not added, and the state stays with its owner.
+    /// # Errors
+    /// An error if the frame is out of order; the frame is then not added, and the state stays with its owner.
     pub fn keep(&mut self, frame: u64, hash: u64, state: &mut Vec<u8>) -> io::Result<()> {
         if !self.order.keep(frame) {
             return Err(out_of_order(frame));
@@ -104,7 +106,8 @@ impl<W: Target> Writer<W> {
 
     /// Adds an action of a program that precedes the step to the next frame.
     ///
-    /// # Errors An error if the frame is out of order; it is then not added.
+    /// # Errors
+    /// An error if the frame is out of order; it is then not added.
     pub fn input(&mut self, frame: u64, bytes: &[u8]) -> io::Result<()> {
         if !self.order.follows(frame) {
             return Err(out_of_order(frame));
@@ -117,7 +120,7 @@ impl<W: Target> Writer<W> {
         Ok(())
     }
 
-    /// Reserves space for the head of a chunk, whose payload follows; returns where it begins.
+    /// Reserves space for the head of a chunk, whose payload follows; returns the position of the head.
     fn begin(&mut self) -> usize {
         let from = self.pending.len();
         self.pending.resize(from + format::CHUNK, 0);

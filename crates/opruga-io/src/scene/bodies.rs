@@ -278,7 +278,7 @@ fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, 
     }
 }
 
-/// Adds the cost of bodies to that of the earlier ones; returns whether it is within the limits.
+/// Adds the cost of bodies to the cost of the earlier bodies; returns whether the sum is within the limits.
 fn within_limits<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, D>], cost: &mut Cost) -> bool {
     for draft in drafts {
         let nodes = match (&draft.loaded, &draft.shape) {

@@ -1,4 +1,4 @@
-//! The dimension of a scene, and the other errors of a scene that does not give it.
+//! The dimension of a scene, and the other errors of a scene that does not give its dimension.
 
 use super::errors::{FieldError, SceneHint};
 use super::reader::Reader;

@@ -59,7 +59,7 @@ terms! {
     }
 }
 
-/// A field of a kind or of a section. Translations list it among the names of kinds.
+/// A field of a kind or of a section. Translations list such a field among the names of kinds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FieldOf {
     /// What the kind belongs to; none for a section of the format.

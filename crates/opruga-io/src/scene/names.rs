@@ -25,8 +25,8 @@ impl<P> Names<P> {
         Names { what, seen: BTreeMap::new() }
     }
 
-    /// Adds a name. If it exists already, or looks like an existing one in print, returns an error with its value. `line` returns the line of the
-    /// first one, if it has one.
+    /// Adds a name. If the name exists already, or looks like an existing name in print, returns an error that contains the name. `line` returns the
+    /// line of the existing name, if it has one.
     pub(super) fn take(
         &mut self,
         name: &str,

@@ -104,7 +104,7 @@ impl<'a> Reader<'a> {
         self.more == 0 && !self.errors.iter().skip(before).any(about)
     }
 
-    /// Adds a notice with its location. With `strict` it becomes an error, unless it reports what the scene asks for.
+    /// Adds a notice with its location. With `strict`, the notice becomes an error, unless it reports what the scene asks for.
     pub(crate) fn notice(&mut self, location: Location, about: SceneError) {
         if self.options.strict && !Notice::is_asked_for(about.code) {
             return self.report(location, about);

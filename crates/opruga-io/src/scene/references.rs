@@ -47,7 +47,7 @@ impl<const D: usize> Bodies<D> {
             }
         }
     }
-    /// The first body that a name means; the name may also be the common one of copies.
+    /// The first body that a name means; the name may also be the common name of copies.
     pub(crate) fn first(&self, name: &str) -> Option<&BodyBlueprint<D>> {
         let k = self.names.get(name).or_else(|| self.names.get(&format!("{name}[0]")));
         k.and_then(|k| self.list.get(*k)).or_else(|| name.parse::<usize>().ok().and_then(|k| self.list.get(k)))

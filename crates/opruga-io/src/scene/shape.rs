@@ -22,7 +22,7 @@ pub(super) struct ShapeLocation<'a> {
     pub(super) path: String,
 }
 
-/// Reads the file of a shape, if the shape has one. The file is read only if its own fields have no errors.
+/// Reads the file of a shape, if the shape has one. The file is read only if the shape's own fields have no errors.
 pub(super) fn loaded<const D: usize>(
     reader: &mut Reader<'_>,
     node: &Node,
@@ -107,7 +107,7 @@ fn generated<const D: usize>(
     Ok((made.mesh, notices))
 }
 
-/// Makes a shape from its fields alone. Each is a name and a value, as in `--set NAME=VALUE`; later ones replace earlier ones.
+/// Makes a shape from its fields alone. Each field is given as a name and a value, as in `--set NAME=VALUE`; later ones replace earlier ones.
 ///
 /// # Errors
 /// All errors that scenes can have, each with the field that it is about.

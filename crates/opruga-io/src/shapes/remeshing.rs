@@ -9,7 +9,7 @@ use opruga_mesh::outline::OutlineError;
 
 /// The largest relative change of the volume of a remeshed surface.
 const DRIFT: f64 = 0.25;
-/// If the desired length is too coarse, shorter ones are tried; each is this fraction of the previous one.
+/// If the desired length is too coarse, shorter lengths are tried; each is this fraction of the previous length.
 const SHORTER: f64 = 0.9;
 /// The largest number of lengths that are tried.
 const TRIED: usize = 30;
@@ -44,7 +44,7 @@ pub(super) fn remeshed(mesh: &Mesh<3>, length: f64) -> Result<Mesh<3>, SceneErro
     }))
 }
 
-/// Returns the surface with edges of a given length, or why that length is too coarse for it.
+/// Returns the surface with edges of a given length, or the reason why this length is too coarse for the surface.
 fn made(mesh: &Mesh<3>, length: f64) -> Result<Result<Mesh<3>, TooCoarse>, opruga_mesh::MeshError> {
     let made = mesh.remeshed(length)?;
     // A surface that was accepted although it crosses itself may still do so.

@@ -26,7 +26,7 @@ const OUTLINES: [(&str, Option<&str>); 22] = [
     ("ry", None),
 ];
 
-/// Whether a property with a value is one that changes outlines.
+/// Whether a property changes outlines if it has this value.
 pub(super) fn changes_outlines(name: &str, value: &str) -> bool {
     OUTLINES.iter().any(|(word, only)| {
         *word == name

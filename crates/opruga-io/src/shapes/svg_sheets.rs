@@ -324,7 +324,7 @@ fn simple(word: &str) -> Vec<String> {
     found
 }
 
-/// A value without `!important`, and whether it had it.
+/// A value without `!important`, and whether the value had this mark.
 fn without_importance(value: &str) -> (&str, bool) {
     let value = value.trim();
     match value.rsplit_once('!') {

@@ -21,7 +21,7 @@ const MEASURES: [(&str, &[&str]); 10] = [
 ];
 
 impl Sheets {
-    /// A property that would place or cut an element differently from how it is read, with its value.
+    /// A property, with its value, that would place or cut an element in a way that the reader does not support.
     pub(super) fn unread<'n>(&'n self, node: Node<'n, '_>) -> Option<(&'static str, &'n str)> {
         let set = |value: &&str| *value != "none";
         if let Some(value) = self.style(node, "mask").filter(set) {

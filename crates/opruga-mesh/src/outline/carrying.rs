@@ -6,7 +6,8 @@ use crate::skin::{Area, Skin};
 use crate::{Mesh, MeshError};
 use std::collections::BTreeMap;
 
-/// The maximum mean number of bins of the grid that each cell covers; compact cells cover four. It limits the grid to about the size of the body.
+/// The maximum mean number of bins of the grid that each cell covers; compact cells cover four. This number limits the grid to about the size of the
+/// body.
 const MOST_BINS: f64 = 16.0;
 
 /// An area to be painted on a body.

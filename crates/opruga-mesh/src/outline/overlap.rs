@@ -30,7 +30,7 @@ pub fn joined(rings: &[Ring], how: Overlap) -> Vec<Ring> {
 
 /// Rings that bound the area covered by the non-zero rule, that is, all points around which the given rings wind.
 ///
-/// It works like [`joined`], but for rings whose directions matter.
+/// This function works like [`joined`], but for rings whose directions matter.
 pub fn wound(rings: &[Ring]) -> Vec<Ring> {
     let all: Vec<&Ring> = rings.iter().collect();
     let made = numbered(contours(&all, FillRule::NonZero, false));
@@ -41,8 +41,8 @@ pub fn wound(rings: &[Ring]) -> Vec<Ring> {
     }
 }
 
-/// The rings of [`joined`] before they are separated, so they may touch. With `all_points`, they keep all points on their edges; without it, they
-/// have no points on straight lines.
+/// The rings of [`joined`] before they are separated, so they may touch. With `all_points`, the rings keep all points on their edges; without it,
+/// they have no points on straight lines.
 fn covered(rings: &[Ring], how: Overlap, all_points: bool) -> Vec<Ring> {
     let everything: Vec<&Ring> = rings.iter().collect();
     numbered(match how {

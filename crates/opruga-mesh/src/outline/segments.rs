@@ -75,7 +75,7 @@ impl Segments {
         &self.order[(leaf * LEAF).min(end)..((leaf + 1) * LEAF).min(end)]
     }
 
-    /// Visits all edges whose box overlaps that of an edge; returns the number of comparisons of boxes.
+    /// Visits all edges whose box overlaps the box of a given edge; returns the number of comparisons of boxes.
     pub(super) fn beside(&self, edge: u32, mut visit: impl FnMut(u32)) -> u64 {
         let area = self.own[edge as usize];
         let (mut waiting, mut compared) = (vec![1usize], 0);

@@ -15,7 +15,7 @@ pub fn squares_estimate(rings: &[Ring], spacing: f64) -> f64 {
 }
 
 /// The inside of rings that [`super::nest`] has oriented, as equal squares of side `spacing` [m], which extend slightly beyond the rings. A square is
-/// kept if a ring passes through it or if its centre is inside. If two squares would touch only at a corner, one beside them is added.
+/// kept if a ring passes through it or if its centre is inside. If two squares would touch only at a corner, a square beside them is added.
 ///
 /// Detail finer than the spacing is lost: parts that are less than a square apart become one body. The lattice is centred in the box of the rings.
 /// Nodes are numbered row by row, from below.

@@ -1,7 +1,7 @@
 //! Separation of rings that touch at points.
 //!
-//! Around a point at which rings touch, the inside consists of sectors. Every sector gets its own corner, slightly inside it, because bodies are not
-//! connected by points.
+//! Around a point at which rings touch, the inside consists of sectors. Every sector gets its own corner, slightly inside the sector, because bodies
+//! are not connected by points.
 
 use super::{Ring, bounds, distance};
 use std::collections::BTreeMap;

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 const LONG: f64 = 60.0;
 const LONG_NORMAL: f64 = 18.0;
 
-/// The largest magnitude among the arrows of every visible kind. It grows at once and shrinks slowly, so that the scale can be read.
+/// The largest magnitude among the arrows of every visible kind. This magnitude grows at once and shrinks slowly, so that the scale can be read.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Longest(pub(crate) BTreeMap<ArrowKind, f64>);
 

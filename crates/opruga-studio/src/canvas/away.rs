@@ -26,8 +26,8 @@ impl Canvas {
         offsets.min_by(|a, b| a.length_sq().total_cmp(&b.length_sq()))
     }
 
-    /// The offset on the screen from the centre of the view to a point. In space it is measured perpendicular to the line of sight, because a point
-    /// may be behind the camera.
+    /// The offset on the screen from the centre of the view to a point. In space, this offset is measured perpendicular to the line of sight, because
+    /// a point may be behind the camera.
     fn offset_to(&self, shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Vec2> {
         if shown.dimension != 3 {
             return Some(self.flat.to_screen(rect, point, shown.picture.y_down) - rect.center());

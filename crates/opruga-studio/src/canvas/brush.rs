@@ -29,7 +29,7 @@ fn unit(vector: Vec2) -> Vec2 {
     if long > 0.0 { vector / long } else { Vec2::ZERO }
 }
 
-/// A mesh under construction, and the one that was shown last.
+/// A mesh under construction, and the mesh that was shown last.
 #[derive(Debug, Default)]
 pub(crate) struct Brush {
     mesh: Mesh,

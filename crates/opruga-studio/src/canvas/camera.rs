@@ -171,7 +171,7 @@ pub(super) fn with_floors(mut view: View, shown: &Shown) -> View {
     view
 }
 
-/// The areas of the scene and of the one beside it. They are next to each other or, in a tall window, one above the other.
+/// The areas of the scene and of the scene beside it. They are next to each other or, in a tall window, one above the other.
 pub(super) fn halves(whole: Rect, two: bool) -> (Rect, Option<Rect>) {
     if !two {
         return (whole, None);

@@ -253,7 +253,7 @@ fn grid(painter: &Painter, flat: &Flat, rect: Rect, paper: &Paper, y_down: bool)
     }
 }
 
-/// Writes the length of a side of the grid squares. It is written over everything else, because floors often reach into its corner.
+/// Writes the length of a side of the grid squares. The length is written over everything else, because floors often reach into its corner.
 pub(crate) fn scale_bar(look: &Look<'_>, flat: &Flat) {
     let Look { painter, rect, paper, .. } = *look;
     let unit = &look.shown.picture.length_unit;

@@ -106,7 +106,7 @@ impl Properties {
         });
     }
 
-    /// Shows a parameter. `whole` makes the request if the values of its whole kind change.
+    /// Shows a parameter. `whole` makes the request if the values of the parameter's whole kind change.
     fn set(
         &mut self,
         ui: &mut Ui,

@@ -199,7 +199,7 @@ fn of_both(shown: &Shown) -> Vec<(bool, &Warning)> {
     shown.warnings.iter().map(|warning| (false, warning)).chain(right.map(|warning| (true, warning))).collect()
 }
 
-/// The substep divided by the largest stable one. For two scenes, it is the larger ratio. None if there is no limit.
+/// The substep divided by the largest stable substep. For two scenes, it is the larger ratio. None if there is no limit.
 fn margin(shown: &Shown) -> Option<f64> {
     let limited = shown.stable_step.is_finite() && shown.stable_step > 0.0;
     let own = limited.then(|| shown.frame / f64::from(shown.substeps.max(1)) / shown.stable_step);

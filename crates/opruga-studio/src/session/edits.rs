@@ -61,7 +61,7 @@ impl Session {
         Ok(())
     }
 
-    /// Sets a parameter. If the user is dragging its slider, `press` is the number of the press.
+    /// Sets a parameter. If the user is dragging the slider of the parameter, `press` is the number of the press.
     pub(super) fn set(&mut self, path: &str, value: Value, press: Option<u64>) -> Result<(), Report> {
         self.branch()?;
         let past = Past { press, ..self.past(Step::Set(path.into())) };
@@ -84,8 +84,8 @@ impl Session {
         Ok(())
     }
 
-    /// Removes a field of an obstacle. At the start, it is removed from the scene. Later, it gets the value that is equivalent to its absence, if
-    /// there is one.
+    /// Removes a field of an obstacle. At the start, it is removed from the scene. Later, the field gets the value that is equivalent to its absence,
+    /// if there is such a value.
     pub(super) fn unset(&mut self, path: &str) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Set(path.into()));
@@ -145,8 +145,8 @@ impl Session {
         Ok(())
     }
 
-    /// Resets the integrator of a body to that of the scene. At the start, the body then has no integrator of its own. Later, it gets its own
-    /// integrator, which is equal to that of the scene.
+    /// Resets the integrator of a body to that of the scene. At the start, the body then has no integrator of its own. Later, the body gets its own
+    /// integrator, which is equal to the integrator of the scene.
     pub(super) fn as_the_scene(&mut self, body: usize) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Integrator);

@@ -22,7 +22,7 @@ impl Ends {
         Ends { early, ..Ends::default() }
     }
 
-    /// Adds the warnings at the end to those of a frame.
+    /// Adds the warnings at the end to the warnings of a frame.
     pub(super) fn add(&self, shown: &mut Shown) {
         let shape_warnings =
             self.shape_warnings.iter().filter(|(since, _)| *since <= shown.frames).flat_map(|(_, list)| list);

@@ -48,7 +48,7 @@ use std::sync::{Arc, PoisonError, RwLock, RwLockWriteGuard};
 use std::time::Duration;
 use travel::Past;
 
-/// The memory budget of the keyframes [bytes]. It is smaller on a web page, which may be open on a phone.
+/// The memory budget of the keyframes [bytes]. The budget is smaller on a web page, which may be open on a phone.
 const KEYFRAME_BYTES: usize = if cfg!(target_arch = "wasm32") { 64 << 20 } else { 256 << 20 };
 
 /// How long frames are computed on the way to another moment before the next picture is shown.
@@ -264,7 +264,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Handles a request. If it cannot be done, [`Shown::message`] reports this, and nothing changes.
+    /// Handles a request. If the request cannot be carried out, [`Shown::message`] reports this, and nothing changes.
     pub fn handle(&mut self, request: Request) {
         let again = request.clone();
         let (before, edits) = (self.messages, request.is_edit());

@@ -15,7 +15,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 impl Session {
-    /// Opens another scene. If the previous one contains work, the user can return to it.
+    /// Opens another scene. If the previous scene contains work, the user can return to it.
     pub(super) fn open_another(&mut self, name: &str, text: &str, files: Files) -> Result<(), Report> {
         let next = Session::open(name, text, files, self.setting.clone())?;
         self.go_over_to(next, true);
@@ -35,7 +35,7 @@ impl Session {
         self.pacing.rest();
     }
 
-    /// Returns the opening of this scene as a step, if it can be undone. An undo reverts it if nothing was done in this scene.
+    /// Returns the opening of this scene as a step, if it can be undone. An undo reverts the opening if nothing was done in this scene.
     pub(super) fn opening(&self) -> Option<Step> {
         self.before.as_ref().map(|before| Step::Open(before.document.name.clone()))
     }

@@ -43,18 +43,18 @@ pub(super) struct Grabbed {
 }
 
 impl Grabbed {
-    /// The force of a push [N]. It depends only on the pointer, and not on the motion of the node.
+    /// The force of a push [N]. The force depends only on the pointer, and not on the motion of the node.
     fn force(&self) -> [f64; 3] {
         [0, 1, 2].map(|d| PUSH_STIFFNESS * (self.pointer[d] - self.pressed[d]))
     }
 }
 
-/// A pull that has ended. The world removes it in its next frame, but it is no longer displayed.
+/// A pull that has ended. The world removes the pull in its next frame, but the pull is no longer displayed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Released {
     body: usize,
     node: u32,
-    /// The frame at which it was released, and the last frame in which it acts.
+    /// The frame at which the pull was released, and the last frame in which it acts.
     at: [u64; 2],
 }
 
@@ -78,7 +78,7 @@ impl Pinned {
 }
 
 impl Session {
-    /// Adds a command to the document. Returns its numbers in the world and in the document.
+    /// Adds a command to the document. Returns the numbers of the command in the world and in the document.
     pub(super) fn write(&mut self, given: Given) -> [usize; 2] {
         [given.number, self.document.push_command(given.table)]
     }

@@ -6,7 +6,7 @@ use opruga::Registries;
 use opruga::io::Files;
 
 impl Session {
-    /// The scene with everything that was done so far. On the command line, it ends at the present frame with the same hash.
+    /// The scene with everything that was done so far. On the command line, the scene ends at the present frame with the same hash.
     pub fn saved(&self) -> String {
         let mut document = self.let_go_of_all();
         document.set_seconds(self.engine.time().max(self.time_of(self.latest)));

@@ -70,7 +70,7 @@ impl Session {
         if present.len() > 64 { Titles::default() } else { Titles::new(self.renamed.clone(), present) }
     }
 
-    /// Replaces the names in a report by those under which the user knows the bodies.
+    /// Replaces the names in a report by the names under which the user knows the bodies.
     pub(super) fn titled(&self, report: Report) -> Report {
         self.titles().in_report(report)
     }

@@ -55,8 +55,8 @@ impl Session {
         self.pacing.rest();
     }
 
-    /// Arrives at a moment. At the end of the computed run, the commands that are due at this moment take effect at once. At an earlier moment they
-    /// do not, because new actions replace everything that followed it.
+    /// Arrives at a moment. At the end of the computed run, the commands that are due at this moment take effect at once. At an earlier moment, they
+    /// take no effect, because new actions replace everything that followed it.
     pub(super) fn arrive(&mut self) {
         self.replaced += 1;
         self.goal = None;
@@ -175,7 +175,7 @@ impl Session {
         outcome
     }
 
-    /// Builds the world of a document and goes to a frame. Up to the frame `common`, the run is identical to the present one.
+    /// Builds the world of a document and goes to a frame. Up to the frame `common`, the new run is identical to the present run.
     pub(super) fn take(
         &mut self,
         document: Document,

@@ -1,5 +1,5 @@
-//! A decoder that supports only the output of the encoder. It has its own bit reader, but shares the tables, the prediction and the inverse transform
-//! with the encoder.
+//! A decoder that supports only the output of the encoder. The decoder has its own bit reader, but shares the tables, the prediction and the inverse
+//! transform with the encoder.
 
 use super::super::frame::Frame;
 use super::super::parameters::NUMBER_BITS;
@@ -201,7 +201,7 @@ impl Decoder {
         &self.before
     }
 
-    /// The predicted motion, and that of a skipped macroblock.
+    /// The predicted motion, and the motion of a skipped macroblock.
     fn expected(&self, [x, y]: [usize; 2]) -> [Motion; 2] {
         let wide = self.blocks[0];
         let at = |x: usize, y: usize| (x < wide).then(|| self.motion[y * wide + x]);

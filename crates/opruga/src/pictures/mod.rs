@@ -77,8 +77,8 @@ pub struct Moment {
     coordinates: Vec<f32>,
     /// The quantity that the colours show.
     quantity: Quantity,
-    /// The value of that quantity at every node. It is computed before the coordinates are rounded, because the rounded ones are not precise enough
-    /// for strains. Empty if bodies have plain colours.
+    /// The value of that quantity at every node. The quantity is computed before the coordinates are rounded, because rounded coordinates are not
+    /// precise enough for strains. Empty if bodies have plain colours.
     scalars: Vec<f32>,
     /// The existing bodies.
     bodies: Vec<usize>,

@@ -1,4 +1,4 @@
-//! Sweeps from a program: one call makes the usual question, and another one computes all of its rows.
+//! Sweeps from a program: one call makes the usual question, and another call computes all of its rows.
 
 use super::{Axis, Design, Metric, Row, Sweep};
 use opruga_io::{Files, SceneError};

@@ -15,7 +15,7 @@ pub struct Question {
     pub schema: u32,
     /// The name of the scene.
     pub name: String,
-    /// The file that the scene comes from. It is ignored when two questions are compared.
+    /// The file that the scene comes from. The file is ignored when two questions are compared.
     pub file: String,
     /// The parameters that vary or are changed for all points, as `PATH=VALUES`.
     pub set: Vec<String>,
@@ -51,7 +51,8 @@ impl Question {
 
     /// Reads the JSON of a question.
     ///
-    /// # Errors `sweep.damaged` if the bytes are not a question, or are a question of another version.
+    /// # Errors
+    /// `sweep.damaged` if the bytes are not a question, or are a question of another version.
     pub fn read(bytes: &[u8]) -> Result<Question, SceneError> {
         let damaged = |reason: &serde_json::Error| SweepError::Question { reason: visible(&reason.to_string()) };
         let question: Question = serde_json::from_slice(bytes).map_err(|e| SceneError::of(damaged(&e)))?;
