@@ -36,7 +36,7 @@ pub(crate) fn is_aside(name: &str) -> bool {
     name_within(name).is_some()
 }
 
-/// Creates a temporary file in a folder for a file with this name. It is locked while it is open.
+/// Creates a temporary file in a folder for a file with this name. The file is locked while it is open.
 pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, File)> {
     let mut writer = u64::from(std::process::id());
     loop {
@@ -63,7 +63,8 @@ pub(crate) fn make_aside(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, Fi
     }
 }
 
-/// Removes the temporary files that killed processes left in a folder for a file with this name. If there is no name, removes those for all files.
+/// Removes the temporary files that killed processes left in a folder for a file with this name. If there is no name, removes the temporary files for
+/// all files.
 pub(crate) fn remove_the_dead(folder: &Path, name: Option<&OsStr>) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for found in entries.filter_map(|entry| entry.file_name().into_string().ok()) {

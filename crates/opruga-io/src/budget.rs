@@ -62,7 +62,7 @@ pub(crate) const OUTLINES: Limit = Limit { code: "limit.outlines", most: 1 << 16
 /// into which it is divided.
 pub(crate) const POINTS: Limit = Limit { code: "limit.points", most: 1 << 21, what: Counted::Points };
 
-/// Pixels of a picture. They are read row by row; only contours are kept.
+/// Pixels of a picture. The pixels are read row by row; only contours are kept.
 pub(crate) const PIXELS: Limit = Limit { code: "limit.pixels", most: 1 << 26, what: Counted::Pixels };
 
 /// Elements of a drawing, counted as often as `use` draws them: in a chain of 61 elements, each of which uses the next one twice, the last one is

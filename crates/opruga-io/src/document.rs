@@ -249,7 +249,7 @@ fn node(value: Spanned<DeValue<'_>>) -> Node {
     Node { location, data }
 }
 
-/// Parses the value of an override: a TOML value or a bare word. Its depth and size have the same limits as those of a value in a scene.
+/// Parses the value of an override: a TOML value or a bare word. The value has the same limits of depth and size as a value in a scene.
 ///
 /// # Errors
 /// `set.value`, `scene.depth` or `scene.too_large`, without a location.

@@ -35,7 +35,7 @@ impl Files {
         Files { in_memory: files.into_iter().collect(), ..Files::default() }
     }
 
-    /// Adds files in memory; a file replaces an earlier one of the same name.
+    /// Adds files in memory; a file replaces an earlier file of the same name.
     #[must_use]
     pub fn with(mut self, files: impl IntoIterator<Item = (String, Arc<[u8]>)>) -> Files {
         self.in_memory.extend(files);

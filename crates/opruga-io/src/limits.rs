@@ -29,8 +29,8 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// The limits on a machine with addresses of this many bits. A web page has 4 GiB in total. A scene that would take more than half of that is
-    /// refused, because the page would crash if it asked for more.
+    /// The limits on a machine with addresses of this many bits. A web page has 4 GiB in total. A scene that would take more than half of this memory
+    /// is refused, because the page would crash if it asked for more.
     pub fn of_addresses(bits: u32) -> Limits {
         Limits {
             file_bytes: 64 << 20,

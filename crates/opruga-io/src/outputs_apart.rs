@@ -1,7 +1,7 @@
-//! Finds outputs that would destroy an input or one another. They are refused before anything is computed, even with `--force`.
+//! Finds outputs that would destroy an input or one another. Such outputs are refused before anything is computed, even with `--force`.
 //!
-//! `--force` lets a call replace the output of an earlier call. It does not let a call replace an input, because the lost file may be a drawing or a
-//! scene that cannot be computed again.
+//! `--force` lets a call replace the output of an earlier call. The option does not let a call replace an input, because the lost file may be a
+//! drawing or a scene that cannot be computed again.
 
 use crate::aside::is_aside;
 use crate::safe_write::WriteError;

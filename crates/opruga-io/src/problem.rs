@@ -1,5 +1,4 @@
-//! Errors and notices, which say what is wrong, where, and what would be right. They are written for people and, as JSON, for
-//! programs.
+//! Errors and notices, which say what is wrong, where, and what would be right. The messages are written for people and, as JSON, for programs.
 
 use crate::scene::errors::FieldError;
 use core::fmt;
@@ -120,7 +119,7 @@ impl SceneError {
     pub(crate) fn and_more(count: usize) -> SceneError {
         SceneError::of(FieldError::More { count })
     }
-    /// The number of errors that this one represents.
+    /// The number of errors that this error represents.
     fn stands_for(&self) -> usize {
         match (&self.value, self.code) {
             (Some(count), MORE) => count.parse().unwrap_or(1),
@@ -249,7 +248,7 @@ const MORE: &str = "scene.more";
 /// The largest number of errors that are shown for a file. After fixing fifty errors, the user runs the check again.
 pub const MOST_SHOWN: usize = 50;
 
-/// The first errors of a list, followed by one that gives the number of the others.
+/// The first errors of a list, followed by an error that gives the number of the others.
 pub fn shown(mut errors: Vec<SceneError>) -> Vec<SceneError> {
     let of_list = |error: &SceneError| error.code != MORE;
     let mut hidden: usize = errors.iter().filter(|error| !of_list(error)).map(SceneError::stands_for).sum();
@@ -276,8 +275,8 @@ impl fmt::Display for SceneError {
 
 impl std::error::Error for SceneError {}
 
-/// Notices about what the scene itself asks for, or about what is usual in files, such as concave faces. They are worth knowing, but do not become
-/// errors when warnings are treated as errors.
+/// Notices about what the scene itself asks for, or about what is usual in files, such as concave faces. Such notices are worth knowing, but do not
+/// become errors when warnings are treated as errors.
 const ASKED_FOR: [&str; 3] = ["shape.overlap", "shape.dropped", "mesh.concave_face"];
 
 impl Notice {

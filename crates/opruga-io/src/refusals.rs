@@ -67,7 +67,7 @@ impl From<&WorldError> for SceneError {
     }
 }
 
-/// Whether an error about a body is about one of its own fields rather than about a model.
+/// Whether an error about a body is about one of the body's own fields rather than about a model.
 fn is_field_of_body(kind: &str) -> bool {
     let plain = schema::BODY.spec.fields.iter().map(|field| field.name);
     plain.chain(schema::BODY.children.iter().map(|child| child.name)).any(|name| name == kind && name != "models")

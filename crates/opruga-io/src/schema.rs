@@ -60,7 +60,7 @@ fn describe(spec: &Spec) -> String {
     }
 }
 
-/// Tables, one of which is selected by `kind`. Each kind occurs once, because a table that matches two entries of `oneOf` is invalid. If a field
+/// Tables, one of which is selected by `kind`. Each kind occurs only once, because a table that matches two entries of `oneOf` is invalid. If a field
 /// differs between the dimensions, the values of both are allowed.
 fn kinds(specs: &[&'static Spec], catalogue: &Catalogue) -> Value {
     let table = |kind: Vec<&'static Spec>| {

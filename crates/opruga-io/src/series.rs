@@ -81,7 +81,7 @@ pub fn write_vtk_series(out: &mut dyn Write, files: &[(String, f64)]) -> io::Res
     writeln!(out)
 }
 
-/// The elements that are drawn for a body. Their nodes are counted from the first node of the first body.
+/// The elements that are drawn for a body. The nodes of these elements are counted from the first node of the first body.
 struct Elements {
     /// Elements with their VTK type.
     all: Vec<(u8, Vec<usize>)>,

@@ -160,8 +160,8 @@ impl<const D: usize> Mesh<D> {
         Ok(self)
     }
 
-    /// Whether neighbours that are cut around their diagonals 0–6 cut their common faces along the same diagonal. This is the case on grids, and if a
-    /// file numbers the corners of all hexahedra in the same way.
+    /// Whether neighbours that are cut around their diagonals 0–6 cut their common faces along the same diagonal. They do so on grids, and if a file
+    /// numbers the corners of all hexahedra in the same way.
     fn are_cut_alike(&self) -> bool {
         let mut faces: Vec<([u32; 4], [u32; 2])> = Vec::with_capacity(6 * self.cells.hexahedra.len());
         for cell in &self.cells.hexahedra {
@@ -213,8 +213,8 @@ impl<const D: usize> Mesh<D> {
     }
 }
 
-/// Six tetrahedra from the node with the lowest number to the faces that do not contain it, each of which is cut from its own lowest node. So
-/// neighbours cut their common face in the same way, however their corners are numbered.
+/// Six tetrahedra from the node with the lowest number to the faces that do not contain it, each of which is cut from its own lowest node. In this
+/// way, neighbours cut their common face in the same way, however their corners are numbered.
 fn from_the_least(cell: &[u32; 8]) -> impl Iterator<Item = [u32; 4]> {
     let least = cell.iter().copied().fold(u32::MAX, u32::min);
     HEXAHEDRON_FACES

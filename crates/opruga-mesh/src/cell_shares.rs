@@ -66,7 +66,7 @@ fn of_hexahedron(x: &[Point; 8]) -> [f64; 8] {
 
 impl<const D: usize> Mesh<D> {
     /// The integral of the shape functions ∫ Nₐ dV [m², m³] over the cells whose nodes are all selected, for every node of these cells. Multiplied by
-    /// a force per volume, it gives the nodal forces that do the same work in every motion of the cells.
+    /// a force per volume, this integral gives the nodal forces that do the same work in every motion of the cells.
     ///
     /// The values add up to the measure of these cells. Corners of quadratic tetrahedra have negative values, which is correct: the nodes at the
     /// midpoints of their edges have larger ones. Node numbers beyond the last node are ignored.

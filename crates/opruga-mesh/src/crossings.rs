@@ -221,8 +221,8 @@ fn reaches(segment: &[[f64; 3]; 2], triangle: &[[f64; 3]; 3]) -> bool {
     around.iter().all(|x| *x >= 0.0) || around.iter().all(|x| *x <= 0.0)
 }
 
-/// Does the same as `reaches` for a segment in the plane of the triangle. Both are projected along the axis for which the projection of the triangle
-/// is largest.
+/// Does the same as `reaches` for a segment in the plane of the triangle. The segment and the triangle are projected along the axis for which the
+/// projection of the triangle is largest.
 fn reaches_in_plane(segment: &[[f64; 3]; 2], triangle: &[[f64; 3]; 3]) -> bool {
     let axis = widest(triangle);
     let flat = |p: &[f64; 3]| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] };

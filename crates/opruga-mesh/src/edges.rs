@@ -10,9 +10,9 @@ use crate::quadratic::{tetrahedron_parts, triangle_parts};
 pub enum EdgeSet {
     /// Edges of the boundary facets.
     Boundary,
-    /// Edges of facets, wires, sheets and cells. This excludes the diagonals that only cut the boundary faces of hexahedra into triangles, because
-    /// they would stiffen one diagonal of the skin and not the other. Quadratic cells have the edges of the triangles through the nodes of their
-    /// faces.
+    /// Edges of facets, wires, sheets and cells. This set excludes the diagonals that only cut the boundary faces of hexahedra into triangles,
+    /// because they would stiffen one diagonal of the skin and not the other. Quadratic cells have the edges of the triangles through the nodes of
+    /// their faces.
     All,
     /// `All`, with both diagonals of every quadrilateral and of every face of a hexahedron (not the diagonals through its interior).
     AllWithShear,
@@ -45,8 +45,8 @@ pub fn edge_runs(edges: &[[u32; 2]]) -> Vec<EdgeRun> {
     runs
 }
 
-/// The largest difference |b − a| between the indices of the ends of an edge, which is the distance between neighbours in memory. It is zero if there
-/// are no edges.
+/// The largest difference |b − a| between the indices of the ends of an edge, which is the distance between neighbours in memory. The difference is
+/// zero if there are no edges.
 pub fn bandwidth(edges: &[[u32; 2]]) -> u32 {
     edges.iter().map(|&[a, b]| a.abs_diff(b)).max().unwrap_or(0)
 }

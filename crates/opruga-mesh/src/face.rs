@@ -6,8 +6,8 @@ use crate::outline::{Ring, triangles_between};
 /// A corner is straight if its triangle with its neighbours has less than this fraction of the area of the face.
 const STRAIGHT: f64 = 1e-12;
 
-/// A face is folded too far if its corners are farther from its plane than this fraction of its size. This is the value for a square that is folded
-/// along its diagonal by a right angle.
+/// A face is folded too far if its corners are farther from its plane than this fraction of its size. The fraction has this value for a square that
+/// is folded along its diagonal by a right angle.
 const FOLDED: f64 = 0.25;
 
 /// If the lengths of the diagonals differ by less than this fraction, the first one is used, so that rounding does not decide.

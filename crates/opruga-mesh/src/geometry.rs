@@ -74,9 +74,9 @@ pub(crate) fn quadrilateral_area(corners: &[Point; 4]) -> f64 {
 
 /// The signed volume that closed facets enclose: area ½Σ(xᵢyⱼ − xⱼyᵢ) [m²] in the plane, volume ⅙ΣXₐ·(X_b×X_c) [m³] in space.
 ///
-/// The volume is positive for counter-clockwise outlines and outward triangles. It is computed relative to the first node of the first facet, so that
-/// a small body far from the origin keeps its digits. The volume has no meaning if facets are not closed, and is zero if there are no facets. Shapes:
-/// `facets` F×D, `positions` N×D.
+/// The volume is positive for counter-clockwise outlines and outward triangles. The volume is computed relative to the first node of the first facet,
+/// so that a small body far from the origin keeps its digits. The volume has no meaning if facets are not closed, and is zero if there are no facets.
+/// Shapes: `facets` F×D, `positions` N×D.
 ///
 /// # Panics
 /// If a facet names a node beyond `positions`; [`crate::Mesh::validate`] finds such facets.

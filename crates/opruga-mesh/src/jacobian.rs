@@ -10,10 +10,11 @@
 //! | quadratic tetrahedron | 3 | 20 |
 //! | hexahedron | 2 along each axis | 27 |
 //!
-//! Its values are between the smallest and the largest coefficient, and the values at the vertices are coefficients. If all coefficients are
-//! positive, the cell is nowhere inverted. A negative value proves that the cell is inverted somewhere. Otherwise the cell is bisected (de
-//! Casteljau), which brings the coefficients closer to the values: the gap between them falls with the square of the size. A piece without negative
-//! coefficients needs no further bisection. After [`MOST_PIECES`] pieces the bisection ends, and the minimum is known to lie between two bounds.
+//! The values of the determinant are between the smallest and the largest coefficient, and the values at the vertices are coefficients. If all
+//! coefficients are positive, the cell is nowhere inverted. A negative value proves that the cell is inverted somewhere. Otherwise the cell is
+//! bisected (de Casteljau), which brings the coefficients closer to the values: the gap between them falls with the square of the size. A piece
+//! without negative coefficients needs no further bisection. After [`MOST_PIECES`] pieces the bisection ends, and the minimum is known to lie between
+//! two bounds.
 //!
 //! # Source
 //! A. Johnen, J.-F. Remacle, C. Geuzaine, "Geometrical validity of curvilinear finite elements", Journal of Computational Physics 233 (2013).
@@ -225,7 +226,8 @@ impl Net {
     }
 
     /// The determinant of a quadratic simplex. Each ∂x/∂ξₖ is linear. The index of a coefficient of a product of D linear functions names D corners.
-    /// They are assigned to the factors in every possible way, and the coefficient is the mean of the products of the factors at their corners.
+    /// These corners are assigned to the factors in every possible way, and the coefficient is the mean of the products of the factors at their
+    /// corners.
     fn quadratic<const D: usize, const E: usize>(nodes: &[[f64; D]], edges: &[[usize; 2]; E]) -> Net {
         let corners = D + 1;
         // ∂x/∂λᵢ at corner c: (4 δ − 1) xᵢ + 4 xᵢ꜀.

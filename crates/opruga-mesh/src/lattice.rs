@@ -131,8 +131,8 @@ impl<const D: usize> Mesh<D> {
 impl Mesh<2> {
     /// A filled quadrilateral through four corners [m], counter-clockwise, with `cells` quadrilaterals along its first and its second side.
     ///
-    /// It is a grid of the unit square. Each point (s, t) of the square is mapped to a bilinear mean of the corners. Groups: `bottom` runs from
-    /// corner 0 to 1, `right` from 1 to 2, `top` from 3 to 2, `left` from 0 to 3.
+    /// The quadrilateral is a grid of the unit square. Each point (s, t) of the square is mapped to a bilinear mean of the corners. Groups: `bottom`
+    /// runs from corner 0 to 1, `right` from 1 to 2, `top` from 3 to 2, `left` from 0 to 3.
     ///
     /// # Errors
     /// The errors of [`Mesh::grid`]; [`MeshError::Size`] with the area at a corner if the quadrilateral is not convex and counter-clockwise there.

@@ -1,8 +1,8 @@
 //! Bodies at rest: positions and topology, with common code for the plane and for space.
 //!
-//! A [`Mesh`] contains rest positions and the elements between them: boundary facets, wires, sheets, filled cells, named node groups. It is created
-//! by a generator ([`Mesh::ring`], [`Mesh::polygon`], [`Mesh::grid`], [`Mesh::icosphere`], …), by hand or by an importer. Everything else in this
-//! crate reads it:
+//! A [`Mesh`] contains rest positions and the elements between them: boundary facets, wires, sheets, filled cells, named node groups. A mesh is
+//! created by a generator ([`Mesh::ring`], [`Mesh::polygon`], [`Mesh::grid`], [`Mesh::icosphere`], …), by hand or by an importer. Everything else in
+//! this crate reads it:
 //!
 //! | question | answer |
 //! |---|---|

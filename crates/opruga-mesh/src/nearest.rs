@@ -17,7 +17,7 @@ impl Nearest {
         Nearest { tree: Tree::of(corners.iter().copied()), corners }
     }
 
-    /// The point of the surface nearest to a point; if there are several, the one on the facet with the lowest number.
+    /// The point of the surface nearest to a point; if there are several, the point on the facet with the lowest number.
     pub(crate) fn point(&self, from: [f64; 3]) -> [f64; 3] {
         let mut best = (f64::INFINITY, u32::MAX, from);
         let mut waiting = vec![1usize];

@@ -57,8 +57,8 @@ fn quadrilateral(x: f64, y: f64) -> [(f64, [f64; 2]); 4] {
     ]
 }
 
-/// The integration points of a side with `nodes` nodes in `dimensions` dimensions. They integrate products of a shape function and the area vector
-/// ∂x/∂ξ × ∂x/∂η exactly.
+/// The integration points of a side with `nodes` nodes in `dimensions` dimensions. With these points, products of a shape function and the area
+/// vector ∂x/∂ξ × ∂x/∂η are integrated exactly.
 ///
 /// # Source
 /// Gauss; D. A. Dunavant, International Journal for Numerical Methods in Engineering 21 (1985), degree 4.

@@ -44,7 +44,7 @@ pub fn weld(positions: &mut Vec<[f64; 3]>, triangles: &mut [[u32; 3]], distance:
     Ok(joined)
 }
 
-/// For every point, the first one with the same coordinates; −0 equals 0.
+/// For every point, the first point with the same coordinates; −0 equals 0.
 fn first_coincident(positions: &[[f64; 3]]) -> Vec<u32> {
     const FREE: u32 = u32::MAX;
     let key = |node: u32| positions[node as usize].map(|x| (x + 0.0).to_bits());
@@ -121,7 +121,8 @@ pub struct Turned {
 const FLAT: f64 = 1e-12;
 
 impl<const D: usize> Mesh<D> {
-    /// Drops nodes that no element uses; returns their number. They are also removed from groups. The carriers of a skin are nodes of elements.
+    /// Drops nodes that no element uses; returns their number. These nodes are also removed from groups. The carriers of a skin are nodes of
+    /// elements.
     pub fn drop_unreferenced(&mut self) -> usize {
         let mut used = vec![false; self.nodes()];
         for (_, _, nodes) in self.elements() {

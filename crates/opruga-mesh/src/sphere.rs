@@ -83,7 +83,7 @@ impl Mesh<3> {
     /// A sphere of radius r [m] about the origin. It is an icosahedron with corners on the z axis, whose faces are divided into four `subdivisions`
     /// times; each new node is projected onto the sphere.
     ///
-    /// It has 10·4ˢ + 2 nodes (12, 42, 162, 642, 2562, 10242, 40962, 163842) and 20·4ˢ facets. Twelve nodes have 5 neighbours, all others 6.
+    /// The sphere has 10·4ˢ + 2 nodes (12, 42, 162, 642, 2562, 10242, 40962, 163842) and 20·4ˢ facets. Twelve nodes have 5 neighbours, all others 6.
     ///
     /// Nodes are numbered in rows from the north pole to the south pole, so that neighbours are close in memory: at most 10·2ˢ apart in index. The
     /// belt, half of all nodes, has edges in only three directions, in long runs.

@@ -96,7 +96,7 @@ pub(crate) async fn read(file: &web_sys::File, most: u64) -> Chosen {
     Ok((name, Uint8Array::new(&buffer).to_vec()))
 }
 
-/// Lets the user choose a file. This is needed because phones do not allow files to be dropped on a page.
+/// Lets the user choose a file. The choice is needed because phones do not allow files to be dropped on a page.
 pub(crate) fn choose(endings: &str, most: u64) -> Receiver<Chosen> {
     let (sender, receiver) = channel();
     let page = window().and_then(|window| window.document());

@@ -10,7 +10,7 @@ use opruga::io::Files;
 use std::collections::{BTreeMap, BTreeSet};
 use toml_edit::Value as Toml;
 
-/// A difference of the right scene from the left one. It applies from the start of the run.
+/// A difference of the right scene from the left one. The difference applies from the start of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Difference {
     /// A parameter by its path.

@@ -16,8 +16,8 @@ const SHAPES: [(&str, &str, bool); 6] = [
     ("glb", "size = 1.0", true),
 ];
 
-/// Returns the request for a dropped file: to open a scene, or to add the shape in the file to the scene. A file that is neither, or that is too
-/// large, is refused before it is read.
+/// Returns the request for a dropped file: to open a scene, or to add the shape in the file to the scene. A file that is neither a scene nor a shape,
+/// or that is too large, is refused before it is read.
 ///
 /// # Errors
 /// Why it is refused.

@@ -17,7 +17,7 @@ struct Frame {
     triangles: f64,
     /// The simulation, if it does not have its own thread.
     simulation: f64,
-    /// All work of the thread: the above, and the work of the driver in this thread.
+    /// All work of the thread: the work of the parts above, and the work of the driver in this thread.
     thread: f64,
 }
 

@@ -33,7 +33,7 @@ pub enum Step {
     Shape(&'static str),
     /// A body was deleted.
     Delete,
-    /// Another scene was opened instead of the one of this name.
+    /// A scene was opened instead of the scene of this name.
     Open(String),
     /// A body was pulled with the pointer.
     Pull,

@@ -32,7 +32,7 @@ pub struct Copied {
     pub registries: Registries,
     /// The differences of the right scene, if there is one.
     pub differences: Option<Vec<Difference>>,
-    /// The number of frames up to the last one of this run.
+    /// The number of frames up to the last frame of this run.
     pub frames: u64,
     /// A fingerprint of the present text.
     pub mark: u64,

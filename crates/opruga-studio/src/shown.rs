@@ -181,8 +181,8 @@ pub struct Message {
     pub frame_seconds: Option<f64>,
 }
 
-/// The extent of a body. It is computed once per picture, because the window needs it several times, and the bodies may have tens of thousands of
-/// nodes.
+/// The extent of a body. The extent is computed once per picture, because the window needs it several times, and the bodies may have tens of
+/// thousands of nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// The lowest and the highest corner of the box around the nodes [m]; interchanged if the body has no nodes.

@@ -1,5 +1,5 @@
-//! Work in the background, such as films and thumbnails. It is done on its own thread or, in a browser, which has no threads, in slices between two
-//! pictures of the window.
+//! Work in the background, such as films and thumbnails. Such work is done on its own thread or, in a browser, which has no threads, in slices
+//! between two pictures of the window.
 
 use std::sync::mpsc::Receiver;
 
@@ -42,7 +42,7 @@ mod threaded {
         }
     }
 
-    /// A point in long work at which the interface may run. This version does nothing, because the work has its own thread.
+    /// A point in long work at which the interface may run. This version of the function does nothing, because the work has its own thread.
     pub async fn breathe() {}
 }
 

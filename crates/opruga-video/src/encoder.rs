@@ -9,7 +9,7 @@ use super::residual::{Counts, Quantisers, Residual};
 use super::tables::PATTERNS;
 use crate::image::Image;
 
-/// The largest motion that is searched [pixels]. All levels of the format allow it.
+/// The largest motion that is searched [pixels]. All levels of the format allow a motion of this size.
 const FURTHEST: i32 = 56;
 
 /// The maximum number of steps of a search.

@@ -1,13 +1,13 @@
 //! Errors, warnings and names of kinds in other languages: translations in Fluent syntax, looked up by code, variant and fields of a message, and by
 //! the path of a name.
 //!
-//! The name of an entry consists of the code, in which `-` replaces the point, and the variant: `msh-version-Unknown`. Its attributes `.allowed` and
-//! `.hint` are the texts of the same name. A field is a variable; if it is a message itself, its own entry is used. The cases of a selector match a
-//! count by numbers and by plural categories of the language. They match a text by the text itself, a message by its variant, and a missing field by
-//! `none`. `NUMBER` supports `maximumSignificantDigits`, which is 6 by default. The first argument of `ALLOWED` and `HINT` is a field that is a
-//! message: `ALLOWED` inserts the allowed values of this message, and `HINT` its hint. If the message has none, the text of the next argument is
-//! used. `ABOUT` inserts the description of the parameter whose path is in a field. If the text of an entry is empty, the English text is used
-//! instead.
+//! The name of an entry consists of the code, in which `-` replaces the point, and the variant: `msh-version-Unknown`. The attributes `.allowed` and
+//! `.hint` of the entry are the texts of the same name. A field is a variable; if it is a message itself, its own entry is used. The cases of a
+//! selector match a count by numbers and by plural categories of the language. These cases match a text by the text itself, a message by its variant,
+//! and a missing field by `none`. `NUMBER` supports `maximumSignificantDigits`, which is 6 by default. The first argument of `ALLOWED` and `HINT` is
+//! a field that is a message: `ALLOWED` inserts the allowed values of this message, and `HINT` its hint. If the message has none, the text of the
+//! next argument is used. `ABOUT` inserts the description of the parameter whose path is in a field. If the text of an entry is empty, the English
+//! text is used instead.
 //!
 //! # Source
 //! Project Fluent, "Fluent Syntax Guide", <https://projectfluent.org/fluent/guide/>; Unicode CLDR, "Language Plural Rules".
@@ -63,7 +63,7 @@ impl Translation {
         &CROATIAN
     }
 
-    /// Parses the texts of files; also returns their errors. If two entries have the same name, the later one is used.
+    /// Parses the texts of files; also returns their errors. If two entries have the same name, the later entry is used.
     fn new(files: &[&'static str]) -> (Translation, Vec<String>) {
         let (mut translation, mut problems) = (Translation::default(), Vec::new());
         for file in files {

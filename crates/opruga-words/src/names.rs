@@ -1,7 +1,7 @@
 //! The names of kinds, of their parameters, and of the values of these parameters.
 //!
 //! An entry is named after its subject: `model-fem` is a kind, `model-fem-plane` is a parameter of this kind, and `model-every-plane` is this
-//! parameter of all kinds without an entry of their own. Its attribute `.about` is a description.
+//! parameter of all kinds without an entry of their own. The attribute `.about` of an entry is a description.
 
 use crate::Translation;
 use fluent_syntax::ast::{Entry, Pattern, PatternElement};
@@ -86,7 +86,7 @@ impl Translation {
     /// Adds the names of kinds that a program registers, given in Fluent syntax.
     ///
     /// # Errors
-    /// The errors of the text: its syntax, existing names, names with variables. All other entries are added.
+    /// The errors of the text: its syntax, existing names, names with variables. All entries without errors are added.
     pub fn add_names(&self, text: &'static str) -> Result<(), Vec<String>> {
         let problems = self.names.write().unwrap_or_else(PoisonError::into_inner).add(text);
         if problems.is_empty() { Ok(()) } else { Err(problems) }

@@ -14,8 +14,8 @@ pub use opruga_math::{Pack, Simd};
 
 use std::ops::Range;
 
-/// An integrator that moves the coordinates to the end of the step one after another, each independently of the others. It is short to write, whereas
-/// the integrators of this library process eight numbers at a time.
+/// An integrator that moves the coordinates to the end of the step one after another, each independently of the others. Such an integrator is short
+/// to write, whereas the integrators of this library process eight numbers at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct ByCoordinate<F> {
     /// The substep [s].

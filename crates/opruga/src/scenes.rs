@@ -136,8 +136,8 @@ opruga_math::messages! {
 /// All messages of scenes by name, for catalogues.
 pub const MESSAGES: &[&[Variant]] = &[NoSuchScene::VARIANTS];
 
-/// The error for a name that belongs to no file and to no scene of the library. It lists the scenes, and the files in the folder, that have similar
-/// names.
+/// The error for a name that belongs to no file and to no scene of the library. The error lists the scenes, and the files in the folder, that have
+/// similar names.
 pub fn missing(name: &str) -> SceneError {
     let path = Path::new(name);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());

@@ -342,8 +342,8 @@ impl Drawing<'_> {
         points.clear();
     }
 
-    /// Draws the nodes as dots, if requested. A body with a known node spacing gets no dots if they would be too close together. Otherwise the dots
-    /// shrink with the distance of the nodes.
+    /// Draws the nodes as dots, if requested. A body with a known node spacing gets no dots if they would be too close together. Otherwise, the dots
+    /// shrink with the distance between the nodes.
     fn nodes(&self, canvas: &mut Canvas) {
         if !self.body.nodes_drawn {
             return;

@@ -146,8 +146,8 @@ mod tests {
         assert!(Picture { bodies: vec![body], ..Default::default() }.check().is_err());
     }
 
-    /// An area whose lower half is folded up over its upper half covers the region of the upper half. It has no hole, although the even-odd rule
-    /// leaves one where the line of the area overlaps itself.
+    /// An area whose lower half is folded up over its upper half covers the region of the upper half. The area has no hole, although the even-odd
+    /// rule leaves one where the line of the area overlaps itself.
     #[test]
     fn a_folded_drawing_has_no_holes() {
         let positions =

@@ -5,7 +5,7 @@ use tiny_skia::{PixmapMut, PremultipliedColorU8};
 /// A corner of a triangle: its pixel, and the fraction of the colour map for its scalar, from 0 to 1.
 pub(crate) type Corner = ([f32; 2], f64);
 
-/// Fills a triangle. The colours extend `reach` pixels beyond its edges.
+/// Fills a triangle. The colours extend `reach` pixels beyond the edges of the triangle.
 pub(crate) fn triangle(pixmap: &mut PixmapMut, corners: [Corner; 3], reach: f32, colour: &dyn Fn(f64) -> [u8; 3]) {
     let [a, b, c] = corners.map(|corner| corner.0);
     let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);

@@ -36,7 +36,8 @@ impl Mask {
         }
     }
 
-    /// The samples outside the covered region whose distance from it is at most a radius. They are found by drawing a disc around each border sample.
+    /// The samples outside the covered region whose distance from it is at most a radius. These samples are found by drawing a disc around each
+    /// border sample.
     fn around(&self, radius: f32) -> Vec<bool> {
         let mut around = vec![false; self.covered.len()];
         let reach = radius.floor().max(1.0) as isize;

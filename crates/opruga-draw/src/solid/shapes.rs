@@ -4,8 +4,8 @@ use super::camera::{along, cross, unit};
 use crate::picture::ColliderPicture;
 use std::f64::consts::{PI, TAU};
 
-/// The scale at which round obstacles are drawn. They are slightly reduced, because only the nodes of a cloth touch them. Between its nodes, the
-/// cloth is inside the obstacle and would be hidden.
+/// The scale at which round obstacles are drawn. These obstacles are slightly reduced, because only the nodes of a cloth touch them. Between its
+/// nodes, the cloth is inside the obstacle and would be hidden.
 const ROUND: f64 = 0.985;
 
 /// A surface of triangles.

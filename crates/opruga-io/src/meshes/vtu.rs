@@ -347,7 +347,7 @@ impl Reader<'_> {
         if out.len() as u64 == count { Ok(out) } else { Err(self.wrong_count(array, out.len() as u64, count)) }
     }
 
-    /// Returns the bytes of a binary array: a header with sizes, then the data. Both are either raw bytes or letters.
+    /// Returns the bytes of a binary array: a header with sizes, then the data. Header and data are either raw bytes or letters.
     fn unpack(
         &self,
         array: Node<'_, '_>,

@@ -29,7 +29,7 @@ opruga_math::messages! {
         /// The recording has no frames.
         "recording.no_frame" #[error("the recording has no frame {frame}")] #[value("{frame}")] #[allowed("none: it has no frames")]
         NoFrames { frame: u64 },
-        /// The recording does not contain the state of that frame, which must be computed from an earlier one.
+        /// The recording does not contain the state of that frame, which must be computed from an earlier state.
         "recording.not_kept" #[error("the recording keeps one state every {every} frames, but not that of frame {frame}")] #[value("{frame}")]
         #[allowed("one frame in {every}, and the last frame")]
         NotKept { frame: u64, every: u64 },

@@ -26,8 +26,8 @@ pub struct Header {
     pub scene: Vec<u8>,
     /// The length of a frame [s].
     pub frame: f64,
-    /// The number of frames from one kept state to the next; the frames between them are computed again. It is at least 1, which keeps every state.
-    /// The states of the first and the last frame are always kept.
+    /// The number of frames from one kept state to the next; the frames between them are computed again. The number is at least 1, which keeps every
+    /// state. The states of the first and the last frame are always kept.
     pub every: u64,
     /// The overrides of the call, each a path and a value.
     pub overrides: Vec<(String, String)>,

@@ -24,7 +24,7 @@ pub struct Writer<W> {
     /// The last state that was kept.
     previous: Vec<u8>,
     order: Order,
-    /// The number of states from the last complete one on, which is included.
+    /// The number of states from the last complete state on, including that state.
     group: u64,
     /// Frame and offset of each chunk with a complete state.
     index: Vec<[u64; 2]>,

@@ -38,7 +38,7 @@ struct Draft<'n, const D: usize> {
     pins: Vec<pins::Located<D>>,
     contact: Option<Values>,
     copies: Option<Copies<D>>,
-    /// Whether its nodes have no errors, so that selectors of nodes can be checked.
+    /// Whether the nodes of the body have no errors, so that selectors of nodes can be checked.
     shaped: bool,
     /// Whether the body has no errors at all.
     sound: bool,

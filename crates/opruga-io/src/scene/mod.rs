@@ -76,7 +76,7 @@ pub struct Reading {
     pub errors: Vec<SceneError>,
     /// Notices about anything unusual in the scene.
     pub notices: Vec<Notice>,
-    /// The files that the scene names, by name. They are needed to read the scene again.
+    /// The files that the scene names, by name. These files are needed to read the scene again.
     pub files: BTreeMap<String, Arc<[u8]>>,
     /// The names of files that the scene names but that could not be read.
     pub unread: Vec<String>,

@@ -1,5 +1,5 @@
-//! The frames with which commands begin and end. Each is the first frame that begins at the given time or later. Commands that therefore never act
-//! are reported.
+//! The frames with which commands begin and end. Each of these frames is the first frame that begins at the given time or later. Commands that
+//! therefore never act are reported.
 
 use super::errors::{CommandError, SceneHint};
 use super::location_of;

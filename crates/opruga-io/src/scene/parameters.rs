@@ -1,4 +1,4 @@
-//! The parameter that a `set` command changes while the scene runs. Its path is resolved when the scene is read.
+//! The parameter that a `set` command changes while the scene runs. The path of the parameter is resolved when the scene is read.
 
 use super::body_list::Bodies;
 use super::errors::{CommandError, SceneAllowed, SceneHint};

@@ -35,7 +35,7 @@ pub(super) fn pin<const D: usize>(reader: &mut Reader<'_>, node: &Node, path: &s
     Some((PinBlueprint { select, axes, motion }, location_of(node, "select"), join(path, "select")))
 }
 
-/// Reports pins that prescribe different positions of a node along the same axis. Both pins are named, once for each pair.
+/// Reports pins that prescribe different positions of a node along the same axis. Both pins of a pair are named, once for each pair.
 pub(super) fn conflicts<const D: usize>(reader: &mut Reader<'_>, pins: &[Located<D>], body: &BodyBlueprint<D>) {
     // Pins at rest cannot conflict: each keeps a node at its position.
     if pins.iter().all(|(pin, ..)| pin.motion.is_empty()) {

@@ -247,8 +247,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The names that misspelt fields probably mean, so that one mistake gives one error. If unknown fields cause only warnings, the fields that were
-    /// probably meant are still reported as missing.
+    /// The names that misspelt fields probably mean; they are used so that one mistake gives only one error. If unknown fields cause only warnings,
+    /// the fields that were probably meant are still reported as missing.
     pub(crate) fn misspelt(&self, node: &Node, section: &Section, tag: Option<&str>) -> Vec<String> {
         if self.options.lenient {
             return Vec::new();

@@ -143,8 +143,8 @@ impl Curves {
         Curves { contours: self.contours.get(begun..).unwrap_or(&[]).to_vec(), ..Curves::default() }
     }
 
-    /// Whether this is a single convex polygon that contains all points and control points of other curves, within a tolerance. It then contains the
-    /// curves.
+    /// Whether this is a single convex polygon that contains all points and control points of other curves, within a tolerance. The polygon then
+    /// contains the curves.
     pub(super) fn holds_points_of(&self, other: &Curves, within: f64) -> bool {
         let [contour] = self.contours.as_slice() else { return false };
         let mut corners = vec![contour.start];
@@ -228,7 +228,7 @@ impl Curves {
         count
     }
 
-    /// Rings that stay within `tolerance` of the curves. A point that repeats the previous one is left out.
+    /// Rings that stay within `tolerance` of the curves. A point that repeats the previous point is left out.
     pub(super) fn flatten(&self, tolerance: f64) -> Vec<Ring> {
         let flat = |contour: &Contour| {
             let mut points = vec![contour.start];

@@ -314,7 +314,7 @@ impl<'a> Reader<'a, '_> {
         Ok(out)
     }
 
-    /// Whether holes can be distinguished from islands. This is not possible yet if a ring crosses the antimeridian.
+    /// Whether holes can be distinguished from islands. They cannot be distinguished yet if a ring crosses the antimeridian.
     fn checks_holes(&self, outer: &[Point]) -> bool {
         outer.windows(2).all(|pair| (pair[1][0] - pair[0][0]).abs() < 180.0)
     }

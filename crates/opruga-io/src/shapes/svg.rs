@@ -1,11 +1,11 @@
 //! Drawings: the shapes of an SVG file as curves.
 //!
 //! The reader takes `path`, `rect`, `circle`, `ellipse`, `polygon` and `polyline` in `svg`, `g` and `a`, in the first suitable child of `switch`, and
-//! through `use`. It applies `transform`, and also the `viewBox` of an inner `svg` and of a `symbol`. Elements without an outline (`title`, `defs`,
-//! gradients …) and elements that are not displayed are skipped. Elements that would be drawn but for which no outline is computed (`text`, `image`,
-//! strokes, markers, filters, animations, masks, and clip paths that cut something off) are refused or counted. Style sheets are applied; rules with
-//! unsupported selectors are counted, or refused if they would change outlines. Every part of the drawing uses the even-odd rule, or the non-zero
-//! rule if its `fill-rule` says so. Fill colours are read if the scene asks for them.
+//! through `use`. The reader applies `transform`, and also the `viewBox` of an inner `svg` and of a `symbol`. Elements without an outline (`title`,
+//! `defs`, gradients …) and elements that are not displayed are skipped. Elements that would be drawn but for which no outline is computed (`text`,
+//! `image`, strokes, markers, filters, animations, masks, and clip paths that cut something off) are refused or counted. Style sheets are applied;
+//! rules with unsupported selectors are counted, or refused if they would change outlines. Every part of the drawing uses the even-odd rule, or the
+//! non-zero rule if its `fill-rule` says so. Fill colours are read if the scene asks for them.
 //!
 //! # Source
 //! W3C, Scalable Vector Graphics (SVG) 1.1, second edition.

@@ -1,7 +1,8 @@
 //! Style sheets of a drawing, and the rules in them that apply to an element.
 //!
-//! The reader supports selectors of names, `.class`, `#id` and `*`, which may be nested (` `, `>`) and form lists. It cannot decide to which elements
-//! rules with other selectors and conditional rules (`@media`) apply. Such a rule may apply to every element with one of the names in the rule.
+//! The reader supports selectors of names, `.class`, `#id` and `*`, which may be nested (` `, `>`) and form lists. The reader cannot decide to which
+//! elements rules with other selectors and conditional rules (`@media`) apply. Such a rule may apply to every element with one of the names in the
+//! rule.
 //!
 //! # Source
 //! W3C, Cascading Style Sheets, level 2 revision 1, chapters 5 and 6.

@@ -19,7 +19,8 @@ use std::collections::BTreeMap;
 const BENT: f64 = 0.02;
 /// A triangle is refused if its area is below this fraction of its longest edge squared.
 const THIN: f64 = 1e-10;
-/// A triangle is a sliver if its area is below this fraction of its longest edge squared. This corresponds to an angle of a tenth of a degree.
+/// A triangle is a sliver if its area is below this fraction of its longest edge squared. This fraction corresponds to an angle of a tenth of a
+/// degree.
 const SLIVER: f64 = 1e-3;
 /// Usual extents of surfaces [m].
 const USUAL: [f64; 2] = [1e-4, 1e2];

@@ -13,13 +13,13 @@ const MOST_BINS: f64 = 16.0;
 /// An area to be painted on a body.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Painted {
-    /// The boundary of the area; rings inside others are holes by the even-odd rule.
+    /// The boundary of the area; rings inside other rings are holes by the even-odd rule.
     pub rings: Vec<Ring>,
     /// Red, green, blue and opacity; none for the colour of the body.
     pub colour: Option<[u8; 4]>,
 }
 
-/// Paints areas on a body, one over another. Each point belongs to the cell that contains it, or to the nearest one.
+/// Paints areas on a body, one over another. Each point belongs to the cell that contains it, or to the nearest cell.
 ///
 /// The weights of points are bilinear in a square and barycentric in a triangle. If a body has no cells, triangles between the nodes of its outline
 /// `rings` are used instead. A body of squares touches others with its outline `rings`, divided into edges of about half a cell.
@@ -179,8 +179,7 @@ impl<'m> Grid<'m> {
         (along(0), along(1))
     }
 
-    /// The nodes that carry a point, and their weights. They belong to the nearby cell in which the smallest weight of the
-    /// point is largest.
+    /// The nodes that carry a point, and their weights. The nodes belong to the nearby cell in which the smallest weight of the point is largest.
     fn carrier(&self, point: [f64; 2]) -> ([u32; 4], [f64; 4]) {
         let (i, j) = self.bin(point);
         let widest = if self.counts[0] > self.counts[1] { self.counts[0] } else { self.counts[1] };

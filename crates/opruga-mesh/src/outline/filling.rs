@@ -30,8 +30,8 @@ pub fn node_estimate(rings: &[Ring], spacing: f64) -> f64 {
 ///
 /// Nodes of the rings come first and keep their order. Edges of the rings may be halved if a triangle would otherwise be too thin. Inside, the nodes
 /// form a regular triangular lattice. Between this lattice and the outline there is a constrained Delaunay triangulation, which is refined until no
-/// angle is below [`super::SMALLEST_ANGLE`]. Small triangles are not divided further, because smaller ones would require short time steps. Smaller
-/// angles in the result are reported.
+/// angle is below [`super::SMALLEST_ANGLE`]. Small triangles are not divided further, because smaller triangles would require short time steps.
+/// Smaller angles in the result are reported.
 ///
 /// # Errors
 /// [`OutlineError::TooCoarse`] if edges of the rings cross, [`OutlineError::TooFine`] if the mesh would be too large.

@@ -41,8 +41,8 @@ pub(super) fn names(painter: &Painter, named: &[Named<'_>], paper: &Paper, taken
     }
 }
 
-/// Finds a free position for a name of this size. It tries the positions below the body, also a little to the side, above it, beside it, and a little
-/// farther away. This function prefers a position that covers no other body.
+/// Finds a free position for a name of this size. The function tries the positions below the body, also a little to the side, above it, beside it,
+/// and a little farther away. This function prefers a position that covers no other body.
 fn free(body: Rect, middle: f32, size: Vec2, taken: &[Rect], others: &[Rect]) -> Option<Rect> {
     let below = Align2::CENTER_TOP.anchor_size(Pos2::new(middle, body.bottom() + 6.0), size);
     let above = Align2::CENTER_BOTTOM.anchor_size(Pos2::new(middle, body.top() - 6.0), size);

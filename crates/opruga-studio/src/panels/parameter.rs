@@ -1,4 +1,5 @@
-//! Shows a parameter in the panel: its slider, unit and description. All of them are made from the specification of the model.
+//! Shows a parameter in the panel: its slider, unit and description. The slider, the unit and the description are made from the specification of the
+//! model.
 
 use crate::words::{Language, Part};
 use egui::{ComboBox, DragValue, Response, RichText, Slider, SliderClamping, Ui};
@@ -39,7 +40,7 @@ pub enum Change {
 #[derive(Debug, Default)]
 pub struct Hand {
     grabbed: Option<(String, Value)>,
-    /// The upper ends of sliders without a limit. They are stored so that they do not change during a drag.
+    /// The upper ends of sliders without a limit. The ends are stored so that they do not change during a drag.
     ends: BTreeMap<String, f64>,
 }
 
@@ -60,7 +61,7 @@ pub fn begin(spec: &'static Spec, dimension: usize) -> Values {
     values
 }
 
-/// Returns the same values without those of the named fields. These fields are removed or get their defaults again.
+/// Returns the same values without those of the named fields. The named fields are removed or get their defaults again.
 fn without(spec: &'static Spec, values: &Values, names: &[&str], dimension: usize) -> Values {
     let mut rest = Values::defaults(spec, dimension);
     for (name, value) in values.iter().filter(|(name, _)| !names.contains(name)) {

@@ -1,4 +1,4 @@
-//! The side panel with the selected body, the world and the obstacles. It is made from the specifications of models, integrators, shapes and
+//! The side panel with the selected body, the world and the obstacles. The panel is made from the specifications of models, integrators, shapes and
 //! obstacles, so that new ones appear without further work.
 
 use super::parameter::{self, Change, FieldContext, Hand};

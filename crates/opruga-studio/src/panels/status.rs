@@ -28,8 +28,8 @@ struct Number {
     about: String,
 }
 
-/// Shows the status line with the numbers and the name of the renderer. It includes the rate of pictures if they are consecutive, the computing time
-/// of the present frame so far, and the progress of a preparation. The height of the line depends only on the width of the window.
+/// Shows the status line with the numbers and the name of the renderer. The line includes the rate of pictures if pictures are consecutive, the
+/// computing time of the present frame so far, and the progress of a preparation. The height of the line depends only on the width of the window.
 pub fn status(
     ui: &mut Ui,
     shown: &Shown,

@@ -1,5 +1,5 @@
-//! The simulation without threads. It runs before every picture of the window, for a limited time. If its frames take longer, simulated time slows
-//! down, and the status line shows by how much.
+//! The simulation without threads. The simulation runs before every picture of the window, for a limited time. If its frames take longer, simulated
+//! time slows down, and the status line shows by how much.
 
 use super::{Ask, Copied, Course};
 use crate::session::{Request, Session};

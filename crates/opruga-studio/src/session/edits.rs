@@ -437,7 +437,8 @@ pub(super) fn shift(table: &mut InlineTable, by: [f64; 3], dimension: usize) {
     table.insert("position", Toml::Array(numbers(&position)));
 }
 
-/// Returns the rotation vector of the rotation `first` followed by a rotation about the y axis. It is computed as the product of their quaternions.
+/// Returns the rotation vector of the rotation `first` followed by a rotation about the y axis. The result is computed as the product of the
+/// quaternions of both rotations.
 fn turn_about_y(angle: f64, first: [f64; 3]) -> [f64; 3] {
     let size = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
     let half = 0.5 * size(first);

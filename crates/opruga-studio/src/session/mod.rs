@@ -214,7 +214,7 @@ impl Session {
     /// Opens a scene. `setting` is either [`opruga::Options`], which means the models and integrators of the library, or a [`Setting`].
     ///
     /// # Errors
-    /// All errors in it.
+    /// All errors in the text or in the files.
     pub fn open(name: &str, text: &str, files: Files, setting: impl Into<Setting>) -> Result<Session, Report> {
         let setting = setting.into();
         let document = Document::unread(name, text, &files, &setting.registries, None)?;

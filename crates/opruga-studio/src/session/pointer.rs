@@ -136,7 +136,7 @@ impl Session {
         Ok(())
     }
 
-    /// Returns the document as it would be after the pointer is released. Otherwise the node that it holds would be held for ever.
+    /// Returns the document as it would be after the pointer is released. Without this, the node that the pointer holds would be held for ever.
     pub(super) fn let_go_of_all(&self) -> Document {
         let mut document = self.document.clone();
         if let Some((grabbed, [_, written])) =
@@ -250,7 +250,8 @@ impl Session {
         }
     }
 
-    /// Ends the drags that the scene itself applies to a body, because the user has grabbed the body. They do not resume, but a reset restores them.
+    /// Ends the drags that the scene itself applies to a body, because the user has grabbed the body. The ended drags do not resume, but a reset
+    /// restores them.
     fn take_over(&mut self, body: usize) -> Result<(), Report> {
         let Some(name) = self.engine.name(body) else { return Ok(()) };
         let times = [self.engine.time(), self.time_of(self.engine.frames() + 1)];

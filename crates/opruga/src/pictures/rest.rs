@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 /// The cosine of an angle. An edge is drawn if the normals of its two facets differ by more than this angle.
 const SHARP: f64 = 0.8;
 
-/// Whether pictures of a body show its initial position. They show it for every body in statics and for pinned bodies that own their cells, because
-/// these bend about that position. They do not show it for bodies with a skin.
+/// Whether pictures of a body show its initial position. They show this position for every body in statics and for pinned bodies that own their
+/// cells, because these bend about that position. They do not show this position for bodies with a skin.
 pub(super) fn is_shown(body: &dyn AnyBody, of_scene: &Values) -> bool {
     let integrator = body.integrator().unwrap_or(of_scene).spec();
     let pinned_solid = body.is_pinned_at_rest() && body.has_role(Role::OwnsCells);

@@ -32,7 +32,7 @@ pub struct Metric {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Quantity {
-    /// The height to which a body bounces, for the named body or, without a name, for the first one.
+    /// The height to which a body bounces, for the named body or, without a name, for the first body.
     BounceHeight(Option<String>),
     SettlingTime,
     EquilibriumRadius(Option<String>),

@@ -139,7 +139,7 @@ impl Sweep {
 
     /// Runs one point on the calling thread and measures it; none if `stop` was set in the meantime.
     ///
-    /// `clock` returns the processor time of this thread [s]. It is used only for speeds.
+    /// `clock` returns the processor time of this thread [s]. This clock is used only for speeds.
     pub fn measure(
         &self,
         number: usize,
@@ -239,7 +239,7 @@ impl Run<'_> {
     }
 
     /// Returns the processor time [ns] of a substep in the fastest of several runs. Runs are repeated until they have taken a tenth of a second
-    /// together. They are separate from the other runs and measure nothing else.
+    /// together. These runs are separate from the other runs and measure nothing else.
     fn speed(&self, blueprint: &AnyBlueprint, frames: u64) -> Result<Option<f64>, Failed> {
         let steps = frames as f64 * f64::from(blueprint.scene().time().substeps);
         let (mut fastest, mut spent) = (f64::INFINITY, 0.0);
