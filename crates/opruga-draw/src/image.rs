@@ -56,7 +56,7 @@ impl Image {
         [self.pixels[offset], self.pixels[offset + 1], self.pixels[offset + 2]]
     }
 
-    /// Copies another image to a position in this one. Parts outside this image are cut off.
+    /// Copies another image to a position in this image. Parts outside this image are cut off.
     pub fn paste(&mut self, other: &Image, x: u32, y: u32) {
         let columns = other.width.min(self.width.saturating_sub(x)) as usize;
         let rows = other.height.min(self.height.saturating_sub(y)) as usize;

@@ -125,11 +125,11 @@ pub struct BodyPicture {
     pub outlined: Option<[u8; 3]>,
     /// Whether the nodes are drawn as dots.
     pub nodes_drawn: bool,
-    /// The distance of neighbouring nodes at the start [m]. If it is too small for dots in two dimensions, no picture of the run has dots. If it is
-    /// not given, dots are always drawn.
+    /// The distance of neighbouring nodes at the start [m]. If it is too small for dots in two dimensions, no picture of the run has dots. If this
+    /// distance is not given, dots are always drawn.
     pub node_spacing: Option<f64>,
     /// The larger side of the body at the start [m]. It determines which parts of the body are drawn and how thick lines are, equally in all pictures
-    /// of a run. If it is not given, the size in this picture is used.
+    /// of a run. If this size is not given, the size in this picture is used.
     pub extent: Option<f64>,
     /// Lines of the rest shape, drawn beneath the body; may be empty.
     pub rest: RestPicture,

@@ -76,7 +76,7 @@ pub(crate) const EXPANSION: Limit = Limit { code: "limit.expansion", most: 1 << 
 pub(crate) const RULES: Limit = Limit { code: "limit.rules", most: 1 << 26, what: Counted::Rules };
 
 /// Vertices, or corners of triangles, that a glTF file draws beyond those that it contains, because it draws some of them repeatedly. The parts of
-/// its meshes count, too.
+/// the meshes of the file count, too.
 pub(crate) const INSTANCES: Limit = Limit { code: "limit.instances", most: 1 << 22, what: Counted::Vertices };
 
 /// Numbers in the arrays of a compressed file, in addition to [`NUMBERS_PER_BYTE`] numbers for each of its bytes.

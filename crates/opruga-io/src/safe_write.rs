@@ -69,7 +69,7 @@ impl core::fmt::Display for WriteError {
 impl std::error::Error for WriteError {}
 
 /// Writes a file so that its name always means a complete file: it is written under a temporary name in the same folder, synced and renamed, and the
-/// folder is synced. Returns its size [bytes].
+/// folder is synced. Returns the size of the file [bytes].
 ///
 /// # Errors
 /// `write.exists` if the file exists and `force` is not given; `write.failed` with the number of bytes written so far. In both cases the old file

@@ -83,7 +83,7 @@ impl<'a> Source<'a> {
         (before.bytes().filter(|b| *b == b'\n').count() + 1, before[line_start..].chars().count() + 1)
     }
 
-    /// The byte at a line and a column, both from 1; columns count characters. The end of the text if there is no such position.
+    /// The byte at a line and a column, both from 1; columns count characters. If there is no such position, this is the end of the text.
     pub(crate) fn offset(&self, line: usize, column: usize) -> usize {
         let mut start = 0;
         for _ in 1..line {

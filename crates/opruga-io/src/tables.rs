@@ -243,7 +243,7 @@ pub struct MomentumSummary {
 pub struct WarningSummary {
     /// The code: a stable word that programs can rely on.
     pub code: String,
-    /// One sentence.
+    /// The message, in one sentence.
     pub message: String,
     /// How often the warning occurred.
     pub count: u64,

@@ -1,6 +1,7 @@
 //! The minimum of det ∂x/∂ξ over a whole cell.
 //!
-//! The determinant of the map of a cell is a polynomial in its reference coordinates ξ. In the Bernstein basis it has these coefficients:
+//! The determinant of the map of a cell is a polynomial in its reference coordinates ξ. In the Bernstein basis, this polynomial has these
+//! coefficients:
 //!
 //! | cell | degree | coefficients |
 //! |---|---|---|

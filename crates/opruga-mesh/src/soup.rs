@@ -109,9 +109,9 @@ fn first_within(positions: &[[f64; 3]], distance: f64) -> Vec<u32> {
 /// The changes that were made to orient the triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Turned {
-    /// Triangles with the opposite orientation to their neighbours.
+    /// The number of triangles that were oriented against their neighbours.
     pub against: usize,
-    /// Components that were inside out.
+    /// The number of components that were inside out.
     pub inside_out: usize,
     /// A triangle of the first component whose enclosed volume is less than 10⁻¹² of its cubed extent, and that volume [m³].
     pub flat: Option<(u32, f64)>,

@@ -79,8 +79,8 @@ impl Mesh<3> {
     /// The closed surface of a box of `size` [m] from its `lower` corner [m], with `cells` divisions per axis. Each face is divided into two
     /// triangles per cell, with alternating diagonals.
     ///
-    /// The surface has 2(nx·ny + ny·nz + nz·nx) + 2 nodes, numbered by layers of z, rows of y, then x. It has twice as many facets minus four. Groups
-    /// as for [`Mesh::grid`].
+    /// The surface has 2(nx·ny + ny·nz + nz·nx) + 2 nodes, numbered by layers of z, rows of y, then x. It has twice as many facets as nodes, minus
+    /// four. Groups as for [`Mesh::grid`].
     ///
     /// # Errors
     /// [`MeshError::Count`] for an axis without cells; [`MeshError::Size`] for sizes that are not positive and finite; [`MeshError::TooManyNodes`].

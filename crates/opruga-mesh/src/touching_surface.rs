@@ -25,7 +25,7 @@ pub struct Carrier {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TouchingSurface<const D: usize> {
-    /// Nodes that are points, ascending. Before them come nodes that only carry points.
+    /// Nodes that are points, ascending. In this list, nodes that only carry points come first.
     pub nodes: Vec<u32>,
     /// The number of nodes that only carry points.
     pub carrying: usize,

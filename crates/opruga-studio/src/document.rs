@@ -48,7 +48,7 @@ impl Document {
     /// Makes a document from a text that the scene reader has accepted.
     ///
     /// # Errors
-    /// [`Report::Scene`] if it is not TOML.
+    /// [`Report::Scene`] if the text is not TOML.
     pub fn new(name: impl Into<String>, text: &str) -> Result<Document, Report> {
         let name = name.into();
         let text = text.parse::<DocumentMut>().map_err(|error| {

@@ -20,7 +20,7 @@ const SHAPES: [(&str, &str, bool); 6] = [
 /// or that is too large, is refused before it is read.
 ///
 /// # Errors
-/// Why it is refused.
+/// The reason why the file is refused.
 pub fn take(path: &Path) -> Result<Request, Report> {
     let file = path.file_name().map(|f| f.to_string_lossy().into_owned()).unwrap_or_default();
     let refused = |error| Report::Scene(vec![SceneError { file: file.clone(), ..error }]);
@@ -28,7 +28,7 @@ pub fn take(path: &Path) -> Result<Request, Report> {
     request(&file, bytes, || Files::beside(path))
 }
 
-/// Returns the request for a file with this name from any source. The bytes of the file are read only if it is a scene.
+/// Returns the request for a file with this name from any source. The bytes of the file are read only if the file is a scene.
 pub(crate) fn request(
     file: &str,
     bytes: impl FnOnce() -> Result<Vec<u8>, Report>,

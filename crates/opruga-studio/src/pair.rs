@@ -47,7 +47,7 @@ struct Pair {
     twins: Twins,
     /// The reason why the right side has stopped, if it has.
     stopped: Option<Report>,
-    /// Whether the right side has missed a command. If it has, it must be rebuilt.
+    /// Whether the right side has missed a command. After that, the right side must be rebuilt.
     behind: bool,
 }
 

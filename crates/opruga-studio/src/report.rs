@@ -110,7 +110,7 @@ pub enum Report {
     NoShapeFile(String, String),
     /// The name of a file cannot be used in a scene.
     NameOfFile(String),
-    /// A file is too large. Contains its size and the limit [bytes].
+    /// A file is too large. Contains the name and the size of the file, and the limit [bytes].
     TooLarge(String, u64, u64),
     /// A file cannot be read.
     Unreadable(String),
@@ -126,7 +126,7 @@ pub enum Report {
     NothingToDraw,
     /// The link was copied.
     LinkCopied,
-    /// A scene has too many characters for an address. Contains their number and the limit.
+    /// A scene has too many characters for an address. Contains the number of characters and the limit.
     AddressTooLong(usize, usize),
     /// The address names no known scene. Contains the names that an address may contain.
     AddressUnknown(String),

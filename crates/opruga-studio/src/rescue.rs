@@ -93,7 +93,7 @@ pub fn write(path: &Path, shared: &Shared) -> Result<(), Report> {
 /// Reads the saved scene.
 ///
 /// # Errors
-/// [`Report`] with the reason why it cannot be read.
+/// [`Report`] with the reason why the scene cannot be read.
 pub fn read(path: &Path) -> Result<Shared, Report> {
     let refused = |error| Report::Scene(vec![SceneError { file: path.display().to_string(), ..error }]);
     share::unpack(&scene::bytes_of(path, &scene::Limits::default()).map_err(refused)?)
@@ -102,7 +102,7 @@ pub fn read(path: &Path) -> Result<Shared, Report> {
 /// Reopens the session that was lost. The session goes to the moment at which it was lost, and stops there.
 ///
 /// # Errors
-/// [`Report`] with the reason why it cannot be opened.
+/// [`Report`] with the reason why the scene cannot be opened.
 pub fn resume(shared: &Shared, setting: impl Into<Setting>) -> Result<Session, Report> {
     let mut session = Session::open(&shared.name, &shared.text, shared.files.clone(), setting)?;
     session.go_to_the_end();

@@ -1,4 +1,4 @@
-//! The data of a session that the interface shows: one picture and the numbers beside it. The thread of the simulation makes them.
+//! The data of a session that the interface shows: one picture and the numbers beside it. The thread of the simulation makes these data.
 
 use crate::differences::Difference;
 use crate::report::{Report, Step};
@@ -277,7 +277,7 @@ pub struct Shown {
     pub redo: Option<Step>,
     /// The last message.
     pub message: Option<Message>,
-    /// The number of scenes that were opened or rebuilt so far. The view is fitted once for each of them.
+    /// The number of scenes that were opened or rebuilt so far. The view is fitted once for each of these scenes.
     pub opened: u64,
     /// How often the state was suddenly replaced by a different one, for example by undo, a reset or the time slider. Everything that was fitted to
     /// the earlier states is then fitted again.

@@ -8,8 +8,8 @@ use std::sync::Arc;
 /// A monospaced font for excerpts of files and for time: the characters of English and Croatian from Hack.
 const MONOSPACE: &[u8] = include_bytes!("../font/hack-subset.ttf");
 
-/// Adds the fonts of the interface to others. In a desktop window, missing characters come from the fonts of the toolkit. A web page need not contain
-/// these, because a browser draws missing characters with its own fonts.
+/// Adds the fonts of the interface to other fonts. In a desktop window, missing characters come from the fonts of the toolkit. A web page need not
+/// contain these, because a browser draws missing characters with its own fonts.
 fn with_own(mut fonts: FontDefinitions) -> FontDefinitions {
     // This font of the pictures contains the characters of formulas and of Croatian.
     fonts.font_data.insert("inter".into(), Arc::new(FontData::from_static(opruga::draw::FONT)));

@@ -135,7 +135,7 @@ impl Residual {
         out
     }
 
-    /// Finds the levels of the luma and draws it.
+    /// Finds the levels of the luma, and draws the luma that a decoder restores from them.
     fn take_luma(
         &mut self,
         source: &Frame,
@@ -178,7 +178,7 @@ impl Residual {
         }
     }
 
-    /// Finds the levels of the chroma and draws it.
+    /// Finds the levels of the chroma, and draws the chroma that a decoder restores from them.
     fn take_colour(
         &mut self,
         source: &Frame,

@@ -36,7 +36,7 @@ pub struct Axis {
     pub unit: String,
     /// Whether the axis is logarithmic: equal distances mean equal ratios, and values that are not positive are omitted.
     pub logarithmic: bool,
-    /// The values at the ends of the axis. If they are not given, they are found from the data.
+    /// The values at the ends of the axis. If the values are not given, they are found from the data.
     pub range: Option<[f64; 2]>,
 }
 

@@ -143,7 +143,7 @@ pub(super) fn nodes(scanner: &mut Scanner<'_>, found: &mut Found) -> Result<Numb
     Ok(numbers)
 }
 
-/// `$Elements`: blocks of elements of one type and one entity. The entity determines their physical groups.
+/// `$Elements`: blocks of elements of one type and one entity. The entity determines the physical groups of the elements.
 pub(super) fn elements(scanner: &mut Scanner<'_>, context: &mut Context, numbers: &Numbers) -> Result<(), SceneError> {
     let blocks = count(scanner, 20, [Expected::NumberOfBlocks, Expected::Blocks])?;
     let (promised, from) = long(scanner, Expected::NumberOfElements)?;

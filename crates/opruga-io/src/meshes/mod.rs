@@ -81,7 +81,7 @@ pub struct MeshFile<'a> {
     beside: Option<Beside>,
 }
 
-/// The second file of a TetGen mesh. Positions in messages may refer to it.
+/// The second file of a TetGen mesh. Positions in messages may refer to this file.
 #[derive(Debug)]
 struct Beside {
     name: String,

@@ -48,7 +48,7 @@ impl<R: Read + Seek> Recording<R> {
     /// Reads the header and the index. If there is no index, makes it from the heads of all chunks.
     ///
     /// # Errors
-    /// [`RecordingError`] if the header is not that of a complete recording. Damage after it is reported by [`Recording::ending`].
+    /// [`RecordingError`] if the header is not that of a complete recording. Damage after the header is reported by [`Recording::ending`].
     pub fn open(mut source: R) -> Result<Recording<R>, RecordingError> {
         let length = source.seek(SeekFrom::End(0))?;
         source.rewind()?;

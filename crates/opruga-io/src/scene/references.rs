@@ -9,7 +9,7 @@ use opruga_core::spec::nearest;
 use opruga_world::blueprint::BodyBlueprint;
 
 impl<const D: usize> Bodies<D> {
-    /// The bodies that `body = …` of a table names, and the offset of selectors for each. The common name of copies means all of them.
+    /// The bodies that `body = …` of a table names, and the offset of selectors for each. The common name of copies means all copies.
     pub(crate) fn targets(&self, reader: &mut Reader<'_>, table: &Node, path: &str) -> Option<Vec<(usize, [f64; D])>> {
         if let Some((first, offsets)) = table.get("body").and_then(Node::text).and_then(|name| self.copied.get(name)) {
             return Some(offsets.iter().enumerate().map(|(k, offset)| (first + k, *offset)).collect());

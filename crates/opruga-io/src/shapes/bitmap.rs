@@ -171,8 +171,8 @@ impl Lines {
         }
     }
 
-    /// Draws the closed contours, beginning with the lowest grid lines; returns the numbers of contours and points. If there are too many, they are
-    /// only counted.
+    /// Draws the closed contours, beginning with the lowest grid lines; returns the numbers of contours and points. If there are too many contours or
+    /// points, they are only counted.
     fn contours(mut self, curves: &mut Curves) -> (u64, u64) {
         self.steps.sort_unstable_by_key(|step| step.0);
         let (mut contours, points) = (0, self.steps.len() as u64);

@@ -45,7 +45,7 @@ impl Drawing<'_> {
 /// The filling of an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Inside {
-    /// Nothing: it is a skin of edges.
+    /// Nothing: the body is a skin of edges.
     Nothing,
     /// Triangles that follow the outline, with sides of about this length [m].
     Triangles(f64),

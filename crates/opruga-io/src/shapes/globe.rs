@@ -12,7 +12,7 @@ use opruga_mesh::outline::{self, Overlap, Ring};
 const OVER: f64 = 270.0;
 /// A whole turn [°].
 const TURN: f64 = 360.0;
-/// Longitudes that differ by less are equal [°].
+/// Longitudes that differ by less than this [°] are equal.
 const SAME: f64 = 1e-9;
 
 /// A polygon: its outline, then its holes.

@@ -1,5 +1,5 @@
-//! Chooses the visible part of a scene. At the start, it contains everything. The visible part is then widened to include what moves, until the user
-//! moves the view.
+//! Chooses the visible part of a scene. At the start, this part contains everything. The visible part is then widened to include what moves, until
+//! the user moves the view.
 
 use super::camera::with_floors;
 use super::{Canvas, Doing};

@@ -128,7 +128,7 @@ pub(crate) fn paint(
     arrows::paint(look, flat, longest, &project);
 }
 
-/// Draws the filling, the springs, the outline and the vertices of a body. The positions of its nodes on the screen are in `kept`.
+/// Draws the filling, the springs, the outline and the vertices of a body. The positions of the body's nodes on the screen are in `kept`.
 fn body(look: &Look<'_>, kept: &mut Kept, map: &Colours, number: (usize, &BodyPicture), wide: bool, flat: &Flat) {
     let Look { rect, paper, shown, show, .. } = *look;
     let (index, body) = number;

@@ -80,7 +80,7 @@ impl Space {
         self.busy.load(Ordering::Acquire) || self.done.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
-    /// Uses the camera of another one.
+    /// Uses the camera of another renderer.
     pub(crate) fn share_eye(&mut self, other: &Space) {
         self.eye = other.eye;
     }

@@ -164,7 +164,7 @@ fn rows(wide: &[f32], available: f32) -> Vec<core::ops::Range<usize>> {
     rows
 }
 
-/// Shows the beginning of the first warning and the number of the others. A click shows all of them.
+/// Shows the beginning of the first warning and the number of the others. A click shows all warnings.
 fn warnings(ui: &mut Ui, shown: &Shown, words: Language) {
     let warnings = of_both(shown);
     let Some(&(right, first)) = warnings.first() else { return };

@@ -34,7 +34,7 @@ impl Link {
     /// Takes over a session; `wake` is called whenever a new picture of the window is needed.
     ///
     /// # Errors
-    /// There are none. (With threads, this function returns an error if the system refuses to start one.)
+    /// Without threads, this function returns no error. With threads, it returns an error if the system refuses to start one.
     pub fn start(mut session: Session, wake: impl Fn() + 'static) -> std::io::Result<Link> {
         let last = Arc::new(session.shown());
         let inner = Inner { course: Course::new(session), asks: Vec::new(), last };

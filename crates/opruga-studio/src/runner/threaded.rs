@@ -25,8 +25,8 @@ pub struct Link {
     break_off: Arc<BreakOff>,
 }
 
-/// Pictures that the thread has made and that may still be in use. The thread frees them after their last use. The interface would need a millisecond
-/// to free the data of a thousand bodies.
+/// Pictures that the thread has made and that may still be in use. The thread frees the pictures after their last use. The interface would need a
+/// millisecond to free the data of a thousand bodies.
 #[derive(Default)]
 struct Old(Vec<Arc<Shown>>);
 

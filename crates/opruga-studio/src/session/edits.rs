@@ -84,8 +84,8 @@ impl Session {
         Ok(())
     }
 
-    /// Removes a field of an obstacle. At the start, it is removed from the scene. Later, the field gets the value that is equivalent to its absence,
-    /// if there is such a value.
+    /// Removes a field of an obstacle. At the start, the field is removed from the scene. Later, the field gets the value that is equivalent to its
+    /// absence, if there is such a value.
     pub(super) fn unset(&mut self, path: &str) -> Result<(), Report> {
         self.branch()?;
         let past = self.past(Step::Set(path.into()));

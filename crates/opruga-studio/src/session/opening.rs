@@ -22,7 +22,7 @@ impl Session {
         Ok(())
     }
 
-    /// Replaces this session by another one.
+    /// Replaces this session by another session.
     fn go_over_to(&mut self, mut next: Session, playing: bool) {
         self.release();
         (next.show, next.speed, next.playing) = (self.show, self.speed, playing);

@@ -17,7 +17,7 @@ pub enum Grip {
     Pull,
     /// Push the nearest node with a force proportional to the displacement of the pointer from the point of the press.
     Push,
-    /// Pin the nearest node, or move a pinned one.
+    /// Pin the nearest node, or move a pinned node.
     Pin,
 }
 

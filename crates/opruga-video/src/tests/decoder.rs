@@ -70,7 +70,7 @@ impl Reader {
         panic!("no code at bit {start}");
     }
 
-    /// Reads up to `most` levels, starting with the lowest frequency. If `near` is `None`, they are chroma DC levels.
+    /// Reads up to `most` levels, starting with the lowest frequency. If `near` is `None`, the levels are chroma DC levels.
     fn levels(&mut self, near: Option<u8>, most: usize) -> (Vec<i32>, u8) {
         let (ones, total) = match near {
             None => (self.code(SUM_COUNTS.as_flattened()), 5),

@@ -61,7 +61,7 @@ impl Drawing {
             }
         }
     }
-    /// Copies a drawing to a position in this one. Parts outside are cut off.
+    /// Copies another drawing to a position in this drawing. Parts outside are cut off.
     pub(super) fn paste(&mut self, other: &Drawing, x: u32, y: u32) {
         for row in 0..other.size[1].min(self.size[1].saturating_sub(y)) {
             let columns = other.size[0].min(self.size[0].saturating_sub(x)) as usize;

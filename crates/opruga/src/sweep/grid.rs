@@ -141,7 +141,7 @@ fn uneven(distances: &[f64]) -> f64 {
     high / low
 }
 
-/// A value as a number, if it is a finite one.
+/// A value as a number, if it is a finite number.
 pub fn number(text: &str) -> Option<f64> {
     text.replace('_', "").parse::<f64>().ok().filter(|x| x.is_finite())
 }
