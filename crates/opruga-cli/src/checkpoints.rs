@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 
 /// The file of the newest checkpoint of a run.
 pub(crate) const NAME: &str = "checkpoint";
-/// The file of the previous one.
+/// The file of the previous checkpoint.
 pub(crate) const PREVIOUS: &str = "checkpoint.previous";
 
 /// The table of a run.
@@ -115,7 +115,7 @@ impl SavedRun {
 
 /// Reads a checkpoint: the progress of the run, and its scene.
 ///
-/// A damaged or missing checkpoint is an error, which names the previous one if that is intact.
+/// If the checkpoint is damaged or missing, the error names the previous checkpoint, provided that the latter is intact.
 pub(crate) fn open(path: &Path, registries: &Registries) -> Result<(SavedRun, Source), Failure> {
     let error = match read(path, registries) {
         Ok(whole) => return Ok(whole),
@@ -155,11 +155,11 @@ fn read(path: &Path, registries: &Registries) -> Result<(SavedRun, Source), Box<
 /// What happens to an existing checkpoint when the first one of a run is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Older {
-    /// It belongs to this run: it is kept as the previous one.
+    /// The checkpoint belongs to this run: it is kept as the previous one.
     Keep,
-    /// It belongs to this run, but the run was resumed from the previous checkpoint, which therefore stays.
+    /// The checkpoint belongs to this run, but the run was resumed from the previous checkpoint, which therefore stays.
     Leave,
-    /// It belongs to another run: both it and the previous one are removed.
+    /// The checkpoint belongs to another run: this checkpoint and the previous one are removed.
     Remove,
 }
 
@@ -179,7 +179,7 @@ pub(crate) struct Keeper<'a> {
 }
 
 impl<'a> Keeper<'a> {
-    /// Makes a keeper that writes checkpoints at this interval of wall-clock time [s]; 0: only at the end.
+    /// Makes a keeper that writes a checkpoint after each such interval of wall-clock time [s]. If the interval is 0, it writes only one, at the end.
     pub(crate) fn new(
         folder: &'a OutputFolder,
         source: &'a Source,

@@ -1,4 +1,4 @@
-//! The reason why a command failed, for people and for programs, and its exit code.
+//! Why a command failed, as text for people and as data for programs, and the exit code of the command.
 
 use crate::errors::{CallFault, CallNote, CallRange, CheckFault, OutputError};
 use crate::language::translation;
@@ -157,7 +157,7 @@ pub(crate) fn print_note(note: &CallNote) {
     eprintln!("{}", with_code(Label::Note, note));
 }
 
-/// A warning for people.
+/// Prints a warning on stderr, in the language of the user.
 pub(crate) fn print_warning(warning: &Warning) {
     eprintln!("{}", warning_text(warning, translation()));
 }

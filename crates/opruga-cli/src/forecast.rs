@@ -7,7 +7,7 @@ use opruga::{AnyBody, AnyWorld};
 
 /// The time over which the first frames are measured [s].
 const MEASURED: f64 = 2.0;
-/// Longer runs are reported [s].
+/// Runs that take longer than this time are reported [s].
 const LONG: f64 = 30.0;
 /// The largest number of substeps that is suggested.
 const MANY_SUBSTEPS: f64 = 1000.0;

@@ -1,4 +1,4 @@
-//! Signals: Ctrl-C and termination signals set one flag for the whole program, which work checks between its steps.
+//! Signals: Ctrl-C and termination signals set one flag for the whole program. Commands check this flag between steps of their work.
 
 use crate::failure::Failure;
 use std::sync::Once;
@@ -16,8 +16,8 @@ static HANDLER: Once = Once::new();
 /// How long the present work may take to end before a message reports that it continues.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// The flag that is set when the present work should stop. After the first call, Ctrl-C and termination signals set it. A second signal ends the
-/// program at once: files are written under temporary names, so existing files stay intact.
+/// The flag that is set when the present work should stop. Once this function has been called, Ctrl-C and termination signals set the flag. A
+/// second signal ends the program at once: files are written under temporary names, so existing files stay intact.
 pub(crate) fn asked_to_stop() -> &'static AtomicBool {
     HANDLER.call_once(|| {
         // If the system provides no handler, a signal ends the program as usual.
@@ -42,7 +42,7 @@ pub(crate) fn leave_the_word(to_another: bool) {
     SILENT.store(to_another, Ordering::SeqCst);
 }
 
-/// Whether the user has asked the program to end, rather than only the present work to stop.
+/// Whether the user has asked the whole program to end, and not only the present work to stop.
 pub(crate) fn asked_to_end() -> bool {
     END.load(Ordering::SeqCst)
 }
@@ -60,8 +60,8 @@ pub(crate) fn begin_work() {
     }
 }
 
-/// After this call, a file that reaches the limit of file sizes (`ulimit -f`) does not end the program. It is a failed write, as on a full disk, and
-/// is reported with its path and bytes.
+/// After this call, a file that reaches the limit of file sizes (`ulimit -f`) does not end the program. The write that reaches the limit fails, as
+/// on a full disk, and is reported with its path and bytes.
 pub(crate) fn outlive_the_limit_on_files() {
     #[cfg(unix)]
     {

@@ -1,4 +1,4 @@
-//! The language of errors and warnings for people. JSON is in English.
+//! The language of the errors and warnings that people read. JSON is in English.
 
 use clap::ValueEnum;
 use opruga::words::Translation;

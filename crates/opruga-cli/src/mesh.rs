@@ -169,7 +169,7 @@ fn file_notices(call: &Call, name: &str, notices: Vec<SceneError>) -> Vec<Notice
     notices.into_iter().map(|about| Notice { about: of_call(call, name, about), count: 1 }).collect()
 }
 
-/// The file of an error, as named by the call: TetGen's second file is next to the first.
+/// The path of the file that an error names, in the form that the call uses. TetGen's second file is next to the first.
 fn placed(call: &Call, name: &str, file: &str) -> String {
     let stem = |name: &str| name.rsplit_once('.').map(|(stem, _)| stem.to_string());
     match file {
@@ -191,7 +191,7 @@ fn option(setting: &Setting) -> Setting {
     })
 }
 
-/// An error in the terms of the call: with its options, and without a path in a scene.
+/// Converts an error to the terms of the call: it names options of the command, and no path in a scene.
 fn of_call(call: &Call, name: &str, error: SceneError) -> SceneError {
     let file = placed(call, name, &error.file);
     let by = Replacing { setting: &option, name: &str::to_string };

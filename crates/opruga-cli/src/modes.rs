@@ -20,8 +20,7 @@ use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// The square of a frequency that should be zero may be this fraction of the square of the largest frequency, because of
-/// rounding.
+/// Because of rounding, the square of a frequency that should be zero may be this fraction of the square of the largest frequency.
 const ROUNDING: f64 = 1e-15;
 
 /// The largest displacement in a picture, as a fraction of the extent of the body.
@@ -62,8 +61,8 @@ fn look_for_equilibrium(call: &Modes, registries: &Registries, blueprint: &mut A
     }
 }
 
-/// Replaces statics if no frame is run. Modes belong to a state, independently of the integrator, and a body that can move freely, which statics
-/// refuses, has modes like any other. The replacement supports all bodies and all steps.
+/// If no frame is run, replaces statics by an implicit integrator. Modes belong to a state, independently of the integrator, and a body that can
+/// move freely, which statics refuses, has modes like any other. The replacement supports all bodies and all steps.
 fn leave_statics(call: &Modes, registries: &Registries, blueprint: &mut AnyBlueprint) {
     let dimension = blueprint.scene().dimension();
     let runs = call.equilibrium || call.after > 0.0;
@@ -128,7 +127,7 @@ fn of_world(call: &Modes, source: &Source, reading: &scene::Options, world: &mut
     Ok(0)
 }
 
-/// A table for people, with frequencies of five digits. All digits are in `modes.json` and `modes.csv`.
+/// A table for the terminal, with frequencies of five digits. All digits are in `modes.json` and `modes.csv`.
 fn table(name: &str, time: f64, modes: &[Mode<3>], rounding: f64) -> String {
     let mut text = format!("`{name}` at t = {} s\nmode  frequency [Hz]     ω [rad/s]\n", number(time));
     for (k, mode) in modes.iter().enumerate() {
@@ -233,7 +232,7 @@ fn draw_shapes(
     Ok(Some(strip.to_png().map_err(failed)?))
 }
 
-/// The displacement of every point of a body, divided by the largest one.
+/// The displacement of every point of a body, divided by the largest displacement.
 fn moved(rest: &draw::BodyPicture, body: &draw::BodyPicture) -> Vec<f64> {
     let apart = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>().sqrt();
     let displacements: Vec<f64> = rest.positions.iter().zip(&body.positions).map(apart).collect();

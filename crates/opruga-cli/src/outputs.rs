@@ -224,7 +224,7 @@ impl Outputs<'_> {
         self.reported.iter().chain(&world.warnings_at_the_end()).map(WarningSummary::from).collect()
     }
 
-    /// Prints a few lines for people; warnings that were reported early are not reported again.
+    /// Prints a short summary. Warnings that were reported early are not reported again.
     pub(crate) fn talk(&self, world: &dyn AnyWorld, early: &[Warning]) {
         let e = world.energy();
         let nodes: usize = world.bodies().into_iter().map(|body| world.node_count(body)).sum();
@@ -298,7 +298,7 @@ fn solver_summary(world: &dyn AnyWorld) -> Option<SolverSummary> {
     })
 }
 
-/// The quality of the cells of bodies at rest. A mesh that copies share is evaluated once.
+/// The quality of the cells of bodies at rest. If several copies share a mesh, the mesh is evaluated once.
 pub(crate) fn cells(world: &dyn AnyWorld) -> Vec<CellSummary> {
     let mut seen = std::collections::BTreeSet::new();
     let mut found = Vec::new();

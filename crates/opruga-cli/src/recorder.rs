@@ -37,12 +37,12 @@ const NUMBER_BYTES: u64 = 24;
 pub(crate) struct Wanted {
     /// Pictures per second of simulated time, if the call gives the number.
     pub(crate) fps: Option<f64>,
-    /// Whether there are strip, video and plots.
+    /// Whether the strip, the video and the plots are written.
     pub(crate) pictures: bool,
     pub(crate) arrows: bool,
     pub(crate) springs: bool,
     pub(crate) gif: bool,
-    /// Whether notes are printed for people.
+    /// Whether to print notes for the user.
     pub(crate) notes: bool,
     /// The number of frames from one row of the table to the next, if the call gives it.
     pub(crate) row_every: Option<u32>,
@@ -55,7 +55,7 @@ const USUAL_RATE: f64 = 20.0;
 pub(crate) struct Recorder {
     /// The table `diagnostics.csv`, with a row for every frame that `rows` selects.
     pub(crate) table: NumberTable,
-    /// The table for the plots; for small runs it also has rows within frames.
+    /// The table for the plots. For small runs it also has rows for times within frames.
     pub(crate) seen: NumberTable,
     /// Whether the run is small enough for rows within frames.
     pub(crate) looks_within: bool,
@@ -92,8 +92,8 @@ impl Rows {
         Rows { apart, too_many, last: None, left_out: 0 }
     }
 
-    /// Whether a frame has a row: the first one does, then it depends on the number of the frame, so that a resumed run has the same rows as an
-    /// uninterrupted one.
+    /// Whether a frame has a row. The first frame has one. After that, the number of the frame decides, so that a resumed run has the same rows
+    /// as an uninterrupted one.
     fn take(&mut self, frame: u64) -> bool {
         let wanted = self.last.is_none() || frame.is_multiple_of(self.apart);
         if wanted {
@@ -107,7 +107,7 @@ impl Rows {
 
 /// The meanings of the columns of the table.
 pub(crate) struct Columns {
-    /// The quantity of a probe in each of the last columns.
+    /// For each of the last columns, the quantity that its probe measures.
     pub(crate) probes: Vec<Recorded>,
     pub(crate) dimension: usize,
     pub(crate) length_unit: String,
@@ -235,7 +235,7 @@ impl Recorder {
         begin.elapsed()
     }
 
-    /// Gives the last frame its row.
+    /// Completes the table with the row of the last frame.
     pub(crate) fn finish(&mut self, world: &mut dyn AnyWorld) {
         if self.rows.last.is_some_and(|last| last != world.frames()) {
             let row = row(world, &self.bodies);
@@ -266,7 +266,7 @@ fn other_rate(asked: f64, every: u64, frame: f64) -> Option<CallNote> {
     (rounded(rate, 4) != rounded(asked, 4)).then_some(CallNote::OtherRate { rate, asked, every, frame })
 }
 
-/// The number of substeps between two samples within a frame, so that small runs show every oscillation; 0: none.
+/// The number of substeps between two samples within a frame, which make small runs show every oscillation; 0 if there are no such samples.
 fn look_every(frames: u64, substeps: u32, nodes: u64) -> u32 {
     let steps = frames * u64::from(substeps);
     let rows = (LOOKED_AT / nodes.max(1)).min(MOST_ROWS);

@@ -39,7 +39,7 @@ pub(crate) fn begin(
     Tape::begin(path, force, &header, world)
 }
 
-/// Opens a recording for reading; its scene is inside.
+/// Opens a recording for reading. The recording contains its scene.
 pub(crate) fn open(path: &Path, registries: &Registries) -> Result<(Recording<File>, Source), Failure> {
     let refuse = |error: SceneError| Failure::Run(Box::new(SceneError { file: path.display().to_string(), ..error }));
     let about = std::fs::metadata(path).and_then(|about| Ok((about, File::open(path)?)));

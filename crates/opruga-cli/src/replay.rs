@@ -177,7 +177,7 @@ impl Job<'_> {
         }
     }
 
-    /// The failure at a frame.
+    /// Makes the failure for an error at a frame.
     fn failure(&self, error: &TapeError, frame: u64) -> Failure {
         match error {
             TapeError::World(error) => self.source.run_error(error, self.time(frame)),
@@ -190,8 +190,8 @@ impl Job<'_> {
         frame as f64 * self.length
     }
 
-    /// Computes every frame again, from the beginning of the scene or from the first requested frame. The hash of each is compared, and every number
-    /// if its state is kept. Returns the result in the form that `--json` prints.
+    /// Computes every frame again, from the beginning of the scene or from the first requested frame. The hash of each frame is compared. If the
+    /// state of a frame is kept, every number is compared too. Returns the result in the form that `--json` prints.
     fn verify(
         &self,
         world: &mut dyn AnyWorld,
@@ -263,8 +263,8 @@ impl Job<'_> {
         )
     }
 
-    /// Writes tables, pictures and exported frames, from recorded states and from steps between them, with the result of the comparison if there was
-    /// one.
+    /// Writes tables, pictures and exported frames from the recorded states and from the steps between them. If there was a comparison, also writes
+    /// its result.
     fn show(
         &self,
         world: &mut dyn AnyWorld,

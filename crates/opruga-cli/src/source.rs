@@ -26,7 +26,7 @@ pub(crate) struct Source {
     pub(crate) bytes: Vec<u8>,
     /// The location of the files that it names.
     pub(crate) files: Files,
-    /// The models and integrators that it can name.
+    /// The models and integrators that the scene can name.
     pub(crate) registries: Registries,
 }
 
@@ -34,7 +34,7 @@ pub(crate) struct Source {
 pub(crate) struct Whole {
     pub(crate) blueprint: AnyBlueprint,
     pub(crate) notices: Vec<Notice>,
-    /// The files that it names.
+    /// The files that the scene names.
     pub(crate) files: BTreeMap<String, Arc<[u8]>>,
 }
 
@@ -139,7 +139,7 @@ impl Source {
         Failure::Run(Box::new(timed(scene_error, error, time)))
     }
 
-    /// An error that ends a run at a frame; the error of a command has its line.
+    /// An error that ends a run at a frame. If a command was refused, the error names the line of that command.
     pub(crate) fn frame_error(&self, error: &WorldError, world: &dyn AnyWorld, options: &scene::Options) -> Failure {
         let Some(command) = world.refused_command() else { return self.run_error(error, world.time()) };
         let scene_error = of_command(error, &command, (self.text(), self.file.as_str()), &options.overrides);

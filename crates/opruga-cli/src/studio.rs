@@ -129,7 +129,7 @@ fn ask_to_end(child: &mut Child) -> std::io::Result<()> {
     Ok(rustix::process::kill_process(number, rustix::process::Signal::TERM)?)
 }
 
-/// On systems without a way to ask a program to end, Ctrl-C has done so already.
+/// Does nothing: on systems without a way to ask a program to end, Ctrl-C has already asked it.
 #[cfg(not(unix))]
 fn ask_to_end(_: &mut Child) -> std::io::Result<()> {
     Ok(())

@@ -95,11 +95,11 @@ fn exit_code(rows: &[Row]) -> u8 {
 
 /// Properties of the scene that are common to all runs of a sweep.
 struct SceneInfo {
-    /// The name of its unit of length.
+    /// The name of the unit of length of the scene.
     length_unit: String,
-    /// The authors of its drawings.
+    /// The authors of the drawings in the scene.
     credit: String,
-    /// The note that runs end at another time than requested, unless that time differs between them.
+    /// The note that runs end at another time than requested. It is absent if that time differs between the runs.
     ends: Option<CallNote>,
 }
 

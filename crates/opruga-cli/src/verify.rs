@@ -105,7 +105,7 @@ fn write_report(folder: &OutputFolder, rows: &[Row]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The list of the cases by family, for people.
+/// The list of the cases by family, as text.
 fn list(cases: &[&Case]) -> String {
     let mut text = String::new();
     for family in Family::ALL {

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// Computes y₁ = y₀ + s k₀ with k₀ = (v₀, a₀) from the current state, and writes it to the first work columns.
 pub(crate) struct FirstStage {
-    /// The time s along the slope k₀ [s].
+    /// The time s [s] during which the state follows the slope k₀.
     pub(crate) span: f64,
 }
 

@@ -49,7 +49,7 @@ messages! {
         "integrator.no_matrix" #[error("`linear_solver` is \"matrix_free\", but `arc_length` factors a matrix")] #[value("\"matrix_free\"")] #[parameters("linear_solver", "arc_length")]
         #[allowed("\"auto\", \"conjugate_gradients\", \"cholesky\"")]
         MatrixFreeByArc {},
-        /// A matrix that is not symmetric, as conjugate gradients require.
+        /// A matrix that is not symmetric, although conjugate gradients require symmetry.
         "integrator.no_matrix"
         #[error("`linear_solver` is \"matrix_free\", whose conjugate gradients need a symmetric matrix, but the matrix of the body is not symmetric")] #[value("\"matrix_free\"")] #[parameters("linear_solver")]
         #[allowed("\"auto\"")]

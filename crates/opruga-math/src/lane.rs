@@ -123,7 +123,7 @@ pub const ROW: usize = 4;
 /// If a formula needs more values at a time than there are registers, it is faster to compute register by register than pack by
 /// pack.
 pub trait Register: Lane {
-    /// How many numbers it holds.
+    /// How many numbers a register holds.
     const NUMBERS: usize;
     /// Reads the numbers.
     ///

@@ -55,7 +55,7 @@ impl fmt::Display for Setting {
     }
 }
 
-/// The functions that replace settings and names in a message, for readers to whom they have other names.
+/// The functions that replace settings and names in a message, for readers who know them by other names.
 pub struct Replacing<'r> {
     /// The replacement of a setting.
     pub setting: &'r dyn Fn(&Setting) -> Setting,
@@ -116,7 +116,7 @@ pub struct Variant {
     pub code: &'static str,
     /// The name of the variant.
     pub name: &'static str,
-    /// The names of its fields.
+    /// The names of the fields of the variant.
     pub fields: &'static [&'static str],
     /// The English text, the allowed values and the hint, as written in the source; empty if there are none.
     pub english: [&'static str; 3],

@@ -142,7 +142,7 @@ mod tests {
     use super::*;
     use crate::lane::{Lane, ROW, Register, WIDTH};
 
-    /// Every operation on special numbers, written one after the other.
+    /// Applies every operation to special numbers and lists the results.
     struct Everything;
     impl Work for Everything {
         type Output = Vec<u64>;

@@ -28,7 +28,7 @@ pub struct StripMut<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Strip<'a, N> {
-    /// The numbers from `start` on, `length` in each column.
+    /// `length` numbers of each column, from index `start` on.
     #[inline(always)]
     pub fn new(columns: &[&'a [f64]; N], start: usize, length: usize) -> Self {
         let mut pointers = [core::ptr::null(); N];

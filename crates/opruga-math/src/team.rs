@@ -4,8 +4,8 @@
 //! The thread that distributes pieces, the *leader*, works too. It waits for pieces that a member has taken, but never for
 //! members to arrive. If a member is late or never arrives, the others do more of the work.
 //!
-//! Each piece is assigned to a member, and others take it only if that member is late. So the same memory is used by the same
-//! processor again.
+//! Each piece is assigned to a member, and others take it only if that member is late. The same processor therefore uses the
+//! same memory again.
 
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
@@ -117,7 +117,8 @@ impl Team {
         });
     }
 
-    /// Does the work on every piece with its part of a slice, `length` entries each; the last may have fewer.
+    /// Does the work on every piece, each with its own part of a slice. A part has `length` entries; the last part may have
+    /// fewer.
     pub fn each_with<T: Send, U: Send>(
         &self,
         pieces: &mut [T],
@@ -137,8 +138,8 @@ impl Team {
         });
     }
 
-    /// Does the work on blocks of some slices, with `length` entries from the same index on in each; the last may have fewer.
-    /// Entries beyond the end of the shortest slice are ignored. The work receives the start of its block.
+    /// Does the work on blocks of some slices. A block has `length` entries of each slice, from the same index on; the last
+    /// block may have fewer. Entries beyond the end of the shortest slice are ignored. The work receives the start of its block.
     pub fn each_block<T: Send, const N: usize>(
         &self,
         slices: [&mut [T]; N],
@@ -241,7 +242,7 @@ fn is_left(pieces: u64) -> bool {
     pieces & 0xffff < pieces >> 16
 }
 
-/// Waits a moment: first busily, then yielding to other threads.
+/// Waits a moment: at first in a busy loop, later by yielding to other threads.
 fn pause(looks: u32) {
     match looks {
         0 => {}

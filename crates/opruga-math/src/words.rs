@@ -1,6 +1,7 @@
 //! How messages write numbers and counts, in the same way in all crates.
 
-/// Writes a number for people: at most six significant digits without trailing zeros, and an exponent below 10⁻⁴ and from 10⁷ up.
+/// Writes a number in readable form: at most six significant digits without trailing zeros, and an exponent below 10⁻⁴ and from
+/// 10⁷ up.
 ///
 /// Tables and JSON contain all digits; sentences need only as many as a person reads.
 #[must_use]

@@ -1,4 +1,4 @@
-//! `opruga bench scene`: the time of the frames of a scene, and how implicit bodies spend it.
+//! `opruga bench scene`: measures how long the frames of a scene take, and how implicit bodies use this time.
 
 use super::timed::{Spent, registries};
 use super::{Machine, median, processor_time};

@@ -180,7 +180,7 @@ fn calibration(simd: Simd) -> f64 {
     seconds * 1e9 / packs as f64
 }
 
-/// The rows as a table for people.
+/// The rows as a table for the terminal.
 pub(crate) fn table(rows: &[Row]) -> String {
     use std::fmt::Write as _;
     let mut text = String::from(

@@ -77,7 +77,7 @@ pub(super) fn follow<const D: usize>(
 #[derive(Clone, Copy, Debug, Default)]
 struct Tried {
     solved: Solved,
-    /// Whether the step found a point of the curve that lies backwards or far to the side.
+    /// Whether the point found on the curve lies backwards or far to the side.
     turned: bool,
     /// Whether there was no load that could move the body.
     unloaded: bool,

@@ -20,8 +20,8 @@
 //!       └────────────────▶ displacement
 //! ```
 //!
-//! Where the body meets obstacles, the curve continues along their surface. A body that only obstacles hold has no curve, because
-//! the curve begins without any load.
+//! Where the body meets obstacles, the curve continues along their surface. If only obstacles hold a body, it has no curve of
+//! equilibria, because the curve begins without any load.
 //!
 //! A body that nothing holds has either no equilibrium or many. It is refused, and the error names its free motions. The same
 //! applies to a body of several pieces, such as a map with islands, if one piece is free. Without `arc_length`, obstacles may
@@ -302,8 +302,8 @@ impl Equilibrium {
     }
 }
 
-/// The effect of a step of statics on an oscillator. Motion stops at once, and the position becomes zero. Without a restoring
-/// force the position does not change.
+/// The effect of a step of statics on an oscillator. The step stops all motion, and the position becomes zero. Without a
+/// restoring force the position does not change.
 fn to_rest(omega: f64) -> Amplification {
     let kept = if omega > 0.0 { 0.0 } else { 1.0 };
     Amplification::new([[kept, 0.0], [0.0, 0.0]])

@@ -110,8 +110,8 @@ pub(super) fn center<const D: usize>(x: &Columns<D>, piece: &[usize]) -> [f64; D
     center
 }
 
-/// The rigid motions of a piece that neither pins nor constraints of nodes along the given directions prevent, with the nodes
-/// at the given positions. Translations come first.
+/// The rigid motions of a piece that neither pins nor constraints prevent. The nodes are at the positions `x`. Each entry of
+/// `touched` constrains a node along a direction. Translations come first.
 pub(super) fn unpinned_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -240,8 +240,8 @@ pub(super) fn of_weights<const D: usize>(motions: &[Motion<D>], weights: Vec<Vec
         .collect()
 }
 
-/// The displacements of all nodes in a motion of a piece about the given centre, with the nodes at the given positions. Nodes
-/// outside the piece do not move.
+/// The displacement of every node in a rigid motion of a piece about the given centre. The positions of the nodes are `x`.
+/// Nodes outside the piece do not move.
 pub(super) fn shape_at<const D: usize>(
     x: &Columns<D>,
     nodes: usize,

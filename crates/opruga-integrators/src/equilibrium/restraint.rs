@@ -86,7 +86,8 @@ pub(super) fn outer<const D: usize>(system: &System<D>) -> Vec<&Member<D>> {
 /// If the stiffness of a model against rigid motions is below this fraction of its largest stiffness, it counts as zero.
 const NO_TIE: f64 = 1e-9;
 
-/// Whether a model resists rigid motions of a body. Forces between nodes do not, since they move and rotate with the nodes.
+/// Whether a model resists rigid motions of a body. Forces between nodes do not resist them, since these forces move and rotate
+/// with the nodes.
 fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool {
     let properties = member.potential.properties();
     if let Some(between) = properties.acts_between_nodes {
@@ -159,7 +160,7 @@ fn prepared<const D: usize>(system: &System<D>, member: &Member<D>, view: &View<
     Some(scratch)
 }
 
-/// Delivers the second derivatives of the models that act from outside, at rest.
+/// Delivers the second derivatives, at rest, of the models that act from outside.
 pub(super) fn deliver_outer<const D: usize>(system: &System<D>, x: &Columns<D>, sink: &mut dyn Sink<D>) {
     let rest = Columns::zeros(system.index_count());
     let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };
@@ -170,7 +171,8 @@ pub(super) fn deliver_outer<const D: usize>(system: &System<D>, x: &Columns<D>, 
     }
 }
 
-/// The forces under examination: those of a load with a stiffness, or the weight together with all loads that have none.
+/// The source of the forces that are examined: one load with a stiffness, or the weight together with all loads without a
+/// stiffness.
 #[derive(Clone, Copy, Debug)]
 enum Source<'a, const D: usize> {
     Stiff(&'a Member<D>),
@@ -301,7 +303,8 @@ fn turned<const D: usize>(motion: &Motion<D>, force: &[f64; D]) -> [f64; D] {
     displacement(&turn, force, &[0.0; D])
 }
 
-/// The present pose of the body, and poses with a piece rotated by each of the motions, and by all of them.
+/// The present pose of the body, the poses in which one of the motions rotates the piece, and the pose in which all motions
+/// together rotate it.
 fn poses<const D: usize>(x: &Columns<D>, piece: &[usize], motions: &[Motion<D>], center: &[f64; D]) -> Vec<Columns<D>> {
     let turns = if D == 2 { 1 } else { 3 };
     let mut all = Motion { translation: [0.0; D], rotation: vec![0.0; turns] };

@@ -13,8 +13,8 @@ use opruga_math::Column;
 /// Forces below this fraction of those due to a stretch of the same length count as rounding.
 const NOTHING: f64 = 1e-6;
 
-/// The rotations of a piece that neither pins nor loads with a stiffness prevent, if the forces of the body itself do not
-/// resist the straight motion, however far it goes. If they do, the list is empty.
+/// The rotations of a piece that neither pins nor loads with a stiffness prevent. The forces of the body itself must not
+/// resist the straight motion, however far it goes. If they resist it, the list is empty.
 pub(super) fn endless_turns<const D: usize>(system: &System<D>, piece: &[usize]) -> Vec<Motion<D>> {
     let x = &system.state.x;
     let free = unstiffened_motions(system, x, piece, &[]);

@@ -18,6 +18,6 @@ pub(crate) struct AnswerMatrix<const D: usize> {
     /// The unique number of the matrix, and its origin if later steps share it.
     pub(crate) number: u64,
     pub(crate) origin: Option<Origin<D>>,
-    /// Whether the factors are those that allow eigenvalues of any sign.
+    /// Whether the matrix is solved with factors that allow eigenvalues of any sign.
     pub(crate) by_factors: bool,
 }

@@ -13,7 +13,7 @@ pub(crate) struct Balance {
     pub(crate) time: f64,
     /// The length of the step [s].
     pub(crate) h: f64,
-    /// The fraction of the weight and of the loads that acts.
+    /// The fraction at which the weight and the loads act.
     pub(crate) load: f64,
     /// The change of momentum due to a force that acts only in this stage, in units of force times h. `impulse` is the change
     /// in this step. `echo` is the change that the rule will add in later steps from its memory.
@@ -34,8 +34,8 @@ pub(crate) struct Solved {
     pub(crate) error_estimate: f64,
     /// The ratio of the forces due to rounding of positions to the loads; zero if it is not needed.
     pub(crate) conditioning: f64,
-    /// If the iteration did not converge: the rounding of positions [m], the largest rounding of a force [N], and how far such
-    /// a force would move a node [m].
+    /// If the iteration did not converge, three effects of rounding: the rounding of positions [m], the largest rounding of a
+    /// force [N], and the displacement of a node due to such a force [m].
     pub(crate) floor: [f64; 3],
     /// Whether the residual may have created energy.
     pub(crate) doubtful: bool,

@@ -40,7 +40,7 @@ pub(crate) struct Contact<const D: usize> {
     /// The direction of the friction force, and how much this direction turned in the last iteration.
     pub(super) push: [f64; D],
     pub(super) turn: f64,
-    /// How often it changed between held and released, or between stick and slip.
+    /// How often the contact changed between held and released, or between stick and slip.
     changes: u8,
 }
 
@@ -56,11 +56,11 @@ pub(crate) struct Verdict {
 /// How a node is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Hold {
-    /// It is not held, because the surface would have to pull.
+    /// The node is not held, because the surface would have to pull.
     Released,
-    /// It may move along the surface, against friction.
+    /// The node may move along the surface, against friction.
     Slip,
-    /// It moves with the surface.
+    /// The node moves with the surface.
     Stick,
 }
 
@@ -82,7 +82,7 @@ impl<const D: usize> Contact<D> {
     pub(super) fn is_active(&self) -> bool {
         self.hold != Hold::Released
     }
-    /// Whether it slips against friction.
+    /// Whether the contact slips against friction.
     pub(super) fn rubs(&self) -> bool {
         self.hold == Hold::Slip && self.touch.friction > 0.0
     }
@@ -133,7 +133,7 @@ impl<const D: usize> Contacting<D> {
         }
         out
     }
-    /// Whether nodes are held, and all of them by surfaces that do not move.
+    /// Whether some nodes are held, all of them by surfaces that do not move.
     pub(crate) fn any_at_rest(&self) -> bool {
         let rests = |contact: &Contact<D>| contact.touch.velocity.iter().all(|speed| *speed == 0.0);
         self.any() && self.contacts.iter().filter(|contact| contact.is_active()).all(rests)

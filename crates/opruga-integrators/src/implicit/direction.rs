@@ -17,7 +17,7 @@ use opruga_solve::dot;
 /// Which derivatives are used for a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Keep {
-    /// The exact ones.
+    /// The exact derivatives.
     Exact,
     /// The derivatives of each element without their negative eigenvalues.
     Clamped,
@@ -38,7 +38,7 @@ impl Keep {
     }
 }
 
-/// How often a direction is corrected at most because friction has changed.
+/// The largest number of times that a direction is corrected because friction has changed.
 const MOST_ROUNDS: u32 = 12;
 
 /// The relative error of the friction force that may remain in the first iteration.

@@ -81,8 +81,8 @@ fn stop<const D: usize>(system: &mut System<D>) {
     system.state.v.0.iter_mut().for_each(|column| column.fill(0.0));
 }
 
-/// Copies the state at the start of a step to the workspace. For rules that use the mean of start and end, records the share of
-/// the start in the work.
+/// Copies the state at the start of a step to the workspace. If the rule uses the mean of start and end, also records the part
+/// of the work that belongs to the start.
 pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -98,7 +98,7 @@ pub(super) fn open_ledger<R: Rule<D>, const D: usize>(
     Ok(Ledger { before, begun: system.work })
 }
 
-/// For rules that use the stage, which was evaluated last, records the work in the stage. For all rules, records the work of
+/// If the rule uses the stage, records the work in the stage, which was evaluated last. For all rules, records the work of
 /// other bodies and the work due to coupled masses.
 pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
     system: &mut System<D>,

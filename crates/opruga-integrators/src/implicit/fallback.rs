@@ -96,7 +96,7 @@ pub(crate) fn exactly(settings: &Settings) -> Settings {
 }
 
 /// Whether the incremental potential of the result is above that of the initial positions with only held nodes moved. Returns
-/// true for NaN, and if forces without a potential may have raised it.
+/// true if the potential is NaN, or if forces without a potential may have raised it.
 fn has_risen<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

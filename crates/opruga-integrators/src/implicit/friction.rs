@@ -55,8 +55,8 @@ pub(super) fn against_slide<const D: usize>(slide: &[f64; D], push: &[f64; D], s
     }
 }
 
-/// Friction by projection, from the previous force [N], a slide [m] and the diagonal of the block of a node [N/m]. It is at most
-/// `most` [N].
+/// Friction by projection, from the previous force [N], a slide [m] and the diagonal of the block of a node [N/m]. The friction
+/// force is at most `most` [N].
 pub(super) fn projected<const D: usize>(slide: &[f64; D], before: &[f64; D], diagonal: f64, most: f64) -> Followed<D> {
     let force: [f64; D] = core::array::from_fn(|d| before[d] - PART_OF_DIAGONAL * diagonal * slide[d]);
     let size = dot(&force, &force).sqrt();

@@ -7,10 +7,10 @@
 //!
 //! M_ff Δv_f + M_fp (w − v_p) = 0.
 //!
-//! Among all motions with these pins, the new motion is the nearest to the previous one in the norm of M. It never has more
-//! energy than the previous one if the pins are at rest. Within the step pinned nodes do not accelerate, whatever the rule, and
-//! at its end they still have the velocity w. Otherwise each rule would treat a jump of velocity within a step differently, and
-//! the motion would depend on the rule.
+//! Among all motions with these pins, the new motion is the nearest to the previous one in the norm of M. If the pins are at
+//! rest, the new motion never has more energy than the previous one. Within the step pinned nodes do not accelerate, whatever
+//! the rule, and at its end they still have the velocity w. Otherwise each rule would treat a jump of velocity within a step
+//! differently, and the motion would depend on the rule.
 //!
 //! With lumped masses no impulse reaches a neighbour, so none of this is needed.
 
@@ -77,8 +77,9 @@ pub(crate) fn pinned_coordinates<const D: usize>(system: &System<D>) -> Vec<bool
     pinned
 }
 
-/// Computes the accelerations of the free coordinates, in `a`, from the forces on them and the accelerations of the pinned ones,
-/// which `a` holds: M_ff a_f = F_f − M_fp a_p. Changes of velocity by impulses follow from the same equation.
+/// Computes the accelerations of the free coordinates from the forces on them and from the accelerations of the pinned
+/// coordinates: M_ff a_f = F_f − M_fp a_p. At the start, `a` holds those of the pinned coordinates; at the end, it also holds
+/// those of the free ones. Changes of velocity by impulses follow from the same equation.
 pub fn accelerations<const D: usize>(system: &System<D>, pinned: &[bool], force: &[f64], a: &mut [f64]) {
     let Some(inertia) = &system.inertia else {
         for (k, a) in a.iter_mut().enumerate().filter(|(k, _)| !pinned[*k]) {

@@ -88,7 +88,7 @@ pub(crate) struct Struck<const D: usize> {
     pub(crate) node: usize,
     /// The projector on the directions in which the memory of the rule stays valid.
     pub(crate) kept: Block<D>,
-    /// What the rule will still add to the velocity from its memory [m/s].
+    /// The velocity that the rule will still add from its memory [m/s].
     pub(crate) memory: [f64; D],
 }
 

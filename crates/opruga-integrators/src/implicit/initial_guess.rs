@@ -11,7 +11,7 @@ use opruga_core::system::System;
 ///
 /// Pins move to their final positions at once, so the cells next to them take the whole displacement instead of a small part of
 /// it. If that tears these cells, the iteration begins with no displacement, and pins move together with the rest of the body
-/// during the iterations. The error of the model is returned in case these iterations fail.
+/// during the iterations. Returns the error of the model, for use if these iterations fail.
 pub(super) fn begin<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

@@ -33,7 +33,8 @@ impl Instability {
         Instability { last: f64::INFINITY, grown: 0 }
     }
 
-    /// Records a correction [m]. `stiff` is true if its matrix is too stiff and nothing else has changed the correction.
+    /// Records a correction [m]. `stiff` is true if the matrix that gave the correction is too stiff, and if nothing else has
+    /// changed the correction.
     pub(super) fn note(&mut self, correction: f64, stiff: bool) {
         self.grown = if stiff && correction > self.last { self.grown + 1 } else { 0 };
         self.last = correction;
@@ -51,7 +52,7 @@ impl Instability {
     }
 
     /// Records that the correction was extended. The extension disturbs directions that were nearly in equilibrium. The next
-    /// corrections first restore them.
+    /// corrections first bring these directions back to equilibrium.
     pub(super) fn stretched(&mut self) {
         self.grown = 0;
     }

@@ -23,10 +23,10 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Stretches {
     No,
-    /// Up to [`LONGEST_STRETCH`] times its length, as long as the energy falls.
+    /// The step may grow up to [`LONGEST_STRETCH`] times its length, as long as the energy falls.
     WhereEnergyFalls,
-    /// Up to this many times its length, even if differences of energies are lost in rounding. This serves to leave an unstable
-    /// equilibrium.
+    /// The step may grow up to this many times its length, even if differences of energies are lost in rounding. This serves to
+    /// leave an unstable equilibrium.
     UpTo(f64),
 }
 

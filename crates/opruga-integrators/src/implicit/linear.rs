@@ -37,8 +37,8 @@ pub(crate) struct Linear<const D: usize> {
 /// The largest number of iterations of conjugate gradients.
 const MOST_PRODUCTS: u32 = 20_000;
 
-/// The largest number of rank-one terms for which a sparse factor is worthwhile. Each term requires a solution, and each pair
-/// of terms a number.
+/// The largest number of rank-one terms for which a sparse factor is worthwhile. Each term costs one more solution, and each
+/// pair of terms one more number.
 const MOST_PARTS: usize = 64;
 
 /// After this many products the complete factor is used: a nearly incompressible solid needs thousands with an incomplete one.
@@ -61,7 +61,7 @@ pub(crate) struct Mixture<'a, const D: usize> {
     pub(crate) system: &'a System<D>,
     pub(crate) sigma: f64,
     pub(crate) beta: f64,
-    /// The fraction of the loads that acts.
+    /// The fraction at which the loads act.
     pub(crate) load: f64,
     pub(crate) mass: &'a [f64],
     pub(crate) stage: Stage,

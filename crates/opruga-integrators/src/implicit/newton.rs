@@ -101,7 +101,7 @@ struct Contacts {
 /// One correction of the iteration.
 #[derive(Clone, Copy, Debug)]
 struct Correction {
-    /// Which derivatives its direction uses.
+    /// Which derivatives the direction of this correction uses.
     keep: Keep,
     slope: f64,
     /// The largest displacement of a node due to the direction alone [m], and the part of this displacement that remains after

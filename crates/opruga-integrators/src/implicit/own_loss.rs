@@ -22,7 +22,7 @@
 //!
 //! Δ goes from n to n + 1 and Δ₋ from n − 1 to n; g_f is g in the averaged state, which is (1 − α_f) g₁ + α_f g₀ if forces are
 //! linear. Tests compare the rules with these formulas. No channel of the ledger contains h i v̄·r, the work of r, so this work
-//! remains unexplained. The code of contacts records the work of R.
+//! remains unexplained. The contact code records the work of R.
 //!
 //! Pinned nodes do not count: the work of pins is recorded with the kinetic energy of these nodes.
 
@@ -44,8 +44,8 @@ pub(super) fn add_given(work: &mut Work8, before: &[f64; WIDTH]) {
     }
 }
 
-/// Adds the work of the forces of other bodies to W. The ledger does not contain this work yet; the code of contact records its
-/// losses.
+/// Adds the work of the forces of other bodies to W. The ledger does not contain this work yet; the contact code records the
+/// losses of contact.
 pub(super) fn add_pushes<const D: usize>(system: &mut System<D>, u1: &[f64]) {
     let System { pushes, work, .. } = system;
     for (node, force) in pushes.iter().flatten() {
@@ -55,8 +55,8 @@ pub(super) fn add_pushes<const D: usize>(system: &mut System<D>, u1: &[f64]) {
     }
 }
 
-/// Subtracts v̄·J from the recorded loss, before obstacles change velocities at the end of the step. The residual is that of
-/// the stage.
+/// Subtracts v̄·J from the recorded loss, before obstacles change velocities at the end of the step. The residual must be that
+/// of the stage.
 pub(super) fn take_impulses<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, balance: &Balance) {
     let Workspace { v0, v1, pin_displacement, mass, residual, trial: change, .. } = workspace;
     let span = balance.h * balance.impulse;

@@ -33,8 +33,8 @@ const LINEAR: f64 = 0.05;
 /// If a larger fraction of the residual remains, the next step rebuilds the matrix.
 const MOST_MISMATCH: f64 = 0.2;
 
-/// The same fraction for bodies that are free or near obstacles. If each of three iterations leaves this fraction, a thousandth
-/// of the residual remains.
+/// The same limit for bodies that are free or near obstacles. If each of three iterations leaves this fraction, a thousandth of
+/// the residual remains.
 const MOST_MISMATCH_LOOSE: f64 = 0.1;
 
 /// The fraction of the residual that the linear solver may leave for bodies that are free or near obstacles. An iteration is
@@ -48,7 +48,8 @@ const NOTHING: f64 = 1e-9;
 const PRODUCTS: u32 = 1000;
 
 /// Iterations with more products than this count as cut off. A body that needs so many products is ill-conditioned. Stiff
-/// motions dominate its residual, so the residual is a poor measure of slow motions such as the bending of a slender body.
+/// motions dominate the residual of such a body, so the residual is a poor measure of slow motions such as the bending of a
+/// slender body.
 const MANY_PRODUCTS: u32 = 120;
 
 /// The shape in which the matrix was made [m], the velocity at the start of the previous step [m/s], and the length of that
@@ -163,8 +164,8 @@ impl Task<'_> {
         self.make(system, workspace, true);
     }
 
-    /// Makes the matrix in the reference shape, which is part of the state, unless this matrix exists. Returns false if no
-    /// reference can be used.
+    /// Makes the matrix in the reference shape, unless this matrix exists. The reference shape is part of the state. Returns
+    /// false if no reference can be used.
     fn recall<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<bool, StepError> {
         if !keeps_matrix(system) || !system.hessian_is_of_positions() {
             return Ok(false);

@@ -7,8 +7,8 @@
 //! and inertia, is known even if its terms are not. A matrix whose stiffness is 1/ε times its mass is also useless for these
 //! motions, since the sums of its rows are rounding errors.
 //!
-//! For each piece (`pieces`) let φ be its motions t + ω × (x − c) that neither pins nor obstacles prevent, orthonormal with
-//! respect to the masses. The motion φ a that balances the piece follows from
+//! For each piece (`pieces`) let φ be the motions t + ω × (x − c) of the piece that neither pins nor obstacles prevent. They
+//! are orthonormal with respect to the masses. The motion φ a that balances the piece follows from
 //!
 //! (σ + φᵀ(K + βC)φ) a = −φᵀ r
 //!
@@ -43,7 +43,7 @@ struct Piece<const D: usize> {
 /// The rigid motions that are free in an iteration.
 #[derive(Debug, Default)]
 pub(crate) struct Rigid<const D: usize> {
-    /// The nodes of each piece, which stay the same as long as the models do; empty if not determined yet.
+    /// The nodes of each piece; empty until they are determined. The pieces stay the same as long as the models do.
     nodes: Vec<Vec<usize>>,
     /// The models that exert forces only between nodes; none if not determined in this step.
     inner: Option<Vec<usize>>,
@@ -186,7 +186,7 @@ impl<const D: usize> Rigid<D> {
         out
     }
 
-    /// The coefficients of the motions that forces cause.
+    /// The coefficients of the rigid motions that forces cause.
     pub(super) fn shares(&self, sums: &[f64]) -> Vec<f64> {
         let (mut out, mut first) = (Vec::new(), 0);
         for piece in &self.pieces {

@@ -44,7 +44,7 @@ pub(super) fn accepts<const D: usize>(
 }
 
 /// Moves the pieces of a body until a further move does not halve their total residual, which is then rounding. Pieces that
-/// would move by no more than `least` [m] are not moved. Returns how far the pieces moved [m]; none if they could not be
+/// would move by no more than `least` [m] are not moved. Returns how far the pieces moved [m], or `None` if they could not be
 /// brought closer to equilibrium.
 pub(super) fn balance_rigid_motions<const D: usize>(
     system: &mut System<D>,

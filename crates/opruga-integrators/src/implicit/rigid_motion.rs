@@ -3,7 +3,7 @@
 use super::linear::Filter;
 use opruga_solve::blocks::times;
 
-/// Held directions this close to other held directions count as the same.
+/// Two held directions count as the same if they differ by less than this.
 const SAME: f64 = 1e-8;
 
 /// x moves by t + ω × (x − c); in the plane ω is along the third axis.
@@ -163,7 +163,7 @@ mod tests {
     use opruga_solve::blocks::isotropic;
 
     /// If several nodes of a plane body slide along one straight guide, the body can only slide, however many nodes these are.
-    /// Differences of their directions due to rounding do not count as separate directions.
+    /// Directions that differ only by rounding do not count as separate directions.
     #[test]
     fn nodes_that_a_guide_holds_leave_one_motion() {
         let normal = [0.6, 0.8];

@@ -14,8 +14,8 @@ use opruga_solve::dot;
 /// The rounding of a force, in units of stiffness times size.
 const ROUNDING: f64 = 4e-15;
 
-/// If another iteration would move a node by more than the first fraction of the extent, that displacement is reduced. Above
-/// the second fraction, it is reported.
+/// If another iteration would move a node by more than the first fraction of the extent, that displacement is reduced. A
+/// displacement above the second fraction is reported.
 const LEFT: f64 = 1e-8;
 const VISIBLE: f64 = 1e-7;
 
@@ -49,8 +49,8 @@ pub(super) fn at_rounding<const D: usize>(
 
 /// Continues the iteration in statics if the residual is as small as rounding but would still visibly move a node. Stops when a
 /// further correction does not halve that displacement. The displacement is small in a stout body, but large in a body that is
-/// stiff lengthwise and soft sideways. Returns the remaining displacement of a node [m]; zero if it is not visible. To be
-/// called after [`at_rounding`], which leaves the residual in `workspace.right`.
+/// stiff lengthwise and soft sideways. Returns the remaining displacement of a node [m]; zero if it is not visible. Call this
+/// after [`at_rounding`], which leaves the residual in `workspace.right`.
 pub(super) fn settle<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -92,7 +92,7 @@ pub(super) fn visible(displacement: f64, extent: f64) -> f64 {
 }
 
 /// Whether the residual of statics is a small fraction of the loads. If not, it may consist of rounding errors, which are as
-/// large as the loads far from the origin. Further iterations average them out, or [`settle`] reduces them.
+/// large as the loads far from the origin. Further iterations average these errors out, or [`settle`] reduces them.
 pub(super) fn carries<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, balance: &Balance) -> bool {
     if balance.sigma != 0.0 {
         return true;
@@ -143,8 +143,8 @@ pub(super) fn in_doubt<const D: usize>(
     if lost || leaves(workspace, loads) { Doubt { displacement, lost } } else { Doubt::default() }
 }
 
-/// The rounding of positions [m], the largest rounding of the force of a node [N], and how far such a force would move a node
-/// against its inertia [m], in a body at this distance from the origin.
+/// Three effects of rounding in a body at this distance from the origin: the rounding of positions [m], the largest rounding of
+/// the force of a node [N], and the displacement of a node due to such a force and against its inertia [m].
 pub(super) fn most_rounding<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,

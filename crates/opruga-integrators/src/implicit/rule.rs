@@ -30,7 +30,7 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     fn pushed(self) -> Self {
         self
     }
-    /// The data that it remembers from step to step.
+    /// The data that the rule remembers from step to step.
     fn history(&self) -> Vec<Channel> {
         Vec::new()
     }

@@ -10,8 +10,8 @@ use super::workspace::Workspace;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Theta(f64);
 
-/// The factor by which the amplitude of motion much faster than the step is multiplied in a step with contact, for rules that
-/// otherwise damp nothing.
+/// For rules that otherwise damp nothing: the factor by which a step with contact multiplies the amplitude of motion that is
+/// much faster than the step.
 const RADIUS_IN_CONTACT: f64 = 0.9;
 
 impl Theta {

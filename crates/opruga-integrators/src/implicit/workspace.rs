@@ -187,8 +187,8 @@ impl<const D: usize> Workspace<D> {
         }
     }
 
-    /// Sets how far pinned axes have to move in the stage: the fraction `theta` of the displacement to their positions at the end
-    /// of the step, `h` after its start.
+    /// Sets how far pinned axes have to move in the stage: by the fraction `theta` of their displacement in the step, which has
+    /// the length `h`.
     pub(crate) fn hold(&mut self, system: &System<D>, theta: f64, h: f64) {
         self.pin_displacement.fill(f64::NAN);
         for pin in &system.pins {

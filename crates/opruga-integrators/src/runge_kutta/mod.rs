@@ -15,8 +15,8 @@
 //! fraction (hω)⁶/72 of the energy per step. A mode without stiffness is stable for h c ≤ 2.785. Free fall is exact.
 //!
 //! **Slopes are not stored**: h a₀ = 2 (v₁ − v₀), h a₁ = 2 (v₂ − v₀), h a₂ = v₃ − v₀, and the slopes of x are the velocities of
-//! the stages. So the end of the step, except for h a₃/6, is known as soon as y₃ is, and replaces y₂. Two pairs of work columns
-//! are enough for four stages:
+//! the stages. So the end of the step is known as soon as y₃ is, except for the term h a₃/6; this end replaces y₂ in memory. Two
+//! pairs of work columns are enough for four stages:
 //!
 //! ```text
 //! stage   forces in   reads           writes
@@ -135,7 +135,7 @@ impl<const D: usize> Update<D> for SecondStage {
     }
 }
 
-/// y₃ = y₀ + h k₂ into work 0, and the end without the acceleration a₃ into work 1.
+/// Writes y₃ = y₀ + h k₂ to work 0, and the end of the step without the acceleration a₃ to work 1.
 struct ThirdStage {
     h: f64,
 }

@@ -58,7 +58,7 @@ fn every_kind_is_registered_once() {
     }
 }
 
-/// Records the positions and the time that obstacles receive.
+/// Records the positions and the time that an integrator passes to obstacles.
 #[derive(Debug, Default)]
 struct Witness(Mutex<Vec<(f64, f64, f64)>>);
 

@@ -140,8 +140,8 @@ fn dissipated(formula: Formula, system: &mut System<2>, [before, start, end]: [O
     }
 }
 
-/// A spring that spins, drifts and oscillates with a large amplitude, undamped, nine steps per period: every step obeys the
-/// formula of its integrator, and the sum over all steps is the energy that is missing in the end.
+/// A spring that spins, drifts and oscillates with a large amplitude, undamped, with nine steps per period. Every step
+/// obeys the formula of its integrator, and the losses of all steps add up to the energy that is missing at the end.
 #[test]
 fn what_a_rule_dissipates_is_what_its_formula_says() {
     for formula in FORMULAS {
@@ -175,7 +175,8 @@ fn what_a_rule_dissipates_is_what_its_formula_says() {
     }
 }
 
-/// No energy remains unexplained with a damper, weight, a node that a pin moves, and steps of different lengths.
+/// The ledger explains all energy in a system with a damper, weight, a node that a pin moves, and steps of different
+/// lengths.
 #[test]
 fn the_ledger_of_implicit_rules_closes_whatever_acts() {
     for formula in FORMULAS {

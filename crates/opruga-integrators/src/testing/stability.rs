@@ -142,7 +142,7 @@ fn rules_that_need_damping_of_every_mode() {
     }
 }
 
-/// A drag that is weak compared with the damping of springs still gives every mode a stable step.
+/// If drag is weak compared with the damping of springs, the step is still stable for every mode.
 #[test]
 fn a_weak_drag_beside_damped_springs_gives_a_stable_step() {
     let rules: [&dyn Integrator<2>; 2] = [&ExplicitEuler, &Heun];

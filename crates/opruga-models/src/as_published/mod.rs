@@ -75,8 +75,7 @@ struct Constants {
     presses: Vec<[f64; 2]>,
 }
 
-/// The memory of each body: Pressure, the number of the press whose vertex is held (from 1; 0 if none is held), and that
-/// vertex.
+/// The memory of each body: Pressure; the number of the press whose vertex is held, counted from 1, or 0 if none is held; and that vertex.
 const MEMORY: usize = 3 * WIDTH;
 
 /// The numbers that follow the forces in the scratch: "volume", press and vertex of each body.

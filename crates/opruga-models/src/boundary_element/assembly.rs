@@ -18,7 +18,7 @@ use opruga_core::dense::Dense;
 use opruga_solve::dense_system::{DenseCholesky, DenseFactors, clamp};
 use std::sync::Arc;
 
-/// The number of columns that are solved together. A request to stop is noticed between two groups.
+/// The number of columns that are solved together. A request to stop takes effect between two such groups of columns.
 const SIDES: usize = 256;
 
 /// The relative changes that were made to a matrix to obtain the stiffness of a body.
@@ -26,7 +26,8 @@ const SIDES: usize = 256;
 pub(super) struct Changes {
     /// |K − Kᵀ|/|K + Kᵀ| before the symmetric part was taken.
     pub(super) asymmetry: f64,
-    /// The part of K that exerted forces under rigid motion, |QQᵀK|/|K|, after rigid motion was removed from its columns.
+    /// The relative size |QQᵀK|/|K| of the part of K that exerted forces under rigid motion. It is measured after rigid motion
+    /// was removed from the columns of K.
     pub(super) rigid: f64,
     /// The largest traction of a rotation by 1 rad, over μ; it measures the error of the integrals.
     pub(super) rotation: f64,
@@ -135,7 +136,7 @@ fn add<const D: usize>(to: &mut Block<D>, factor: f64, value: &Block<D>) {
     }
 }
 
-/// Rigid motions of the vertices, orthonormal, translations first. Collinear vertices have fewer.
+/// Rigid motions of the vertices, orthonormal, translations first. If the vertices are collinear, there are fewer motions.
 pub(super) fn rigid_motions<const D: usize>(points: &[[f64; D]]) -> Vec<Vec<f64>> {
     let mut raw: Vec<Vec<f64>> = Vec::new();
     for d in 0..D {

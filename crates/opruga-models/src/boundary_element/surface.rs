@@ -7,9 +7,9 @@ use opruga_mesh::{Mesh, MeshError, THIN_ELEMENT, crossing_edges, winding_number}
 /// Sides belong to one smooth part if their normals differ by less than 40°.
 const COSINE_OF_SMOOTH: f64 = 0.766_044_443_118_978;
 
-/// If a vertex has several normals, its collocation points lie inside the sides. This is their distance from the vertex, as a
-/// fraction of the distance to each of the other corners. A quarter of an edge is close to (1 − 1/√3)/2, the best point for
-/// linear elements with a jump at their ends.
+/// If a vertex has several normals, its collocation points lie inside the sides. These are the distances of the points from the
+/// vertex, as fractions of the distance to each of the other corners. A quarter of an edge is close to (1 − 1/√3)/2, the best
+/// point for linear elements with a jump at their ends.
 const INSET: [f64; 2] = [0.25, 1.0 / 6.0];
 
 /// A collocation point.
@@ -198,8 +198,8 @@ fn bounds<const D: usize>(positions: &[[f64; D]]) -> ([f64; D], [f64; D]) {
     (low, high)
 }
 
-/// Orients the facets with the solid behind each, and returns how many were reversed. A closed boundary inside another one is a
-/// cavity, whatever its orientation.
+/// Orients the facets so that the solid lies behind each of them, and returns how many were reversed. A closed boundary inside
+/// another one is a cavity, whatever its orientation.
 fn oriented<const D: usize>(mesh: &Mesh<D>, exterior: bool) -> Result<(Vec<[u32; D]>, usize), Refusal> {
     let components = mesh.components()?;
     let of = |component: &opruga_mesh::Component| -> Vec<[u32; D]> {

@@ -33,7 +33,7 @@ pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sy
 pub(super) struct Cell<const N: usize> {
     /// The number of the element in the mesh.
     pub(super) number: u32,
-    /// Its nodes.
+    /// The nodes of the element.
     pub(super) nodes: [u32; N],
 }
 

@@ -72,7 +72,7 @@ impl<'a> Pressures<'a> {
 /// A cell.
 #[derive(Clone, Copy, Debug)]
 struct Simplex {
-    /// Its number in the mesh.
+    /// The number of the cell in the mesh.
     number: u32,
     /// The nodes, D + 1 of them.
     nodes: [u32; 4],
@@ -178,7 +178,7 @@ impl<const D: usize> NodalVolumes<D> {
         core::array::from_fn(|i| (0..D).map(|j| cofactors[i][j] * own[j]).sum())
     }
 
-    /// Sets the location of J − 1 of the packs of cells in the scratch of the cells of a solid.
+    /// Sets where the values J − 1 of the packs of cells are in the scratch of the cells of a solid.
     pub(super) fn locate(&mut self, grown_at: impl Fn(usize) -> Option<usize>) {
         let offset = |cell: u32| {
             let (pack, lane) = match self.layout {

@@ -131,7 +131,8 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// The values of the mesh that a field names. For the chosen cells they must be in the range of the field that they replace.
+/// The values of the mesh that a field names. The values of the chosen cells must be in the range of the field that they
+/// replace.
 fn of_cells<'a, const D: usize>(
     ingredients: &'a Ingredients<'a, D>,
     [field, of_cells]: [&'static str; 2],

@@ -45,7 +45,7 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
         keep: Definiteness,
         sink: &mut dyn Sink<D>,
     );
-    /// Delivers −∂F/∂v, under the same condition.
+    /// Delivers −∂F/∂v, under the same condition as `hessian`.
     fn damping_matrix(&self, view: &View<D>, scratch: &[f64], sink: &mut dyn Sink<D>);
     /// Stress and volume ratio of the cells of a body.
     fn cell_states(&self, view: &View<D>, body: usize, out: &mut Vec<CellState>);

@@ -37,7 +37,7 @@ pub(super) struct Pass<'a, E, const D: usize, const N: usize> {
     section: &'a Section<E, D, N>,
     simd: Simd,
     gradient: PackBuffer<{ MOST_POINTS * 9 * WIDTH }>,
-    /// Kept data of boxes.
+    /// The data that are kept for boxes.
     kept: PackBuffer<{ MOST_BOXES * KEPT * WIDTH }>,
     numbers: PackBuffer<{ MOST_POINTS * PARAMETERS * WIDTH }>,
     times: PackBuffer<{ MOST_POINTS * WIDTH }>,
@@ -67,7 +67,7 @@ impl DampingBuffers {
     }
 }
 
-/// The quantity whose matrix is computed: tangents at the points, or damping.
+/// What a matrix is computed from: tangents at the points, or damping.
 #[derive(Clone, Copy, Debug)]
 enum Matrix {
     Hessian(Definiteness),
@@ -189,7 +189,7 @@ impl<'a, E: Shape<D, N>, const D: usize, const N: usize> Pass<'a, E, D, N> {
         Ok(())
     }
 
-    /// Delivers the matrices of those packs of a share that contain any of the given nodes.
+    /// Delivers the matrices of every pack of the share that contains one of the given nodes.
     fn assemble(
         &mut self,
         share: &Share,
@@ -416,7 +416,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> StencilPacks<D> for Matrice
     }
 }
 
-/// Deformation gradients in space without motion out of the plane.
+/// Extends deformation gradients in the plane to space, without motion out of the plane.
 fn raise<const D: usize>(plane: &[f64], points: usize, space: &mut [f64]) {
     space.fill(0.0);
     for q in 0..points {

@@ -9,8 +9,8 @@
 //! bodies.
 //!
 //! The elements of a body are divided into *shares* for threads. A share has its own rows for the nodes that it touches; forces
-//! are summed there in the order of its elements, and then at each node in the order of the shares. Shares are the same for
-//! every number of threads and for both layouts, and so are the bits of the results.
+//! are summed there in the order of its elements, and then at each node in the order of the shares. Neither the shares nor the
+//! bits of the results depend on the number of threads or on the layout.
 
 use super::boxes::{self, Boxes};
 use super::elements::{Cell, Shape, rest_gradient};
@@ -228,7 +228,8 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
     }
 
-    /// All packs of a share, in groups of at most `points` packs of points, but of at least one pack of elements.
+    /// Splits the packs of a share into groups of at most `points` packs of points. Every group has at least one pack of
+    /// elements.
     pub(super) fn groups(&self, share: &Share, points: usize) -> impl Iterator<Item = Group<'_>> {
         let together = (points / self.points).max(1);
         let end = share.first + share.packs;

@@ -12,7 +12,7 @@ pub(super) struct Totals {
     pub(super) power: [[f64; WIDTH]; WIDTH],
 }
 
-/// One total for one body, or one for each of eight.
+/// One total for one body, or one total for each of eight bodies.
 pub(super) fn total(layout: Layout, partial: &[[f64; WIDTH]; WIDTH]) -> [f64; WIDTH] {
     let mut out = [0.0; WIDTH];
     match layout {

@@ -322,7 +322,7 @@ impl<P: Pack, const D: usize> Walker<'_, P, D> {
         }
         power
     }
-    /// Starts with the first node of a curve, in all lanes.
+    /// Starts at the first node of a curve and copies its values to all lanes.
     #[inline(always)]
     fn begin<const DAMPED: bool>(&mut self) -> P {
         let per_length = P::splat(self.numbers[INVERSE].load::<P>(0).to_array()[0]);

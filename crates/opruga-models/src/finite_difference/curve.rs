@@ -99,7 +99,7 @@ impl Bend {
         let root = S::select(positive, S::select(positive, curvature_square, S::one()).sqrt(), S::zero());
         Bent { curvature: root, slope }
     }
-    /// The factor that turns the slopes into `moment` times ∂B/∂x.
+    /// The factor by which the slopes must be multiplied to give `moment` times ∂B/∂x.
     #[inline(always)]
     fn factor<S: Lane, const D: usize>(bent: &Bent<S>, moment: S) -> S {
         if D == 2 { moment } else { moment * inverse(bent.curvature) }

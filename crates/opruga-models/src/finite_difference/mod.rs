@@ -83,7 +83,7 @@ opruga_math::messages! {
         #[error("a curve or a surface needs `thickness`")] #[parameters("thickness")]
         #[allowed("> 0 m")]
         NoThickness {},
-        /// A solid has no thickness of its own.
+        /// A `thickness` for a solid, which has none of its own.
         "model.solid_thickness"
         #[error("`thickness` belongs to curves and surfaces; a solid has none")] #[parameters("thickness")]
         SolidThickness {},

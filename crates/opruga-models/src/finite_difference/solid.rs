@@ -7,8 +7,8 @@
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;
 
-/// A quadrilateral cell of a body in the plane or of a surface in space; parameters c₁ A, c₂ A, c₃ A [N·m], 1/h₁², 1/h₂², 1/(h₁
-/// h₂) [1/m²] and the retardation time τ [s].
+/// A quadrilateral cell of a body in the plane or of a surface in space. Its parameters are c₁ A, c₂ A, c₃ A [N·m], 1/h₁², 1/h₂²,
+/// 1/(h₁ h₂) [1/m²] and the retardation time τ [s].
 ///
 /// ```text
 ///   3 ──── 2     ε₁₁ = ½ (|Δ₁x|²/h₁² − 1) on the edges 0–1 and 3–2, ε₂₂ likewise on 0–3 and 1–2

@@ -53,7 +53,7 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
     fn heap_bytes(&self) -> usize;
 }
 
-/// The largest number of points of a cell, which a hexahedron has. The law is evaluated at half of these points at a time.
+/// The largest number of points in a cell: that of a hexahedron. The law is evaluated at half of these points at a time.
 const MOST_POINTS: usize = 12;
 
 /// The number of points of a pack at which the law is evaluated together.

@@ -1,4 +1,4 @@
-//! A solid of finite volumes. It has a potential, or only a force with a tangent.
+//! A solid of finite volumes. Every such solid has a tangent, but only some have a potential.
 
 use super::SPEC;
 use super::kernels::Positions;

@@ -30,7 +30,7 @@ struct Space {
 }
 
 impl PlaneStress {
-    /// Finds the thickness at all points; afterwards gradients and stresses in space are those for this thickness.
+    /// Finds the thickness at all points. Afterwards, the gradients and stresses in `space` are those for this thickness.
     fn solve(&self, simd: Simd, points: Points<'_>, space: &mut Space) {
         for point in 0..points.count {
             for i in 0..3 {

@@ -15,7 +15,7 @@ pub(crate) struct PackBuffer<const SIZE: usize>(pub(crate) [f64; SIZE]);
 /// The number of parameters at a point: those of [`Parameters`], and the thermal growth.
 pub(crate) const PARAMETERS: usize = 4;
 
-/// Packs of points: for each pack D² packs of F, row by row, and [`PARAMETERS`] packs.
+/// Packs of points. Each of them has D² packs of F, row by row, and [`PARAMETERS`] packs of parameters.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Points<'a> {
     /// The number of packs.
@@ -71,7 +71,7 @@ pub(crate) fn read_matrix<R: Register, const D: usize>(from: &[f64], part: usize
     out
 }
 
-/// Writes a part of D² packs.
+/// Writes one part of each pack of a D × D matrix.
 #[inline(always)]
 pub(crate) fn write_matrix<R: Register, const D: usize>(to: &mut [f64], part: usize, matrix: &Matrix<R, D>) {
     let to = &mut to[..D * D * WIDTH];

@@ -1,4 +1,4 @@
-//! Tangents in the frame of the singular vectors, computed in several passes. Only one of them depends on the material.
+//! Tangents in the frame of the singular vectors, computed in several passes. Only one of these passes depends on the material.
 //!
 //! ```text
 //! F ──▶ U, V, σ ──▶ ψᵢⱼ, differences, sums ──▶ without negative eigenvalues ──▶ the whole tangent, where one asks for it
@@ -7,7 +7,7 @@
 //! The code for singular vectors and eigenvalues is therefore compiled once, and not with every material. The passes exchange
 //! [`PRINCIPAL`] matrices for every pack of points: U, V, ψᵢⱼ, and for pairs of axes a < b the components of [`Principal::pair`]
 //! at [a][b] and [b][a]. Before the pass of the material, the third matrix contains σ in its first row. Before the pass that
-//! removes negative eigenvalues, the fourth contains the difference at [a][b] and the sum at [b][a].
+//! removes negative eigenvalues, the fourth matrix contains the difference at [a][b] and the sum at [b][a].
 
 use super::material::{Material, Parameters, Principal, out_of_frame};
 use super::points::{PRINCIPAL, Points, read, read_matrix, write_matrix, write_tangent};

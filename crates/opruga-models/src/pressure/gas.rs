@@ -162,8 +162,8 @@ impl Gas {
             limited,
         }
     }
-    /// The pressure at a volume, and whether it is limited. A step needs no more than this. For a gas of constant temperature
-    /// no logarithm is computed.
+    /// The pressure at a volume, and whether it is limited. A step needs only these two values. For a gas of constant
+    /// temperature no logarithm is computed.
     pub(super) fn pressure_at(&self, volume: f64, amount: f64) -> (f64, bool) {
         if self.process == Process::Isothermal {
             let mut least = self.smallest_volume * self.rest_volume;

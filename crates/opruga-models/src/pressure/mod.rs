@@ -56,7 +56,8 @@ struct Chamber {
     boundary: Boundary,
     /// One gas per body.
     gases: Vec<Gas>,
-    /// The offset of the data of the chamber in the scratch: volume, force per ∂V/∂x and nRT of each body, then the area vectors.
+    /// The offset of the data of the chamber in the scratch: for each body the volume, the force per ∂V/∂x and nRT; then the area
+    /// vectors.
     scratch: usize,
     area_len: usize,
 }
@@ -345,7 +346,7 @@ opruga_math::messages! {
     /// Warnings about a gas.
     #[derive(Clone, Debug, PartialEq)]
     pub enum PressureWarning {
-        /// A limit acted.
+        /// The pressure was limited.
         "pressure.limited"
         #[error("the pressure of a gas was limited to its `largest_pressure`, or to the pressure at its `smallest_volume` (counted once per substep and body)")]
         Limited {},

@@ -115,7 +115,8 @@ impl<const D: usize> Matching<D> {
 }
 
 /// G⁻¹ as Σ w e eᵀ, in the frame of the rest shape. Let I be the inertia of the cluster at rest. The corresponding part of the
-/// Hessian has no negative eigenvalue if G ⪰ I. The eigenvalues of I^(−½) G I^(−½) show about which axes this is not so.
+/// Hessian has no negative eigenvalue if G ⪰ I. The eigenvalues of I^(−½) G I^(−½) show for which axes of rotation this
+/// condition fails.
 fn rotations<const D: usize>(
     frame: &[[f64; D]; D],
     stretch: &[[f64; D]; D],

@@ -24,7 +24,7 @@
 //!
 //! **As published**, T is divided by the D-th root of det T (of the linear fit), and κ may be α/h². That force has no
 //! potential: only explicit integrators accept it, and its power counts as external work. If det T is not positive, R replaces
-//! T. The columns of the paper's quadratic fit are not centred. Here they are, so that no momentum arises.
+//! T. The columns of the paper's quadratic fit are not centred. Here these columns are centred, so that no momentum arises.
 //!
 //! Limits: κ is not the stiffness of a material, and refining a body does not change its stiffness. R is not unique if the two
 //! smallest σ are opposite; the singular vectors then determine the choice.

@@ -2,7 +2,8 @@
 //! are those of the file `pieces`.
 //!
 //! For one body the data of a piece or a cluster are rows, `[coordinate][1, Q₁, Q₂, Q₃]`, with two coordinates in a pack, so
-//! that sums do not gather numbers from several places. For eight bodies every number is a pack. Both add in the same order.
+//! that sums do not gather numbers from several places. For eight bodies every number is a pack. One body and eight bodies add
+//! their numbers in the same order.
 
 use super::kernels::{Law, Stored};
 use super::layout::Clusters;
@@ -11,7 +12,7 @@ use opruga_core::state::{Layout, View, load};
 use opruga_core::tile::Tile;
 use opruga_math::{Lane, Pack, Register, WIDTH, Work, lanes};
 
-/// The largest number of registers of a row of one body: sixteen numbers in pairs.
+/// The largest number of registers that a row of one body needs: sixteen numbers, two in each register.
 const REGISTERS: usize = 8;
 
 /// The number of registers that hold the D maps of a row; later ones are not read.
@@ -62,7 +63,7 @@ fn sum_number<P: Pack, const D: usize>(rows: &[f64], list: &[u32], d: usize, c: 
     sums[0] + sums[1]
 }
 
-/// Computes the moments of all pieces, their sums in all clusters, and from those x̄ − x₀ and cₖ = Σ m p φₖ.
+/// Computes the moments of all pieces and their sums in all clusters. Computes x̄ − x₀ and cₖ = Σ m p φₖ from these sums.
 pub(super) struct PieceMoments<'a, const D: usize> {
     pub(super) clusters: &'a Clusters<D>,
     pub(super) pieces: &'a Pieces<D>,
@@ -265,7 +266,7 @@ impl<const D: usize> Work for PieceMaps<'_, D> {
     }
 }
 
-/// Adds κ m (t + H Q − u) to the nodes of a tile, with the map of the piece of each.
+/// Adds κ m (t + H Q − u) to the nodes of a tile. Each node uses the map of its piece.
 pub(super) struct PieceForces<'a, 'b, 'c, const D: usize> {
     pub(super) pieces: &'a Pieces<D>,
     pub(super) law: &'a Law,

@@ -209,7 +209,7 @@ impl<const D: usize> Pieces<D> {
     pub(super) fn len(&self) -> usize {
         self.share.len()
     }
-    /// The length of a row of a piece or a cluster in the scratch: a map of each coordinate, two of them in a pack.
+    /// The length of a row of a piece or a cluster in the scratch: one map for each coordinate, two maps in a pack.
     pub(super) fn row(layout: Layout) -> usize {
         match layout {
             Layout::Single => WIDTH * (D - 1),

@@ -1,4 +1,4 @@
-//! A cluster at rest: columns that are orthonormal with respect to its masses. It has as many columns as are linearly
+//! A cluster at rest: columns that are orthonormal with respect to its masses. The cluster has as many columns as are linearly
 //! independent on its nodes.
 
 use opruga_math::Lane;

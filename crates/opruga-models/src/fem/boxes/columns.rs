@@ -18,7 +18,7 @@ const AMPLITUDES: usize = MOST_MODES * 3;
 pub(super) struct ByColumns<R, const D: usize, const N: usize>(pub(super) [[[[R; N]; N]; D]; D]);
 
 impl<R: Lane, const D: usize, const N: usize> ByColumns<R, D, N> {
-    /// Adds a second derivative by two different columns.
+    /// Adds a second derivative by entries of two different columns.
     #[inline(always)]
     fn add(&mut self, [i, c]: [usize; 2], [m, d]: [usize; 2], value: R) {
         if i <= m {
@@ -238,8 +238,8 @@ fn change_of_amplitudes<R: Lane, const D: usize, const N: usize>(
 }
 
 /// Adds the second derivatives of q under the forces u on q, which are those of φ(J) N : cof F with N = Σ gₐ ⊗ uₐ. Also adds
-/// the second derivatives of the guard energy ½ (1 − s) Σ kₐ gₐ·gₐ, except those by g alone. The guard energy replaces the law
-/// in a degenerate cell.
+/// the second derivatives of the guard energy ½ (1 − s) Σ kₐ gₐ·gₐ, except the second derivatives by g alone. The guard energy
+/// replaces the law in a degenerate cell.
 #[inline(always)]
 fn add_bent_frame<R: Lane, const D: usize, const N: usize>(
     kept: &Kept<R, D>,

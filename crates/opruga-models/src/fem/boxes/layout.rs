@@ -164,7 +164,7 @@ mod tests {
         let plan = Plan { layout, positions, thickness, plane_stress: false, cells: &cells, mean: false };
         Boxes::new::<E, D, N>(&plan, &|cell, _| [moduli(cell), moduli(cell), 0.0, 1.0, 0.0])
     }
-    /// The numbers of entries of the shares and of X that may be nonzero.
+    /// How many entries of the shares, and how many entries of X, may be nonzero.
     fn entries(boxes: &Boxes, shares: usize, response: usize) -> [usize; 2] {
         let count = |pattern: &Pattern, size: usize| (0..size).map(|k| pattern.rows.of(k).count()).sum();
         [count(&boxes.shares, shares), count(&boxes.response, response)]

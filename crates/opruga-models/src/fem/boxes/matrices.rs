@@ -175,7 +175,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
         }
     }
 
-    /// Adds the contribution of the stresses that exists because their strains rotate with F.
+    /// Adds the contribution that the stresses make because their strains rotate with F.
     #[inline(always)]
     fn add_turned_stresses<R: Register>(
         &self,

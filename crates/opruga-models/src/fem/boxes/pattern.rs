@@ -1,7 +1,7 @@
 //! The nonzero entries of the small matrices of boxes.
 //!
 //! In a hexahedron with right angles, 7 of 49 entries of one matrix and 21 of 144 entries of the other are nonzero. In other
-//! cells all entries are. Leaving out the zeros changes neither the sums nor the order of their terms.
+//! cells all entries are nonzero. Leaving out the zeros changes neither the sums nor the order of their terms.
 
 /// The entries of a matrix that may be nonzero, by rows and by columns.
 #[derive(Clone, Debug, Default, PartialEq)]
