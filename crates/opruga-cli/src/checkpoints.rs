@@ -81,7 +81,7 @@ impl SavedRun {
         out
     }
 
-    /// Reads a payload; none if it has another format.
+    /// Reads a payload. Returns `None` if the payload has another format.
     fn read(mut bytes: &[u8]) -> Option<SavedRun> {
         let mut part = || {
             let (length, rest) = bytes.split_first_chunk::<8>()?;
@@ -168,7 +168,7 @@ pub(crate) struct Keeper<'a> {
     folder: &'a OutputFolder,
     source: &'a Source,
     calling: Calling,
-    /// The time between checkpoints; if none, the only checkpoint is written at the end.
+    /// The time between checkpoints, or `None` if the only checkpoint is written at the end.
     every: Option<Duration>,
     next: Option<Instant>,
     older: Older,
@@ -227,7 +227,7 @@ impl<'a> Keeper<'a> {
         Some(Warning::new(CallWarning::NoCheckpoint { time: world.time(), path, cause: error.about }, 1))
     }
 
-    /// Writes the table so far and a checkpoint; the previous checkpoint is kept under its second name. Returns the names of the files that then
+    /// Writes the table so far and a checkpoint. The previous checkpoint is kept under its second name. Returns the names of the files that then
     /// exist. At the first call, the files of an earlier run are removed, because they would look like files of this one. If the call fails, no file
     /// is changed.
     pub(crate) fn write(&mut self, world: &dyn AnyWorld, table: &NumberTable) -> Result<Vec<String>, WriteError> {

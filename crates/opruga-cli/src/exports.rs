@@ -38,7 +38,8 @@ pub(crate) fn frame(world: &dyn AnyWorld, format: Format, folder: &OutputFolder,
     Ok(())
 }
 
-/// Stress and volume ratio of the cells of a body; empty if it has no finite elements.
+/// The stresses and the volume ratio of the cells of a body. The lists are empty if the body has no
+/// finite elements.
 #[derive(Default)]
 struct Stresses {
     cauchy: Vec<f64>,

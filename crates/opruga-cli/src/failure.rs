@@ -26,7 +26,7 @@ pub(crate) enum Failure {
     Check(CheckFault),
     /// The call is invalid.
     Call(AnyMessage),
-    /// Ctrl-C or a termination signal; the files are closed.
+    /// Ctrl-C or a termination signal ended the program after its files were closed.
     Interrupted,
     /// The reader of the output has closed the pipe.
     ClosedPipe,
@@ -152,7 +152,7 @@ pub(crate) fn with_code(label: Label, about: &dyn Message) -> String {
     format!("{}[{}]: {}", in_words(own, &label), about.code(), in_words(own, about))
 }
 
-/// A note for people.
+/// Prints a note on stderr.
 pub(crate) fn print_note(note: &CallNote) {
     eprintln!("{}", with_code(Label::Note, note));
 }

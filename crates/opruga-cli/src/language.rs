@@ -21,7 +21,7 @@ pub(crate) fn choose(language: Language) {
     let _ = CHOSEN.set(language);
 }
 
-/// The texts of the chosen language; none for English.
+/// The texts of the chosen language, or `None` for English.
 pub(crate) fn translation() -> Option<&'static Translation> {
     match CHOSEN.get() {
         Some(Language::Hr) => Some(Translation::croatian()),

@@ -55,7 +55,7 @@ fn rows<const D: usize>(numbers: &[f64]) -> [[f64; D]; D] {
     core::array::from_fn(|i| core::array::from_fn(|j| numbers[i * D + j]))
 }
 
-/// The fields of the law, checked like those of a scene.
+/// The fields of the law, checked like the fields of a scene.
 fn values(call: &Material, dimension: usize) -> Result<Values, Failure> {
     let mut values = Values::defaults(SPEC, dimension);
     if !law::NAMES.contains(&call.name.as_str()) {

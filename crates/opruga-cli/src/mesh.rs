@@ -1,4 +1,5 @@
-//! `opruga mesh`: makes a mesh of cells from a file, with its quality and a picture; also converts between formats.
+//! `opruga mesh`: makes a mesh of cells from a file, reports its quality and draws a picture. The command also converts between
+//! formats.
 #![allow(clippy::result_large_err, reason = "errors are rare, and say much")]
 
 use crate::arguments::Mesh as Call;
@@ -73,8 +74,8 @@ pub(crate) fn mesh(call: &Call) -> Result<u8, Failure> {
     }
 }
 
-/// The path of the picture; none if it is not requested. It contains the full name of the mesh, so that each format of a mesh can have its own
-/// picture in the same folder.
+/// The path of the picture, or `None` if no picture is requested. The path contains the full name of the mesh, so that each format of a
+/// mesh can have its own picture in the same folder.
 fn picture_of(call: &Call, out: Option<&(&Path, String)>) -> Option<PathBuf> {
     let beside = || out.map(|(path, ending)| path.with_extension(format!("{ending}.png")));
     call.picture.clone().or_else(beside)
@@ -408,7 +409,7 @@ fn on_surface<const D: usize>(mesh: &Mesh<D>) -> Vec<bool> {
     outer
 }
 
-/// The sides of cells between corners and midpoint nodes, each once.
+/// The sides of cells between corners and midpoint nodes. Each side occurs once.
 fn sides<const D: usize>(mesh: &Mesh<D>, wanted: impl Fn(&[u32; 2]) -> bool) -> Vec<[u32; 2]> {
     let mut straight = mesh.clone();
     straight.facets.clear();

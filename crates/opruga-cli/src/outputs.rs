@@ -37,7 +37,7 @@ pub(crate) struct Outputs<'a> {
 }
 
 impl Outputs<'_> {
-    /// Writes every file; returns the summary as JSON.
+    /// Writes every file. Returns the summary as JSON.
     pub(crate) fn write(
         &self,
         world: &dyn AnyWorld,
@@ -213,7 +213,7 @@ impl Outputs<'_> {
         Ok(name.into())
     }
 
-    /// The wall-clock time per node and substep [ns]; none if there was no step.
+    /// The wall-clock time per node and substep [ns], or `None` if there was no step.
     fn nanoseconds(&self, nodes: usize) -> Option<f64> {
         let work = self.steps as f64 * nodes as f64;
         (work > 0.0).then(|| self.wall * 1e9 / work)
@@ -272,7 +272,8 @@ impl Outputs<'_> {
     }
 }
 
-/// Stress, von Mises stress and J of every node of a body; rows without numbers if none of its cells has a stress.
+/// Stress, von Mises stress and J of every node of a body. A row has no numbers if none of the cells at its node
+/// has a stress.
 fn stresses(world: &dyn AnyWorld, body: usize) -> Vec<Vec<f64>> {
     let dimension = world.scene().dimension();
     let row = |state: Option<NodeState>| {

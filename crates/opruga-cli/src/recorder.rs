@@ -77,7 +77,7 @@ pub(crate) struct Recorder {
 struct Rows {
     /// The number of frames from one row to the next.
     apart: u64,
-    /// The size of a table with a row for every frame [bytes]; none if the call chooses the rows, or if this size is within the limit.
+    /// The size of a table with a row for every frame [bytes]. It is `None` if the call chooses the rows, or if the size is within the limit.
     too_many: Option<u64>,
     /// The last frame that has a row.
     last: Option<u64>,
@@ -115,13 +115,13 @@ pub(crate) struct Columns {
     pub(crate) credit: String,
     /// Whether y points downwards in pictures.
     pub(crate) y_down: bool,
-    /// Bodies with columns of their own: their thickness [m], and whether they are those of the thesis, whose volume and pressure have other
-    /// meanings.
+    /// The bodies with columns of their own. For each: its thickness [m], and whether it is a body of the thesis, whose volume and pressure have
+    /// other meanings.
     pub(crate) bodies: Vec<(String, f64, bool)>,
 }
 
 impl Recorder {
-    /// Prepares the columns, and pictures at the desired rate if memory allows it; refuses a rate that no film can have.
+    /// Prepares the columns, and pictures at the desired rate if memory allows it. Refuses a rate that no film can have.
     pub(crate) fn new(world: &mut dyn AnyWorld, wanted: Wanted, frames: u64) -> Result<Recorder, Failure> {
         let Wanted { fps: asked, pictures: drawn, arrows, springs, gif, notes, row_every } = wanted;
         let fps = asked.unwrap_or(USUAL_RATE);
@@ -215,7 +215,7 @@ impl Recorder {
         })
     }
 
-    /// Collects the data of the present frame, and of moments within it; returns how long this took.
+    /// Collects the data of the present frame, and of moments within this frame. Returns how long this took.
     pub(crate) fn record(&mut self, world: &mut dyn AnyWorld) -> Duration {
         let begin = Instant::now();
         let (bodies, seen) = (&self.bodies, &mut self.seen);

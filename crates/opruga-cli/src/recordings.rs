@@ -1,4 +1,4 @@
-//! `opruga run --record`: writes a recording frame by frame; also opens recordings.
+//! Writes a recording frame by frame (`opruga run --record`), and opens recordings.
 
 use crate::checkpoints::Calling;
 use crate::errors::CallError;

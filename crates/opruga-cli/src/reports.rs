@@ -1,4 +1,5 @@
-//! Commands that print information: check, list, new, reference, bench; also the plots of a run.
+//! Commands that print information: check, list, new, reference and bench. The plots of a run are
+//! here too.
 
 use crate::arguments::{Bench, BenchVertices, Check};
 use crate::bench::vertices as bench;

@@ -289,7 +289,7 @@ impl Progress {
         Progress { bar, forecast, start, first, frames, quiet, last_line: 0.0 }
     }
 
-    /// Shows the progress of the run: on the bar, or in occasional lines if there is none.
+    /// Shows the progress of the run: on the bar, or in occasional lines if there is no bar.
     fn after_frame(&mut self, world: &dyn AnyWorld, frame: f64) {
         self.bar.set_position(world.frames());
         let wall = self.start.elapsed().as_secs_f64();

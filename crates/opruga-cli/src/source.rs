@@ -20,7 +20,7 @@ pub(crate) struct Source {
     pub(crate) name: String,
     /// The file named in errors.
     pub(crate) file: String,
-    /// The file of the scene; none if it comes with the program, or is stored in another file.
+    /// The file of the scene, or `None` if the scene comes with the program or is stored in another file.
     pub(crate) path: Option<PathBuf>,
     /// The bytes as they were read; the reader refuses invalid UTF-8 with its location.
     pub(crate) bytes: Vec<u8>,
@@ -78,7 +78,7 @@ impl Source {
         scene::survey(&self.bytes, &self.file, &catalogue_of(&self.registries), options)
     }
 
-    /// Reads the scene. All errors are reported at once: those of the reader, and those of a world made from the rest.
+    /// Reads the scene. All errors are reported at once: the errors of the reader, and the errors of a world made from the rest.
     pub(crate) fn read(&self, options: &scene::Options, world: &Options) -> Result<Whole, Failure> {
         match self.survey(options) {
             scene::Reading { blueprint: Some(blueprint), errors, notices, files, .. } if errors.is_empty() => {
@@ -106,7 +106,7 @@ impl Source {
         in_scene(SceneError::from(error), self.text(), &self.file, &options.overrides)
     }
 
-    /// Builds the world of a scene that was read with these options; all of its errors are reported at once.
+    /// Builds the world of a scene that was read with these options. All errors of the scene are reported at once.
     pub(crate) fn build(
         &self,
         blueprint: AnyBlueprint,
@@ -133,7 +133,7 @@ impl Source {
         Ok(built)
     }
 
-    /// An error that ends a run at some time; it does not belong to a line.
+    /// An error that ends a run at some time. It does not belong to a line of the scene.
     pub(crate) fn run_error(&self, error: &WorldError, time: f64) -> Failure {
         let scene_error = SceneError { file: self.file.clone(), ..SceneError::from(error) };
         Failure::Run(Box::new(timed(scene_error, error, time)))
@@ -147,7 +147,7 @@ impl Source {
     }
 }
 
-/// An error with its time; some messages already contain it.
+/// Adds the time to an error, unless the message of the error already contains it.
 fn timed(scene_error: SceneError, error: &WorldError, time: f64) -> SceneError {
     if matches!(error, WorldError::Snapshot { .. }) || has_time(error) {
         return scene_error;

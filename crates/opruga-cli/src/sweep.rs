@@ -99,7 +99,7 @@ struct SceneInfo {
     length_unit: String,
     /// The authors of the drawings in the scene.
     credit: String,
-    /// The note that runs end at another time than requested. It is absent if that time differs between the runs.
+    /// The note that runs end at another time than requested. There is no note if that time differs between the runs.
     ends: Option<CallNote>,
 }
 
@@ -178,7 +178,7 @@ fn question_of(call: &Call, registries: &Registries) -> Result<(Question, PathBu
     Ok((question, path))
 }
 
-/// The question of the sweep in a folder; none if there is no sweep.
+/// The question of the sweep in a folder, or `None` if the folder contains no sweep.
 fn asked(folder: &Path) -> Result<Option<Question>, Failure> {
     let path = folder.join(QUESTION);
     if !path.exists() {

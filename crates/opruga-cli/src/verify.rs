@@ -62,7 +62,7 @@ pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failu
     Ok(u8::from(failed))
 }
 
-/// The cases that any of the words names; all cases if there are no words.
+/// The cases that any of the words names, or all cases if there are no words.
 fn chosen(words: &[String]) -> Result<Vec<&'static Case>, Failure> {
     for word in words {
         let of_word = |case: &Case| case.name.contains(word.as_str()) || case.family.name() == word;

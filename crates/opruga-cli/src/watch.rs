@@ -112,7 +112,7 @@ fn named_files(scene: &str, registries: &Registries, outside: bool) -> (Vec<Path
 }
 
 /// Waits until a file differs from its former state and all files have stayed the same for a while, then stops the present work and returns the index
-/// of the file. Returns none if the work was stopped for another reason. A file that disappears and does not come back is reported once.
+/// of the file. Returns `None` if the work was stopped for another reason. A file that disappears and does not come back is reported once.
 fn wait_for_change(files: &[PathBuf], before: &[Option<Stamp>], json: bool) -> Option<usize> {
     let stop = interrupt::asked_to_stop();
     let (mut last, mut same) = (Vec::new(), 0);

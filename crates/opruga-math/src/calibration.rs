@@ -1,5 +1,5 @@
-//! Loops that measure the speed of the machine, for comparison with other loops. They are compiled with this crate, as kernels
-//! are, and not with the program that calls them.
+//! Loops that measure the speed of the machine, for comparison with other loops. The loops are compiled with this crate, as
+//! kernels are, and not with the program that calls them.
 
 use crate::{Pack, Simd, WIDTH, Work};
 
@@ -36,7 +36,7 @@ pub fn products_and_sums(simd: Simd, out: &mut [f64; WIDTH]) -> usize {
     2 * ROUNDS * CHAINS * WIDTH
 }
 
-/// Computes a = b + c/2 for arrays of equal length, which must be a multiple of the width; returns the number of bytes that are
+/// Computes a = b + c/2 for arrays of equal length, which must be a multiple of the width. Returns the number of bytes that are
 /// read and written.
 #[inline(never)]
 pub fn triad(simd: Simd, a: &mut [f64], b: &[f64], c: &[f64]) -> usize {

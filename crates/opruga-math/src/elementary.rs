@@ -1,6 +1,6 @@
 //! Logarithm and exponential with the same bits on every machine.
 //!
-//! They use `libm`, a translation of musl's C code to Rust without platform calls.
+//! The functions use `libm`, a translation of musl's C code to Rust without platform calls.
 
 /// Natural logarithm of `x`.
 #[inline]

@@ -224,8 +224,8 @@ pub fn sum_in_fixed_order(a: &[f64; WIDTH]) -> f64 {
 
 /// An array of lanes, each computed from its index: `lanes!(P, d => expression)`.
 ///
-/// This is a macro and not a function with a closure, because closures are not inlined reliably into code for vector
-/// instructions, and code that is not inlined takes ten times as long.
+/// `lanes!` is a macro and not a function with a closure, because closures are not inlined reliably into code for vector
+/// instructions. Code that is not inlined takes ten times as long.
 #[macro_export]
 macro_rules! lanes {
     ($type:ty, $number:ident => $value:expr) => {{

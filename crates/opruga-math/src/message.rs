@@ -1,7 +1,7 @@
 //! Errors and warnings as values: a stable code, named fields, and the English text next to the code.
 //!
-//! A message never contains the text of another message: a variable part is a field, which may be a message itself. So a
-//! catalogue of another language needs only the code and the fields.
+//! A message never contains the text of another message: a variable part is a field, which may be a message itself. A catalogue
+//! of another language therefore needs only the code and the fields.
 
 use crate::words::number;
 use core::fmt;
@@ -87,7 +87,7 @@ pub trait Message: std::error::Error + Send + Sync + 'static {
     fn hint(&self) -> Option<String> {
         None
     }
-    /// The same message with other settings and names; `None` if it has no fields that could contain any.
+    /// The same message with other settings and names. Returns `None` if no field of the message could contain any.
     fn replaced(&self, _by: &Replacing<'_>) -> Option<AnyMessage> {
         None
     }
@@ -118,7 +118,7 @@ pub struct Variant {
     pub name: &'static str,
     /// The names of the fields of the variant.
     pub fields: &'static [&'static str],
-    /// The English text, the allowed values and the hint, as written in the source; empty if there are none.
+    /// The English text, the allowed values and the hint, as written in the source. A missing text is empty.
     pub english: [&'static str; 3],
 }
 
@@ -296,7 +296,7 @@ impl<T: IntoField> IntoField for Option<T> {
     }
 }
 
-/// The text of a part if there is one; otherwise empty.
+/// The text of a part if there is one, otherwise an empty text.
 pub fn if_any<T: fmt::Display>(part: &Option<T>) -> String {
     part.as_ref().map_or_else(String::new, T::to_string)
 }

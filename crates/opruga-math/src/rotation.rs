@@ -6,7 +6,8 @@
 //! f⁴ − 2 I f² − 8 J f + 2 tr C² − I² = 0.
 //!
 //! Since R is the derivative of f with respect to F, R = ((f² + I) F − 2 F C + 2 f cof F)/(f³ − I f − 2 J). The denominator is
-//! 2 (σ₁ + σ₂)(σ₂ + σ₃)(σ₃ + σ₁). It is small if the rotation is badly determined; singular vectors are used in this case.
+//! 2 (σ₁ + σ₂)(σ₂ + σ₃)(σ₃ + σ₁). The denominator is small if the rotation is badly determined. Singular vectors are used in this
+//! case.
 //!
 //! Source: Davenport 1968 for the quartic (of the quaternion of R); Lin, Chitalu, Komura, "Isotropic ARAP energy using
 //! Cauchy–Green invariants" (2022) for its derivative.

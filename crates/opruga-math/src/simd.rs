@@ -13,7 +13,7 @@ static BEST: AtomicU8 = AtomicU8::new(0);
 /// A set of vector instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Simd {
-    /// The instructions that every machine of the target has (SSE2 on x86-64, 128-bit vectors or none elsewhere).
+    /// The instructions that every machine of the target has: SSE2 on x86-64, 128-bit vectors or none elsewhere.
     Baseline,
     /// 256-bit vectors.
     Avx2,
@@ -225,7 +225,7 @@ mod tests {
         }
     }
 
-    /// Logarithms of numbers of every size, including those without a logarithm.
+    /// Logarithms of numbers of every size, including numbers without a logarithm.
     struct Logarithms<'a>(&'a [f64]);
     impl Work for Logarithms<'_> {
         type Output = Vec<u64>;

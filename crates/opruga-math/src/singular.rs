@@ -132,7 +132,7 @@ pub fn singular<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Singular<S, D> {
     Singular { u, sigma, v }
 }
 
-/// A vector divided by its length, and its length; if it has no length, the substitute and zero.
+/// A vector divided by its length, and its length. If the length is zero, returns the substitute and zero.
 #[inline(always)]
 pub(crate) fn direction<S: Lane, const D: usize>(a: &[S; D], substitute: &[S; D]) -> ([S; D], S) {
     let mut square = S::zero();
@@ -149,7 +149,7 @@ pub(crate) fn direction<S: Lane, const D: usize>(a: &[S; D], substitute: &[S; D]
     (out, S::select(real, length, S::zero()))
 }
 
-/// One rotation of two columns; returns whether any matrix was rotated.
+/// Makes one rotation of two columns. Returns whether any matrix was rotated.
 #[inline(always)]
 fn make_orthogonal<S: Lane, const D: usize>(b: &mut Matrix<S, D>, v: &mut Matrix<S, D>, p: usize, q: usize) -> bool {
     let (mut alpha, mut beta, mut gamma) = (S::zero(), S::zero(), S::zero());

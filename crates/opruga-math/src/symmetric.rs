@@ -34,7 +34,7 @@ pub fn eigen<S: Lane, const N: usize>(matrix: &[[S; N]; N]) -> ([S; N], [[S; N];
     (values, vectors)
 }
 
-/// The matrix without its negative eigenvalues: Σ max(λ, 0) v vᵀ; the matrix itself if it has none.
+/// The matrix without its negative eigenvalues: Σ max(λ, 0) v vᵀ. If there are none, this is the matrix itself.
 #[inline(always)]
 pub fn positive_part<S: Lane, const N: usize>(matrix: &[[S; N]; N]) -> [[S; N]; N] {
     // A matrix is positive definite if all pivots of Gaussian elimination are positive.
@@ -73,7 +73,7 @@ pub fn positive_part<S: Lane, const N: usize>(matrix: &[[S; N]; N]) -> [[S; N]; 
     out
 }
 
-/// One rotation that makes the entry (p, q) zero; returns whether any matrix needed it.
+/// Makes the entry (p, q) zero by one rotation. Returns whether any matrix needed it.
 #[inline(always)]
 fn rotate<S: Lane, const N: usize>(a: &mut [[S; N]; N], vectors: &mut [[S; N]; N], p: usize, q: usize) -> bool {
     let off = a[p][q];

@@ -1,8 +1,8 @@
 //! Threads that work on pieces in parallel and stay awake while they wait for more. Distributing pieces costs less than a
 //! microsecond; waking a sleeping thread takes fifty.
 //!
-//! The thread that distributes pieces, the *leader*, works too. It waits for pieces that a member has taken, but never for
-//! members to arrive. If a member is late or never arrives, the others do more of the work.
+//! The thread that distributes pieces, the *leader*, works too. The leader waits for pieces that a member has taken, but never
+//! for members to arrive. If a member is late or never arrives, the others do more of the work.
 //!
 //! Each piece is assigned to a member, and others take it only if that member is late. The same processor therefore uses the
 //! same memory again.
@@ -10,7 +10,7 @@
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
-/// How often a waiting thread checks before it yields. This takes about twenty microseconds.
+/// How often a waiting thread checks before it yields. These checks take about twenty microseconds.
 const LOOKS: u32 = 2_000;
 
 /// The largest number of pieces that are distributed one by one; if there are more, several are distributed at a time.
@@ -23,7 +23,7 @@ type Work<'a> = dyn Fn(usize) + Sync + 'a;
 #[derive(Debug)]
 pub struct Team {
     members: Box<[Member]>,
-    /// The work; valid while a piece is taken and not done.
+    /// The work, which is valid while a piece is taken and not done.
     work: Task,
     done: Apart<AtomicUsize>,
     /// Whether the leader is already distributing pieces. If a piece itself distributes work, it does all of that work alone.
@@ -207,7 +207,7 @@ impl Team {
         assert!(!self.failed.swap(false, Ordering::Relaxed), "a thread of the team has panicked");
     }
 
-    /// Does the remaining pieces of this member, then those of the others; returns how many pieces it did.
+    /// Does the remaining pieces of this member, then those of the others. Returns the number of pieces done.
     fn help(&self, own: usize) -> usize {
         let mut did = 0;
         for k in 0..self.members() {

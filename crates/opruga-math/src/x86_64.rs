@@ -1,6 +1,6 @@
 //! The registers of x86-64: two numbers with SSE2, four with AVX2, eight with AVX-512.
 //!
-//! Their operations are the basic ones of IEEE 754, so all of them give the same bits.
+//! The operations of these registers are the basic ones of IEEE 754, so all of them give the same bits.
 //!
 //! # Safety
 //! The instructions of AVX2 and AVX-512 exist only on processors that have them. The types are private to this crate, and their
@@ -154,8 +154,8 @@ const FRACTION: i64 = (1 << 52) - 1;
 const WHOLE: i64 = 0x4330_0000_0000_0000;
 const BIAS: f64 = 4_503_599_627_370_496.0 + 1023.0;
 
-/// Converts a count of at most eight. It is converted as a small signed integer, because every processor has one instruction for
-/// this.
+/// Converts a count of at most eight. The count is converted as a small signed integer, because every processor has one
+/// instruction for this.
 #[inline(always)]
 fn few(count: usize) -> f64 {
     f64::from(count.min(8) as i32)
@@ -229,7 +229,7 @@ register! {
     split |x| split_avx512(x), rows |at| rows_avx512(at), to_rows |a, b, c, d, to| to_rows_avx512(a, b, c, d, to)
 }
 
-/// A mask of the first lanes. This is a function, because a closure longer than one call is not inlined.
+/// A mask of the first lanes. The mask is made by a function, because a closure longer than one call is not inlined.
 ///
 /// # Safety
 /// The processor must have AVX2.

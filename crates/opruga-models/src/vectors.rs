@@ -2,7 +2,7 @@
 
 use opruga_math::Lane;
 
-/// The inverse of the number; zero for numbers below the smallest normal number.
+/// The inverse of the number, or zero for numbers below the smallest normal number.
 #[inline(always)]
 pub(crate) fn inverse<S: Lane>(a: S) -> S {
     let real = S::splat(f64::MIN_POSITIVE).less_or_equal(a);

@@ -112,7 +112,7 @@ fn modulus() -> (&'static str, Value) {
 /// Vertices of the rings.
 const RING: u32 = 4096;
 
-/// Measures the other methods, each with the existing model with which it is compared.
+/// Measures each of the other methods, and the existing model with which it is compared.
 fn survey(registries: &Registries, boxes: &Mesh<3>, tetrahedra: &Mesh<3>, rows: &mut Vec<Row>) -> Result<(), Failure> {
     let Registries { plane, space } = registries;
     let refused = |error: opruga::mesh::MeshError| Failure::call(error);

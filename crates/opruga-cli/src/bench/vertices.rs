@@ -70,7 +70,7 @@ fn values(spec: &'static opruga::core::spec::Spec, fields: &[(&str, Value)]) -> 
 }
 
 /// Rings as in the baseline: masses of 1 kg, edges of 0.1 m, k = 1600 N/m, c = 40 N·s/m, a gas that stretches every edge with 160 N at rest, and a
-/// floor below. They start 60 m above it and are in flight while they are measured.
+/// floor below. The rings start 60 m above the floor and are in flight while they are measured.
 pub(crate) fn rings(
     (bodies, vertices): (usize, usize),
     registry: &Registry<2>,

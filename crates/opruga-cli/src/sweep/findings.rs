@@ -20,7 +20,7 @@ struct Ends<'a> {
 }
 
 impl Found<'_> {
-    /// The extremes of a metric over some rows; none if no row has a value.
+    /// The extremes of a metric over some rows, or `None` if no row has a value.
     fn ends<'r>(&self, metric: usize, rows: impl Iterator<Item = &'r Row>) -> Option<Ends<'r>> {
         rows.filter_map(|row| Some((row.numbers[metric]?, row))).fold(None, |ends, found| match ends {
             None => Some(Ends { lowest: found, highest: found }),
@@ -31,7 +31,8 @@ impl Found<'_> {
         })
     }
 
-    /// The rows in which a parameter varies: if parameters vary one at a time, each has its own rows.
+    /// The rows in which a parameter varies. If parameters vary one at a time, each parameter has
+    /// rows of its own.
     fn rows_of(&self, axis: usize) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(move |row| row.values[axis].is_some())
     }

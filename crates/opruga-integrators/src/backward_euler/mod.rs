@@ -6,9 +6,9 @@
 //! v₀|²_M / 2h² + U(x) (Martin et al. 2011), so a step always has a solution.
 //!
 //! Backward Euler damps. In each step, the amplitude of an oscillation is multiplied by 1/√(1 + h²ω²), which is 0.995 at hω =
-//! 0.1 and 0.1 at hω = 10. This is a numerical error and not physics, but it makes the integrator forgiving: motion that is too
-//! fast for the step dies out at once, and slow motion remains. Equilibrium is exact: if the forces balance, nothing moves,
-//! whatever h is. In free fall the position is −½ g t² (1 + h/t).
+//! 0.1 and 0.1 at hω = 10. This damping is a numerical error and not physics, but it makes the integrator forgiving: motion
+//! that is too fast for the step dies out at once, and slow motion remains. Equilibrium is exact: if the forces balance,
+//! nothing moves, whatever h is. In free fall the position is −½ g t² (1 + h/t).
 //!
 //! Source: Baraff and Witkin 1998; Hairer and Wanner, *Solving Ordinary Differential Equations II*, IV.3.
 
@@ -38,7 +38,7 @@ them and stick or slip by Coulomb's law. Bodies are not stepped in batches.",
     roles: &[Role::OfferedImplicit],
 };
 
-/// The kind of integrator that scenes name `backward_euler`.
+/// The kind of integrator that scenes call `backward_euler`.
 #[derive(Debug)]
 pub struct BackwardEulerKind;
 

@@ -1,4 +1,4 @@
-//! Tests the order, which is 1, stability without a limit, the amplitude of an oscillation, and free fall.
+//! Tests that the order is 1 and that stability has no limit; also tests the amplitude of an oscillation, and free fall.
 
 use super::{BackwardEuler, SPEC};
 use crate::implicit::step::Implicit;

@@ -8,10 +8,11 @@
 //! faster than the step is damped within a few steps (L-stable). Slow motion is hardly damped: the amplitude loses the fraction
 //! (hω)⁴/4 per step, compared with (hω)²/2 for backward Euler.
 //!
-//! **Memory.** The integrator remembers the displacement of the previous step and the velocity at its start. Both are part of
-//! the state, and so of checkpoints, hashes and replays. The first step, and the first one after a program has moved a node, is
-//! a step of backward Euler. After an impact, the memory of a node is reset as if the node had always moved with its velocity
-//! after the impact, because a difference across an impact does not describe the motion after it.
+//! **Memory.** The integrator remembers the displacement of the previous step and the velocity at its start. The displacement
+//! and the velocity are part of the state, and so of checkpoints, hashes and replays. The first step, and the first one after a
+//! program has moved a node, is a step of backward Euler. After an impact, the memory of a node is reset as if the node had
+//! always moved with its velocity after the impact, because a difference across an impact does not describe the motion after
+//! it.
 //!
 //! Source: Curtiss and Hirschfelder 1952; Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, III.5 (5.9).
 
@@ -43,12 +44,13 @@ Euler. Bodies are not stepped in batches.",
     roles: &[],
 };
 
-/// The displacement of the previous step [m], the velocity at its start [m/s], and its length [s]; zero before the first step.
+/// The displacement of the previous step [m], the velocity at its start [m/s], and its length [s]. All are zero before the
+/// first step.
 const DISPLACEMENT: PerNode = PerNode::new("bdf2.displacement");
 const VELOCITY: PerNode = PerNode::new("bdf2.velocity");
 const STEP: PerBody<f64> = PerBody::new("bdf2.step");
 
-/// The kind of integrator that scenes name `bdf2`.
+/// The kind of integrator that scenes call `bdf2`.
 #[derive(Debug)]
 pub struct Bdf2Kind;
 

@@ -4,8 +4,8 @@
 //! step can pass the kink, because the set of held nodes is determined anew in every iteration.
 //!
 //! Two points of the curve are at the given distance from the start of a step: one forward, one back. If the curve turns sharply,
-//! the iteration may find the wrong point, because only the previous step defines the forward direction. So a step in which the
-//! curve turns by more than 60° is repeated with half the length, except at kinks due to obstacles.
+//! the iteration may find the wrong point, because only the previous step defines the forward direction. A step in which the
+//! curve turns by more than 60° is therefore repeated with half the length, except at kinks due to obstacles.
 
 use super::{COMPLETE, DISPLACEMENT, Equilibrium, Reached, SPEC};
 use crate::implicit::balance::{Balance, Solved};
@@ -90,7 +90,8 @@ fn agree(a: &[f64], b: &[f64]) -> bool {
     dot(a, b) >= LEAST_COSINE * (dot(a, a) * dot(b, b)).sqrt()
 }
 
-/// Newton's method for displacement and load under the constraint |Δu| = `displacement`; none if it does not converge.
+/// Finds displacement and load by Newton's method under the constraint |Δu| = `displacement`. Returns `None` if the method does
+/// not converge.
 fn one_step<const D: usize>(
     rule: &Equilibrium,
     system: &mut System<D>,

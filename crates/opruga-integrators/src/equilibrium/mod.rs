@@ -6,8 +6,8 @@
 //! Newton's method searches downhill: if there is a potential U, every iteration lowers it. If the equilibrium is far away, it
 //! helps to apply the weight and the loads in parts (`load_steps`), or to do so only if the step under the whole load does not
 //! converge (`when_not_converged = "halve"`). In statics every change of energy is external work. When a weight is lowered
-//! slowly, it releases more energy than the springs store. The rest goes into the hand that lowers it. This energy is recorded
-//! with the work of the loads as `work_user`.
+//! slowly, it releases more energy than the springs store. The rest goes into the hand that lowers it. The energy that goes into
+//! the hand is recorded with the work of the loads as `work_user`.
 //!
 //! **Through a snap** (`arc_length`): when a shallow arch snaps, no equilibrium is near the old one. With this option the load is
 //! an unknown as well: each step moves by a given length along the curve of equilibria, past the limit points where the load
@@ -23,10 +23,10 @@
 //! Where the body meets obstacles, the curve continues along their surface. If only obstacles hold a body, it has no curve of
 //! equilibria, because the curve begins without any load.
 //!
-//! A body that nothing holds has either no equilibrium or many. It is refused, and the error names its free motions. The same
-//! applies to a body of several pieces, such as a map with islands, if one piece is free. Without `arc_length`, obstacles may
-//! hold the body too. Within the iteration, a direction without stiffness then gets a billionth of the stiffness of the others.
-//! If the iteration still fails, the error names the motions that contact leaves free.
+//! A body that nothing holds has either no equilibrium or many. Such a body is refused, and the error names its free motions. The
+//! same applies to a body of several pieces, such as a map with islands, if one piece is free. Without `arc_length`, obstacles
+//! may hold the body too. Within the iteration, a direction without stiffness then gets a billionth of the stiffness of the
+//! others. If the iteration still fails, the error names the motions that contact leaves free.
 //!
 //! Other bodies may hold a body too, but how they do so is not known in advance. So the common equilibrium of touching bodies is
 //! found by the caller, with the forces and the matrix of each body ([`OpenStep`]).
@@ -97,7 +97,7 @@ whole load is applied at once.",
     roles: &[Role::Statics],
 };
 
-/// The kind of integrator that scenes name `equilibrium`.
+/// The kind of integrator that scenes call `equilibrium`.
 #[derive(Debug)]
 pub struct EquilibriumKind;
 

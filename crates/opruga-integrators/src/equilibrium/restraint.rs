@@ -1,4 +1,4 @@
-//! The rigid motions that the loads do not restrain: those under which loads and weight do no work of any order.
+//! The rigid motions that the loads do not restrain. Under such motions, loads and weight do no work of any order.
 //!
 //! In a rigid motion q (displacements φ_q, rotation ω_q) the force on a node changes by −K φ_q, where K = −∂F/∂x. If the force
 //! F rotated with the body, it would change by ω_q × F. Only the difference of these two changes can hold the body in a
@@ -6,9 +6,9 @@
 //!
 //! P_pq = Σ φ_p·(ω_q × F + K φ_q)
 //!
-//! This is zero for a pressure of any strength, because pressure follows the body. It is φ_p·K φ_q for a spring to a pointer.
-//! For a dead load or the weight, it is zero for a rotation about the axis along which they act. It is also zero if their
-//! resultant passes through the support of the body. A dead load may do second-order work in most poses but not in some, such
+//! P is zero for a pressure of any strength, because pressure follows the body. For a spring to a pointer, P is φ_p·K φ_q. For a
+//! dead load or the weight, it is zero for a rotation about the axis along which they act. P is also zero if the resultant of
+//! these forces passes through the support of the body. A dead load may do second-order work in most poses but not in some, such
 //! as that of a horizontal pendulum. So several poses of the body are examined.
 
 use super::motion::{Motion, Projection, all_motions, center, displacement, of_weights, shape_at, unpinned_motions};
@@ -23,15 +23,15 @@ use opruga_solve::dense::symmetric_eigen;
 /// Times after the present one at which loads are evaluated [s], because some loads begin at zero.
 const TIMES: [f64; 7] = [0.0, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
 
-/// Restraints below a fraction of the loads count as zero. This number is the square of the fraction, because P is squared.
+/// Restraints below a fraction of the loads count as zero. The constant is the square of the fraction, because P is squared.
 const NOTHING: f64 = 1e-14;
 
 /// The angle by which the body is rotated in the other poses [rad].
 pub(super) const TURN: f64 = 0.9;
 
-/// The motions of the body, or of a piece, that nothing prevents. They could be prevented by pins, loads, the weight (which
-/// holds a pendulum), or obstacles that hold nodes along the given directions. The nodes are at the given positions.
-/// Translations come first.
+/// The motions of the body, or of a piece, that nothing prevents. Pins, loads, the weight (which holds a pendulum), or obstacles
+/// that hold nodes along the given directions could prevent a motion. The nodes are at the given positions. Translations come
+/// first.
 pub(super) fn free_motions<const D: usize>(
     system: &System<D>,
     x: &Columns<D>,
@@ -119,8 +119,8 @@ fn ties_to_space<const D: usize>(system: &System<D>, member: &Member<D>) -> bool
     })
 }
 
-/// Whether a model exerts forces only between nodes, at rest and in motion. Then its forces and their moments sum to zero over a
-/// body, since its energy does not change under rigid motion.
+/// Whether a model exerts forces only between nodes, at rest and in motion. The forces of such a model and their moments sum to
+/// zero over a body, since the energy of the model does not change under rigid motion.
 pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Member<D>) -> bool {
     let properties = member.potential.properties();
     if let Some(between) = properties.acts_between_nodes {
@@ -153,7 +153,7 @@ pub(crate) fn acts_between_nodes<const D: usize>(system: &System<D>, member: &Me
     stiffness.largest > 0.0 && !(0..shapes.len()).any(brakes) && !(0..D).any(pushes)
 }
 
-/// The scratch of a model, prepared in a state; none if the model has no value there.
+/// The scratch of a model, prepared in a state, or `None` if the model has no value there.
 fn prepared<const D: usize>(system: &System<D>, member: &Member<D>, view: &View<'_, D>) -> Option<Column> {
     let mut scratch = Column::zeros(member.potential.properties().scratch_len);
     member.potential.prepare(system.simd, view, &member.memory, &mut scratch).ok()?;

@@ -10,7 +10,7 @@ use opruga_core::state::{Columns, View};
 use opruga_core::system::{Member, Stage, System};
 use opruga_math::Column;
 
-/// Forces below this fraction of those due to a stretch of the same length count as rounding.
+/// Forces count as rounding below this fraction of the forces due to a stretch of the same length.
 const NOTHING: f64 = 1e-6;
 
 /// The rotations of a piece that neither pins nor loads with a stiffness prevent. The forces of the body itself must not
@@ -46,7 +46,8 @@ fn goes_on<const D: usize>(system: &System<D>, piece: &[usize], motion: &Motion<
     round > 0.0 && round.is_finite() && straight <= NOTHING * round
 }
 
-/// The forces of the models of the body itself, at rest, with its nodes at the given positions; none if a model refuses them.
+/// The forces of the models of the body itself, at rest, with its nodes at the positions `x`. Returns `None` if a model
+/// refuses them.
 fn own_forces<const D: usize>(system: &System<D>, x: &Columns<D>) -> Option<Vec<[f64; D]>> {
     let rest = Columns::zeros(system.index_count());
     let view = View { x: x.slices(), v: rest.slices(), ..system.view(Stage::Current, system.time) };

@@ -44,8 +44,8 @@ fn pin<const D: usize>(system: &mut System<D>, node: usize, axes: [bool; D]) {
     system.pins.push(Pin { index: node, axes, anchor, motion: Arc::default() });
 }
 
-/// ρ = 1000, L = 1, E = 125 000, g = 9.81: the end sinks by ρgL²/2E = .03924 m (validation B1). This holds for any number of
-/// springs with half the mass at the ends, and with every solver.
+/// ρ = 1000, L = 1, E = 125 000, g = 9.81: the end sinks by ρgL²/2E = .03924 m (validation B1). The formula holds for any
+/// number of springs with half the mass at the ends, and with every solver.
 #[test]
 fn a_hanging_bar_has_the_length_of_its_closed_form() {
     for (nodes, solver) in [(2, "conjugate_gradients"), (11, "conjugate_gradients"), (41, "cholesky")] {

@@ -13,7 +13,7 @@
 //! and energy grows by the fraction ω²h per second. A mode with damping is stable for h ≤ c/ω² (if it still oscillates) or h ≤
 //! 2/|μ| (if it does not). Free fall is too slow: y = −g h² n(n − 1)/2 after n steps.
 //!
-//! It serves for comparison; [`crate::symplectic_euler`] costs the same and conserves the energy.
+//! The method serves for comparison. [`crate::symplectic_euler`] costs the same and conserves the energy.
 
 #[cfg(test)]
 mod tests;
@@ -37,7 +37,7 @@ a mode of angular frequency ω grows at the relative rate ω²h.",
     roles: &[],
 };
 
-/// The kind of integrator that scenes name `explicit_euler`.
+/// The kind of integrator that scenes call `explicit_euler`.
 #[derive(Debug)]
 pub struct ExplicitEulerKind;
 

@@ -1,4 +1,5 @@
-//! Tests the order, which is 1, growth without damping, and the recurrence of free fall.
+//! Tests that the order is 1, that the energy grows without damping, and that free fall obeys its
+//! recurrence.
 
 use super::ExplicitEuler;
 use crate::testing;

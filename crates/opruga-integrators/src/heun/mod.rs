@@ -4,8 +4,8 @@
 //!
 //! k₀ = k(y₀),  y₁ = y₀ + h k₀,  y = y₀ + ½h (k₀ + k(y₁)).
 //!
-//! Second order (also with damping), two forces per step; Butcher table `0 | ; 1 | 1 ; ½ ½`. It is written so that no slope is
-//! stored: x = x₀ + ½h (v₀ + v₁), v = v₀ + ½ ((v₁ − v₀) + h a₁).
+//! Second order (also with damping), two forces per step; Butcher table `0 | ; 1 | 1 ; ½ ½`. The method is written so that no
+//! slope is stored: x = x₀ + ½h (v₀ + v₁), v = v₀ + ½ ((v₁ − v₀) + h a₁).
 //!
 //! The stability function is R(z) = 1 + z + ½z². On the imaginary axis |R|² = 1 + ¼(hω)⁴: **no step is stable without
 //! damping**, and energy grows by the fraction ¼ω⁴h³ per second (slowly: at hω = 0.1 by 2.5e-5 per step). An overdamped mode is
@@ -36,7 +36,7 @@ step is stable: the energy of a mode of angular frequency ω grows at the relati
     roles: &[],
 };
 
-/// The kind of integrator that scenes name `heun`.
+/// The kind of integrator that scenes call `heun`.
 #[derive(Debug)]
 pub struct HeunKind;
 

@@ -1,4 +1,5 @@
-//! Tests the order, which is 2, slow growth without damping, and exact free fall.
+//! Tests that the order is 2, that the energy grows slowly without damping, and that free fall is
+//! exact.
 
 use super::Heun;
 use crate::testing;

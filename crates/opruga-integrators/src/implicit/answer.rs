@@ -10,7 +10,7 @@ use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 
 /// Factors the matrix of the step that has just ended, or the matrix that the minimiser keeps for later steps. Returns the
-/// number of the matrix; none if there is no matrix.
+/// number of the matrix, or `None` if there is no matrix.
 ///
 /// # Errors
 /// [`StepError`] if a model refuses.
@@ -41,7 +41,7 @@ fn begin<const D: usize>(workspace: &mut Workspace<D>, balance: &Balance) {
     answer.number = next_matrix_number();
 }
 
-/// Copies the matrix that later steps share, unless it has already been copied; returns whether it has a factor.
+/// Copies the matrix that later steps share, unless it has already been copied. Returns whether the matrix has a factor.
 fn take_kept<const D: usize>(workspace: &mut Workspace<D>, balance: &Balance) -> bool {
     let Workspace { answer, reused, free, projectors, .. } = &*workspace;
     let is_same = |node: usize| free[node] || answer.projectors[node] == projectors[node];

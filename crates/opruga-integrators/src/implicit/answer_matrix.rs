@@ -8,7 +8,7 @@ use opruga_solve::blocks::Block;
 /// The matrix of the last step, kept for further right-hand sides.
 #[derive(Debug, Default)]
 pub(crate) struct AnswerMatrix<const D: usize> {
-    /// The balance of the last step and the time at its start [s]; none if the step was made in parts.
+    /// The balance of the last step and the time at its start [s], or `None` if the step was made in parts.
     pub(crate) last: Option<(Balance, f64)>,
     pub(crate) linear: Linear<D>,
     /// The directions that are free in the matrix, and the position of its stage as a fraction of the step.

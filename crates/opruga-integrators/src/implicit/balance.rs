@@ -29,10 +29,10 @@ pub(crate) struct Solved {
     /// The largest displacement of a node in the last iteration [m].
     pub(crate) correction: f64,
     pub(crate) converged: bool,
-    /// How far the residual would still move a node [m]; zero unless the residual consists of rounding errors and that distance
-    /// is large.
+    /// How far the residual would still move a node [m]. It is zero unless the residual consists of rounding errors and that
+    /// distance is large.
     pub(crate) error_estimate: f64,
-    /// The ratio of the forces due to rounding of positions to the loads; zero if it is not needed.
+    /// The ratio of the forces due to rounding of positions to the loads, or zero if this ratio is not needed.
     pub(crate) conditioning: f64,
     /// If the iteration did not converge, three effects of rounding: the rounding of positions [m], the largest rounding of a
     /// force [N], and the displacement of a node due to such a force [m].

@@ -338,7 +338,7 @@ impl<const D: usize> Contacting<D> {
     }
 
     /// Decides the state of contacts from the forces of the constraints (`reaction`, per node) and from the displacements after
-    /// the correction; returns the changes. The `stiffness` of a node [N/m] determines how far friction alone would move the
+    /// the correction. Returns the changes. The `stiffness` of a node [N/m] determines how far friction alone would move the
     /// node.
     pub(crate) fn judge(
         &mut self,

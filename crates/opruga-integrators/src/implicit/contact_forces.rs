@@ -1,4 +1,4 @@
-//! The initial contact forces of a step in real time, which are those of the previous step.
+//! The contact forces with which a step in real time begins: the contact forces of the previous step.
 
 use super::contact::{Contacting, Hold, dot, split};
 use opruga_math::Lane;

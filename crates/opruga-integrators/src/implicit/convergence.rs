@@ -66,8 +66,8 @@ fn degenerate_cells<const D: usize>(system: &System<D>) -> [u32; 2] {
     [degenerate, all]
 }
 
-/// The error of a step that did not converge, with the time at its start [s], the number of degenerate or inverted cells, and
-/// the number of all cells.
+/// The error of a step that did not converge. It contains the time at the start of the step [s], the number of degenerate or
+/// inverted cells, and the number of all cells.
 pub(super) fn refusal<const D: usize>(
     integrator: &'static str,
     settings: &Settings,

@@ -52,9 +52,9 @@ impl Statics {
 
     /// Ends a step of statics of h [s] at the displacement in `workspace.u1`.
     ///
-    /// The change of energy of the body, minus the energy given to a gas, is recorded as external work. It includes the work of
-    /// loads, of pins and of all forces that slow the motion down. Velocities are zero before and after the step, so pins cause
-    /// no change of kinetic energy.
+    /// The change of energy of the body, minus the energy given to a gas, is recorded as external work. The external work
+    /// includes the work of loads, of pins and of all forces that slow the motion down. Velocities are zero before and after
+    /// the step, so pins cause no change of kinetic energy.
     ///
     /// # Errors
     /// [`StepError`] if a model refuses the end.

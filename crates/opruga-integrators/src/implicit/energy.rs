@@ -19,7 +19,7 @@ pub(super) struct Change {
 }
 
 impl Change {
-    /// Whether the body has gained energy; none if that is unknown.
+    /// Whether the body has gained energy, or `None` if that is unknown.
     fn is_gain(&self) -> Option<bool> {
         let after = self.after?;
         // Written so that NaN counts as a gain.
@@ -45,7 +45,7 @@ fn may_gain<const D: usize>(system: &System<D>, h: f64) -> bool {
     given || system.pins.iter().any(moves)
 }
 
-/// The energy of a body before a step [J]; none if its models do not compute it.
+/// The energy of a body before a step [J], or `None` if its models do not compute it.
 fn energy_before<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -54,9 +54,9 @@ fn energy_before<const D: usize>(
     Ok(system.potential_energy(Stage::Current, 0.0).map(|stored| stored + system.kinetic_energy()))
 }
 
-/// The change of the energy of a body in the step whose end was found; none if the body may gain energy, or if its models do
-/// not compute the energy. Afterwards the forces are those of the stage. `energy` is the energy before the step, if it was
-/// already computed.
+/// The change of the energy of a body in the step whose end was found. Returns `None` if the body may gain energy, or if its
+/// models do not compute the energy. Afterwards the forces are those of the stage. `energy` is the energy before the step,
+/// if it was already computed.
 pub(super) fn change<const D: usize>(
     energy: &mut Option<Option<f64>>,
     system: &mut System<D>,

@@ -1,8 +1,8 @@
 //! The friction force on nodes that slip.
 //!
 //! In the exact minimiser friction acts against the slide w, t = −µ λ w/|w|, and its matrix contains the derivatives. The
-//! real-time minimiser keeps a matrix without friction, so t would flip from iteration to iteration if w is small. It uses a
-//! projection instead:
+//! real-time minimiser keeps a matrix without friction, so t would flip from iteration to iteration if w is small. The real-time
+//! minimiser therefore uses a projection instead:
 //!
 //! ```text
 //! t' = t − k w     sticks where |t'| ≤ µ λ, else t = µ λ t'/|t'|
@@ -42,7 +42,7 @@ pub(super) enum Followed<const D: usize> {
     Rests,
 }
 
-/// Friction against a slide [m], given its previous direction; a slide below `small` counts as zero.
+/// Friction against a slide [m], given the previous direction of friction. A slide below `small` counts as zero.
 pub(super) fn against_slide<const D: usize>(slide: &[f64; D], push: &[f64; D], small: f64) -> Followed<D> {
     let size = dot(slide, slide).sqrt();
     if size <= small {

@@ -25,8 +25,8 @@ pub(super) enum Stretches {
     No,
     /// The step may grow up to [`LONGEST_STRETCH`] times its length, as long as the energy falls.
     WhereEnergyFalls,
-    /// The step may grow up to this many times its length, even if differences of energies are lost in rounding. This serves to
-    /// leave an unstable equilibrium.
+    /// The step may grow up to this many times its length, even if differences of energies are lost in rounding. Such a long
+    /// step serves to leave an unstable equilibrium.
     UpTo(f64),
 }
 

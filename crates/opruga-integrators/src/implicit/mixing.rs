@@ -22,7 +22,7 @@ const NOTHING_NEW: f64 = 1e-6;
 /// The recorded iterations, in which nothing but the state has changed.
 #[derive(Debug, Default)]
 pub(crate) struct Mixing {
-    /// The previous state and its change; empty if there is none.
+    /// The previous state and its change. Both are empty if there is no previous state.
     state: Vec<f64>,
     change: Vec<f64>,
     /// Differences of changes and of states + changes, oldest first.

@@ -47,7 +47,7 @@
 //!
 //! **Contact.** Obstacles hold nodes by constraints, not by penalties: a node that would end inside an obstacle is moved to the
 //! surface within the iteration. All other nodes follow by elasticity, and the force of the constraint follows from the
-//! balance. A node is released when that force pulls. It sticks while the tangential part of the force obeys Coulomb's law
+//! balance. A node is released when that force pulls. A node sticks while the tangential part of the force obeys Coulomb's law
 //! |f_t| ≤ µ f_n, and otherwise slips against a friction of µ f_n. In statics, a correction ends at the first obstacle that it
 //! meets, because nothing else would keep a falling body from passing through. This treatment of contact is the primal–dual
 //! active set method, a semi-smooth Newton method (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs

@@ -143,8 +143,8 @@ impl<'a> Iteration<'a> {
         Contacts { changed, farthest }
     }
 
-    /// Computes the direction in `workspace.step` and returns the slope along it. It uses the exact derivatives as long as they
-    /// are positive definite. None if no derivatives lead downhill.
+    /// Computes the direction in `workspace.step` and returns the slope along it. The direction uses the exact derivatives as
+    /// long as they are positive definite. Returns `None` if no derivatives lead downhill.
     fn choose_direction<const D: usize>(
         &mut self,
         system: &System<D>,
@@ -253,7 +253,7 @@ impl<'a> Iteration<'a> {
         Ok(self.solved.converged)
     }
 
-    /// Chooses the derivatives of the next direction; returns whether there are any.
+    /// Chooses the derivatives of the next direction. Returns whether there are any.
     fn choose_derivatives<const D: usize>(
         &mut self,
         workspace: &Workspace<D>,
@@ -277,7 +277,7 @@ impl<'a> Iteration<'a> {
         true
     }
 
-    /// Decides from the forces of the constraints which nodes remain held; returns whether these nodes, or how they are held,
+    /// Decides from the forces of the constraints which nodes remain held. Returns whether these nodes, or how they are held,
     /// have changed.
     fn judge<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) -> bool {
         if system.contacts.is_none() || self.solved.iterations >= MOST_DECISIONS {
@@ -334,8 +334,8 @@ impl<'a> Iteration<'a> {
     }
 }
 
-/// How far the residual would move a node with the matrix of the result [m]; the earlier estimate used an earlier matrix. None
-/// if the matrix is not positive definite, or if obstacles hold nodes.
+/// How far the residual would move a node with the matrix of the result [m]; the earlier estimate used an earlier matrix.
+/// Returns `None` if the matrix is not positive definite, or if obstacles hold nodes.
 fn left_over<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,
@@ -349,8 +349,8 @@ fn left_over<const D: usize>(
     Some(longest(&workspace.step, D))
 }
 
-/// Records an iteration and, if `wanted` is set, replaces its step by the combination with previous iterations; returns whether
-/// the step was replaced.
+/// Records an iteration. If `wanted` is set, replaces the step of the iteration by a combination with previous iterations.
+/// Returns whether the step was replaced.
 fn mix<const D: usize>(workspace: &mut Workspace<D>, wanted: bool, slope: &mut f64) -> bool {
     workspace.mixing.note(&workspace.u, &workspace.step);
     if !wanted || workspace.mixing.is_empty() {

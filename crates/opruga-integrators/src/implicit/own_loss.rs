@@ -10,7 +10,7 @@
 //!
 //! L = W + U₀ − U₁ − v̄·J.
 //!
-//! This value may be negative, and it is exact for any U. If only forces with the potential U act, it has the following form,
+//! The loss L may be negative, and it is exact for any U. If only forces with the potential U act, it has the following form,
 //! with g = ∇U.
 //!
 //! | rule | L |

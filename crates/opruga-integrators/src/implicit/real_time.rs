@@ -187,8 +187,7 @@ impl Task<'_> {
         Ok(true)
     }
 
-    /// Begins with the matrix in the reference shape that the state contains, or in the initial shape if the state contains
-    /// none.
+    /// Begins with the matrix in the reference shape of the state, or in the initial shape if the state contains no reference.
     fn begin<const D: usize>(&self, system: &mut System<D>, workspace: &mut Workspace<D>) -> Result<(), StepError> {
         let recalled = self.recall(system, workspace)?;
         evaluate(system, workspace, self.balance, false)?;
@@ -198,8 +197,8 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Computes the residual in the free directions, including friction and prescribed displacements, as the right-hand side;
-    /// returns its size.
+    /// Computes the residual in the free directions, including friction and prescribed displacements. It becomes the right-hand
+    /// side; its size is returned.
     fn out_of_balance<const D: usize>(
         &self,
         system: &System<D>,
@@ -218,7 +217,7 @@ impl Task<'_> {
         Ok(reused.begin(system, right))
     }
 
-    /// Solves for the step of an iteration; returns the number of products, or an error if that failed.
+    /// Solves for the step of an iteration. Returns the number of products, or an error if the solver failed.
     fn direction<const D: usize>(
         &self,
         system: &mut System<D>,
@@ -260,7 +259,7 @@ pub(super) enum Trust {
     None,
 }
 
-/// Whether the matrix is factored; determined once, and again if the scene chooses another solver.
+/// Whether the matrix is factored. This is determined once, and again if the scene chooses another solver.
 fn is_direct<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, settings: &Settings) -> bool {
     let direct = match workspace.direct {
         Some((solver, direct)) if solver == settings.solver => direct,
@@ -276,7 +275,7 @@ fn aims<const D: usize>(system: &System<D>, settings: &Settings) -> (f64, f64) {
     if is_loose(system) { (LOOSE * LOOSE, LOOSE) } else { (aim, LINEAR.smaller(0.5 * aim)) }
 }
 
-/// Makes three iterations, or as many as the scene specifies, and returns whether their residual is acceptable.
+/// Makes three iterations, or as many as the scene specifies. Returns whether their residual is acceptable.
 pub(super) fn iterate<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -396,8 +395,8 @@ fn conclude<const D: usize>(
 }
 
 /// Applies the step, including prescribed displacements; `workspace.reaction` is then the force of the constraints. For bodies
-/// that are free or near obstacles, returns the difference between the present forces and those that the matrix predicted: r −
-/// (r₀ + A Δ). Here r₀ + A Δ is the residual of the linear solver; if no node is held, it counts as zero.
+/// that are free or near obstacles, returns the difference r − (r₀ + A Δ) between the present forces and the forces that the
+/// matrix predicted. Here r₀ + A Δ is the residual of the linear solver; if no node is held, it counts as zero.
 fn go<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

@@ -1,7 +1,7 @@
 //! The matrix that the real-time setting keeps from step to step.
 //!
-//! It is computed in one shape of the body, the *reference*, and reused until the iteration with it no longer finds the end of
-//! a step. The reference is part of the state, so a resumed run makes the same matrix from it.
+//! The matrix is computed in one shape of the body, the *reference*. It is reused until iterations with it no longer find the
+//! end of a step. The reference is part of the state, so a resumed run makes the same matrix from it.
 
 use super::linear::{Filter, Linear, Mixture};
 use opruga_core::state::Columns;
@@ -20,7 +20,7 @@ pub(crate) struct Origin<const D: usize> {
 /// The present matrix, and its solvers.
 #[derive(Debug)]
 pub(crate) struct ReusedMatrix<const D: usize> {
-    /// The data from which the matrix was made; none if there is no matrix.
+    /// The data from which the matrix was made, or `None` if there is no matrix.
     pub(crate) origin: Option<Origin<D>>,
     /// Whether the matrix is prepared for solving, and the free directions for which it was prepared.
     ready: bool,
@@ -124,7 +124,7 @@ impl<const D: usize> ReusedMatrix<D> {
         self.packed.begin(system.simd, system.threads, right)
     }
 
-    /// Solves for the present right-hand side; returns the number of products and whether the matrix was indefinite.
+    /// Solves for the present right-hand side. Returns the number of products and whether the matrix was indefinite.
     pub(crate) fn solve(
         &mut self,
         system: &System<D>,

@@ -7,8 +7,8 @@
 //! and inertia, is known even if its terms are not. A matrix whose stiffness is 1/ε times its mass is also useless for these
 //! motions, since the sums of its rows are rounding errors.
 //!
-//! For each piece (`pieces`) let φ be the motions t + ω × (x − c) of the piece that neither pins nor obstacles prevent. They
-//! are orthonormal with respect to the masses. The motion φ a that balances the piece follows from
+//! For each piece (`pieces`) let φ be the motions t + ω × (x − c) of the piece that neither pins nor obstacles prevent. The
+//! motions φ are orthonormal with respect to the masses. The motion φ a that balances the piece follows from
 //!
 //! (σ + φᵀ(K + βC)φ) a = −φᵀ r
 //!
@@ -45,10 +45,10 @@ struct Piece<const D: usize> {
 pub(crate) struct Rigid<const D: usize> {
     /// The nodes of each piece; empty until they are determined. The pieces stay the same as long as the models do.
     nodes: Vec<Vec<usize>>,
-    /// The models that exert forces only between nodes; none if not determined in this step.
+    /// The models that exert forces only between nodes, or `None` if they have not been determined in this step.
     inner: Option<Vec<usize>>,
     pieces: Vec<Piece<D>>,
-    /// The ratio of the forces due to rounding of positions to the loads; zero if it is not needed.
+    /// The ratio of the forces due to rounding of positions to the loads, or zero if this ratio is not needed.
     pub(super) conditioning: f64,
 }
 
@@ -221,7 +221,7 @@ impl<const D: usize> Rigid<D> {
         }
     }
 
-    /// Replaces the rigid motions in a direction by those that balance the body.
+    /// Replaces the rigid motions in a direction by the motions that balance the body.
     pub(super) fn correct(&mut self, stage: &Stage<'_, D>, step: &mut [f64]) {
         self.find(stage);
         let Stage { mixture, x0, u, filter, .. } = stage;

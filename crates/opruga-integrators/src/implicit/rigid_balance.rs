@@ -15,9 +15,9 @@ use opruga_math::Lane;
 /// The largest number of rigid displacements; two are enough unless rotations are large.
 const MOST_MOVES: usize = 8;
 
-/// Whether the result of Newton's method is acceptable in the rigid motions. These may be wrong if the matrix is inaccurate in
-/// them, or if the residual was taken for rounding; in both cases the rigid motions are balanced first. `size` is the size of
-/// coordinates [m].
+/// Whether the result of Newton's method is acceptable in the rigid motions. The rigid motions may be wrong if the matrix is
+/// inaccurate in them, or if the residual was taken for rounding. In both cases the rigid motions are balanced first. `size` is
+/// the size of coordinates [m].
 pub(super) fn accepts<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

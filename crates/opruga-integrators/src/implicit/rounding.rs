@@ -49,8 +49,8 @@ pub(super) fn at_rounding<const D: usize>(
 
 /// Continues the iteration in statics if the residual is as small as rounding but would still visibly move a node. Stops when a
 /// further correction does not halve that displacement. The displacement is small in a stout body, but large in a body that is
-/// stiff lengthwise and soft sideways. Returns the remaining displacement of a node [m]; zero if it is not visible. Call this
-/// after [`at_rounding`], which leaves the residual in `workspace.right`.
+/// stiff lengthwise and soft sideways. Returns the remaining displacement of a node [m], or zero if this displacement is not
+/// visible. Call this after [`at_rounding`], which leaves the residual in `workspace.right`.
 pub(super) fn settle<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,
@@ -102,8 +102,8 @@ pub(super) fn carries<const D: usize>(system: &mut System<D>, workspace: &mut Wo
     loads == 0.0 || dot(&workspace.right, &workspace.right).sqrt() <= UNCARRIED * loads
 }
 
-/// Whether the residual of statics consists of the loads themselves: rounding errors would have random directions instead of
-/// those of the loads.
+/// Whether the residual of statics consists of the loads themselves. Rounding errors would have random directions instead of
+/// the directions of the loads.
 fn leaves<const D: usize>(workspace: &mut Workspace<D>, loads: f64) -> bool {
     take_residual(workspace);
     let nodes = workspace.right.as_chunks::<D>().0.iter().enumerate();
@@ -114,7 +114,7 @@ fn leaves<const D: usize>(workspace: &mut Workspace<D>, loads: f64) -> bool {
 /// What makes an equilibrium of statics doubtful.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Doubt {
-    /// The largest displacement of a node [m], which is entirely uncertain; zero if there is no doubt.
+    /// The largest displacement of a node [m], which is entirely uncertain. It is zero if there is no doubt.
     pub(super) displacement: f64,
     /// Whether the loads are so small that they are lost in the rounding of forces.
     pub(super) lost: bool,
@@ -218,7 +218,7 @@ fn take_residual<const D: usize>(workspace: &mut Workspace<D>) {
     Filter { free: &workspace.free, projectors: &workspace.projectors }.apply(&mut workspace.right);
 }
 
-/// Writes the displacement due to the residual, computed with the last matrix, to `workspace.step`; returns the largest
+/// Writes the displacement due to the residual, computed with the last matrix, to `workspace.step`. Returns the largest
 /// displacement of a node [m].
 fn correction<const D: usize>(
     system: &System<D>,

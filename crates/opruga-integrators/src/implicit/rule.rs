@@ -16,8 +16,8 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     fn is_trapezoid(&self) -> bool {
         Self::TRAPEZOID
     }
-    /// The rule for a step in which obstacles hold nodes, if it differs. It damps motion that is much faster than the step,
-    /// which contact would otherwise excite for ever.
+    /// The rule for a step in which obstacles hold nodes, if that rule differs from this one. The rule in contact damps
+    /// motion that is much faster than the step, which contact would otherwise excite for ever.
     fn in_contact(self) -> Option<Self> {
         None
     }
@@ -45,6 +45,6 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
     fn remembered(&self, _workspace: &Workspace<D>, _k: usize, _h: f64) -> f64 {
         0.0
     }
-    /// Updates the history, after obstacles have acted; `workspace.struck` lists the nodes that met an obstacle.
+    /// Updates the history, after obstacles have acted. `workspace.struck` lists the nodes that met an obstacle.
     fn remember(&self, _system: &mut System<D>, _workspace: &Workspace<D>, _h: f64) {}
 }

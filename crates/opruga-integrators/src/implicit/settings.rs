@@ -49,7 +49,7 @@ pub(crate) enum Solver {
 /// What to do if a step does not converge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Otherwise {
-    /// Return an error; the state does not change.
+    /// Return an error. The state does not change.
     Error,
     /// Make the step in two halves, and halve these again if necessary.
     Halve,
@@ -132,7 +132,8 @@ counts it in a warning. With `arc_length`, the step along the curve is halved re
     ..OTHERWISE
 };
 
-/// The fields of an integrator or of statics. They are its own fields, and those that determine how equations are solved.
+/// The fields of an integrator or of statics. They include the fields of its own, and the fields that determine how equations
+/// are solved.
 macro_rules! fields {
     (of_time $(, $own:expr)*) => {{
         use $crate::implicit::settings::{ACCURACY, ITERATIONS, LINEAR_SOLVER, OTHERWISE, TOLERANCE};
@@ -234,7 +235,7 @@ impl Settings {
             _ => StepHint::Halve {},
         }
     }
-    /// The hint if no equilibrium is found; `alone` means that there are no obstacles.
+    /// The hint if no equilibrium is found. If `alone` is true, there are no obstacles.
     pub(crate) fn hint_of_statics(&self, by_arc: bool, alone: bool) -> StepHint {
         match (by_arc, self.otherwise, alone) {
             (true, ..) => StepHint::ShorterArc {},
@@ -247,8 +248,8 @@ impl Settings {
 }
 
 impl Solver {
-    /// Whether the sparse factor is used for a body in real time, where the factor is kept. This is the case for small stiff
-    /// bodies and for slender ones.
+    /// Whether the sparse factor is used for a body in real time, where the factor is kept. The factor is used for small
+    /// stiff bodies and for slender ones.
     pub(crate) fn is_direct_in_real_time<const D: usize>(self, system: &System<D>) -> bool {
         match self {
             Solver::Cholesky => true,

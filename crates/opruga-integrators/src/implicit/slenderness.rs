@@ -45,8 +45,8 @@ pub(crate) fn has_dense<const D: usize>(system: &System<D>) -> bool {
     found.0
 }
 
-/// Whether the factor of the matrix of a body is narrow for its size. This depends only on which nodes are coupled, not on the
-/// state.
+/// Whether the factor of the matrix of a body is narrow for its size. The answer depends only on which nodes are coupled, not
+/// on the state.
 pub(crate) fn is_slender<const D: usize>(system: &System<D>) -> bool {
     let mut touching = Touching { neighbours: vec![Vec::new(); system.nodes] };
     system.hessian(Stage::Current, 0.0, Definiteness::Exact, &mut touching);

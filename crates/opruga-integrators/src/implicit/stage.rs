@@ -26,7 +26,7 @@ pub(crate) fn longest(step: &[f64], dimension: usize) -> f64 {
     longest.sqrt()
 }
 
-/// Searches for contacts of the nodes; returns whether the set of held nodes has changed.
+/// Searches for contacts of the nodes. Returns whether the set of held nodes has changed.
 pub(crate) fn look<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,

@@ -152,7 +152,7 @@ struct Method<'a, R, const D: usize> {
 }
 
 impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
-    /// Makes a step of length h, or two steps of half the length if the whole step does not converge. This is the outermost
+    /// Makes a step of length h, or two steps of half the length if the whole step does not converge. Halving is the outermost
     /// guard.
     fn advance(
         &self,

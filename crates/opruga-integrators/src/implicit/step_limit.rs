@@ -54,8 +54,8 @@ pub(crate) fn leaves_nodes_inside<const D: usize>(system: &System<D>, workspace:
     deepest(system, workspace, &|node, d| workspace.u[node * D + d], h).is_some_and(|touch| touch.gap < -most)
 }
 
-/// The contact of the node that is deepest inside an obstacle, among nodes without pins; none if all of them are outside.
-/// `displacement` is a function of node and axis.
+/// The contact of the node that is deepest inside an obstacle, among nodes without pins. Returns `None` if all of these nodes
+/// are outside. `displacement` is a function of node and axis.
 fn deepest<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,
@@ -98,7 +98,7 @@ pub(super) fn part_without_inertia<const D: usize>(
 }
 
 impl<const D: usize> Contacting<D> {
-    /// The fraction of a step at which the first free node enters an obstacle; 1 if none does.
+    /// The fraction of a step at which the first free node enters an obstacle, or 1 if no node enters one.
     fn part_to_obstacles(&self, contact_query: &ContactQuery<'_, D>, step: &[f64]) -> f64 {
         if !self.comes_in(contact_query, step, 1.0) {
             return 1.0;

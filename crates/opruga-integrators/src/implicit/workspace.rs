@@ -20,7 +20,7 @@ pub(crate) struct Workspace<const D: usize> {
     /// The state at the start.
     pub(crate) x0: Vec<f64>,
     pub(crate) v0: Vec<f64>,
-    /// The changes of velocities due to pins at the start of the step; empty if there are none.
+    /// The changes of velocities due to pins at the start of the step. The list is empty if there are none.
     pub(crate) kick: Vec<f64>,
     /// The acceleration at the start [m/s²], for rules that use it.
     pub(crate) a0: Vec<f64>,
@@ -47,7 +47,7 @@ pub(crate) struct Workspace<const D: usize> {
     /// The part of the force that acts along held directions [N].
     pub(crate) reaction: Vec<f64>,
     pub(crate) prescribed: Vec<f64>,
-    /// How far pinned axes have to move in the stage; NaN for free axes.
+    /// How far pinned axes have to move in the stage. The number is NaN for free axes.
     pub(crate) pin_displacement: Vec<f64>,
     /// Which nodes are entirely free, and the projectors of the others.
     pub(crate) free: Vec<bool>,

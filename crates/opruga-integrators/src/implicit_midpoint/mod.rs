@@ -13,8 +13,8 @@
 //! In contact the vibration of a stiff body would never end, and friction would act on this vibration. So steps in which
 //! obstacles hold nodes have their stage at θ = 1/(1 + 0.9) instead of ½: in each step, the amplitude of motion much faster
 //! than the step is multiplied by (1 − θ)/θ = 0.9, and that of an oscillation with small hω loses the fraction (θ − ½) h²ω²
-//! (the θ-method; Hughes 1987, 8.2). Such a step may gain energy when stiff parts rotate far. It is then made by backward Euler
-//! instead.
+//! (the θ-method; Hughes 1987, 8.2). Such a step may gain energy when stiff parts rotate far. A step that gains energy is then
+//! made by backward Euler instead.
 //!
 //! Source: Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1 and IV.2.
 
@@ -44,7 +44,7 @@ than the step decreases by a tenth in each step, so that bodies come to rest. Bo
     roles: &[],
 };
 
-/// The kind of integrator that scenes name `implicit_midpoint`.
+/// The kind of integrator that scenes call `implicit_midpoint`.
 #[derive(Debug)]
 pub struct ImplicitMidpointKind;
 

@@ -1,5 +1,5 @@
-//! Tests the order, which is 2, stability without a limit, conservation of momentum and of the energy of linear systems, and
-//! exact free fall.
+//! Tests that the order is 2 and that stability has no limit, that momentum and the energy of linear systems are conserved,
+//! and that free fall is exact.
 
 use super::{ImplicitMidpoint, SPEC};
 use crate::implicit::step::Implicit;

@@ -3,10 +3,11 @@
 //! x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁),  v₁ = v₀ + h ((1 − γ) a₀ + γ a₁),
 //! M ((1 − α_m) a₁ + α_m a₀) = F(x_s, v_s, t_s),  x_s = (1 − α_f) x₁ + α_f x₀, v_s and t_s likewise.
 //!
-//! Without `spectral_radius` it is the average acceleration method: α_m = α_f = 0, γ = ½, β = ¼. It has second order, is stable
-//! for every step size on linear systems, and damps no frequency. With `spectral_radius` ρ from 0 to 1 it is the generalised-α
-//! method. At hω → ∞, the amplitude is multiplied by ρ in each step, and slow motion is damped as little as this factor
-//! permits: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². It also has second order.
+//! Without `spectral_radius` it is the average acceleration method: α_m = α_f = 0, γ = ½, β = ¼. The method has second order,
+//! is stable for every step size on linear systems, and damps no frequency. With `spectral_radius` ρ from 0 to 1 it is the
+//! generalised-α method. At hω → ∞, the amplitude is multiplied by ρ in each step, and slow motion is damped as little as this
+//! factor permits: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². The generalised-α method
+//! also has second order.
 //!
 //! **Memory.** The integrator remembers the acceleration. The first value is F/M, and so is the first value after a program has
 //! moved a node. When a node meets an obstacle, the component of its acceleration normal to the surface is discarded, because
@@ -61,7 +62,7 @@ given, average acceleration is used.",
 const ACCELERATION: PerNode = PerNode::new("newmark.acceleration");
 const BEGUN: PerBody<bool> = PerBody::new("newmark.begun");
 
-/// The kind of integrator that scenes name `newmark`.
+/// The kind of integrator that scenes call `newmark`.
 #[derive(Debug)]
 pub struct NewmarkKind;
 

@@ -1,4 +1,5 @@
-//! Tests the order, which is 2, stability without a limit, the specified damping at high frequencies, and exact free fall.
+//! Tests that the order is 2 and that stability has no limit, that high frequencies are damped as specified, and that free fall
+//! is exact.
 
 use super::{Newmark, SPEC};
 use crate::implicit::step::Implicit;

@@ -11,8 +11,9 @@
 //! ```
 //!
 //! Fourth order (also with damping), four forces per step. The stability function is R(z) = 1 + z + z²/2 + z³/6 + z⁴/24; on the
-//! imaginary axis |R|² = 1 − (hω)⁶/72 + (hω)⁸/576. So it is stable without damping for h ω ≤ 2√2 = 2.828, and dissipates the
-//! fraction (hω)⁶/72 of the energy per step. A mode without stiffness is stable for h c ≤ 2.785. Free fall is exact.
+//! imaginary axis |R|² = 1 − (hω)⁶/72 + (hω)⁸/576. Without damping, the method is therefore stable for h ω ≤ 2√2 = 2.828, and it
+//! dissipates the fraction (hω)⁶/72 of the energy per step. A mode without stiffness is stable for h c ≤ 2.785. Free fall is
+//! exact.
 //!
 //! **Slopes are not stored**: h a₀ = 2 (v₁ − v₀), h a₁ = 2 (v₂ − v₀), h a₂ = v₃ − v₀, and the slopes of x are the velocities of
 //! the stages. So the end of the step is known as soon as y₃ is, except for the term h a₃/6; this end replaces y₂ in memory. Two
@@ -52,7 +53,7 @@ fraction (hω)⁶/72 of the energy of a mode.",
     roles: &[],
 };
 
-/// The kind of integrator that scenes name `runge_kutta`.
+/// The kind of integrator that scenes call `runge_kutta`.
 #[derive(Debug)]
 pub struct RungeKuttaKind;
 

@@ -1,4 +1,4 @@
-//! Tests the order, which is 4, the limit 2√2, and exact free fall.
+//! Tests that the order is 4, that the limit is 2√2, and that free fall is exact.
 
 use super::RungeKutta;
 use crate::testing;

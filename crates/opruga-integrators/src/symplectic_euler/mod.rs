@@ -1,8 +1,9 @@
 //! # Symplectic Euler
 //!
-//! v₁ = v₀ + h a(x₀, v₀), x₁ = x₀ + h v₁ (the method of the thesis, section 2.4). First order. It conserves the symplectic
-//! form, so the error of the energy of an undamped system stays within O(h) for ever. It is stable for h ω < 2 without damping.
-//! With damping, which is evaluated at the old velocity, it is stable for h < (2/ω)(√(1 + ζ²) − ζ).
+//! v₁ = v₀ + h a(x₀, v₀), x₁ = x₀ + h v₁ (the method of the thesis, section 2.4). First order. The method conserves the
+//! symplectic form, so the error of the energy of an undamped system stays within O(h) for ever. The method is stable for
+//! h ω < 2 without damping. With damping, which is evaluated at the old velocity, it is stable for h < (2/ω)(√(1 + ζ²) −
+//! ζ).
 
 #[cfg(test)]
 mod tests;
@@ -26,7 +27,7 @@ pub const SPEC: Spec = Spec {
     roles: &[Role::OfferedExplicit],
 };
 
-/// The kind of integrator that scenes name `symplectic_euler`.
+/// The kind of integrator that scenes call `symplectic_euler`.
 #[derive(Debug)]
 pub struct SymplecticEulerKind;
 

@@ -1,4 +1,5 @@
-//! Tests the order, which is 1, the limit 2, bounded energy, and the recurrence of free fall.
+//! Tests that the order is 1, that the limit is 2, that the energy is bounded, and that free fall
+//! obeys its recurrence.
 
 use super::SymplecticEuler;
 use crate::testing;

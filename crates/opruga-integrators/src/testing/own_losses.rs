@@ -19,7 +19,7 @@ enum Formula {
     BackwardEuler,
     Bdf2,
     Midpoint,
-    /// The generalised-α method with its spectral radius; none for average acceleration.
+    /// The generalised-α method with its spectral radius, or with `None` for average acceleration.
     GeneralisedAlpha(Option<f64>),
 }
 

@@ -119,7 +119,7 @@ fn estimates_lie_just_below_the_onset() {
     }
 }
 
-/// If modes may be undamped, explicit Euler and Heun have no stable step; with drag on every node they have one.
+/// If modes may be undamped, explicit Euler and Heun have no stable step. With drag on every node they have a stable step.
 #[test]
 fn rules_that_need_damping_of_every_mode() {
     let rules: [&dyn Integrator<2>; 2] = [&ExplicitEuler, &Heun];

@@ -10,10 +10,10 @@
 //! stable for h ω < 2. With damping the stable region is smaller; a mode without stiffness is stable for h c < 2. Free fall is
 //! exact.
 //!
-//! **Two forces per step.** It is common to save one force by reusing a₁ as the a₀ of the next step. This is not done here,
-//! because a₁ belongs to v* and not to v₁, and because obstacles, pins and commands move nodes between steps. Reusing a₁ would
-//! keep the order, but the acceleration would become part of the state (of snapshots, hashes, merged islands), and the step
-//! would no longer be a function of (x, v).
+//! **Two forces per step.** Many programs save one force by reusing a₁ as the a₀ of the next step. Here a₁ is not reused, because
+//! a₁ belongs to v* and not to v₁, and because obstacles, pins and commands move nodes between steps. Reusing a₁ would keep the
+//! order, but the acceleration would become part of the state (of snapshots, hashes, merged islands), and the step would no
+//! longer be a function of (x, v).
 //!
 //! Source: Swope et al. 1982; predicted velocity: Allen and Tildesley, *Computer Simulation of Liquids*, 3.2;
 //! Hairer, Lubich, Wanner, *Geometric numerical integration illustrated by the Störmer–Verlet method*, 2003.
@@ -40,7 +40,7 @@ integrator is stable if h ω < 2 for the highest angular frequency ω.",
     roles: &[],
 };
 
-/// The kind of integrator that scenes name `verlet`.
+/// The kind of integrator that scenes call `verlet`.
 #[derive(Debug)]
 pub struct VerletKind;
 

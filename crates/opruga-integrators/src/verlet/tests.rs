@@ -1,4 +1,5 @@
-//! Tests the order, which is 2 even with damping, the limit 2, bounded energy, and exact free fall.
+//! Tests that the order is 2 even with damping, that the limit is 2, that the energy is bounded,
+//! and that free fall is exact.
 
 use super::Verlet;
 use crate::testing;

@@ -47,7 +47,7 @@ use opruga_core::system::along_path;
 use opruga_core::tile::Tile;
 use opruga_math::{Simd, WIDTH};
 
-/// The kind of model that scenes name `as_published`.
+/// The kind of model that scenes call `as_published`.
 #[derive(Debug)]
 pub struct AsPublishedModel;
 
@@ -139,7 +139,7 @@ impl Constants {
             presses,
         }
     }
-    /// Returns the number of the press that is active at a time, from 1; 0 if none is.
+    /// Returns the number of the press that is active at a time, counted from 1, or 0 if no press is active.
     fn press(&self, time: f64) -> usize {
         self.presses.iter().position(|[press, release]| *press <= time && time < *release).map_or(0, |n| n + 1)
     }
@@ -195,7 +195,8 @@ impl AsPublished {
         volume
     }
 
-    /// 2. The mouse: pulls the vertex that it holds. Returns the number of the mouse press, from 1, and the vertex; zeros if no press is active.
+    /// 2. The mouse: pulls the vertex that it holds. Returns the number of the press, counted from 1, and the vertex that the mouse holds. Returns
+    /// zeros if no press is active.
     fn mouse<const D: usize>(&self, view: &View<D>, body: usize, memory: &[f64], forces: &mut [f64]) -> (usize, usize) {
         let c = self.constants(body);
         let press = c.press(view.time);

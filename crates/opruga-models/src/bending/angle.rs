@@ -17,7 +17,7 @@ const SERIES: [f64; 11] = [
     1.628_582_011_536_578_2e-2,
 ];
 
-/// Returns the angle of the point (x, y) from the x axis, in −π … π; zero at the origin.
+/// Returns the angle of the point (x, y) from the x axis, in −π … π, or zero at the origin.
 #[inline(always)]
 pub(super) fn angle<S: Lane>(y: S, x: S) -> S {
     let (ax, ay) = (x.abs(), y.abs());

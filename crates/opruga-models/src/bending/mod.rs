@@ -39,7 +39,7 @@ use opruga_core::tile::Tile;
 use opruga_math::{Simd, WIDTH};
 use turn::Turn;
 
-/// The kind of model that scenes name `bending`.
+/// The kind of model that scenes call `bending`.
 #[derive(Debug)]
 pub struct BendingModel;
 

@@ -4,8 +4,9 @@
 //!
 //! interior ∫ T (u(y) − u(ξ)) dS = ∫ U t dS,  exterior u(ξ) + ∫ T (u(y) − u(ξ)) dS = ∫ U t dS.
 //!
-//! It holds at corners too and contains no strongly singular integral. Translations of the body satisfy it up to rounding.
-//! Rotations satisfy it up to the error of the integrals; removing them from the stiffness corrects that error.
+//! The equation holds at corners too and contains no strongly singular integral. Translations of the body satisfy it up to
+//! rounding. Rotations satisfy the equation up to the error of the integrals. Removing rotations from the stiffness corrects
+//! that error.
 
 use super::integrals::{Integrator, Sums};
 use super::kernels::{Block, Kelvin};
@@ -26,8 +27,8 @@ const SIDES: usize = 256;
 pub(super) struct Changes {
     /// |K − Kᵀ|/|K + Kᵀ| before the symmetric part was taken.
     pub(super) asymmetry: f64,
-    /// The relative size |QQᵀK|/|K| of the part of K that exerted forces under rigid motion. It is measured after rigid motion
-    /// was removed from the columns of K.
+    /// The relative size |QQᵀK|/|K| of the part of K that exerted forces under rigid motion. This size is measured after rigid
+    /// motion was removed from the columns of K.
     pub(super) rigid: f64,
     /// The largest traction of a rotation by 1 rad, over μ; it measures the error of the integrals.
     pub(super) rotation: f64,

@@ -1,5 +1,5 @@
-//! A table of the stiffnesses in use. Its keys are the data that determine a stiffness. A body that is built again, or is
-//! identical to another, reuses the existing stiffness.
+//! A table of the stiffnesses in use. The keys of the table are the data that determine a stiffness. A body that is built
+//! again, or is identical to another, reuses the existing stiffness.
 
 use super::assembly::Stiffness;
 use super::refusals::Refusal;

@@ -85,7 +85,7 @@ impl<const D: usize> Rest<D> {
         Rest { positions, weights, inertia }
     }
 
-    /// Computes the frame of a state; writes y and u, vertex by vertex.
+    /// Computes the frame of a state. Writes y and u, vertex by vertex.
     pub(super) fn frame(&self, x: impl Fn(usize) -> [f64; D], y: &mut [f64], u: &mut [f64]) -> Frame<D> {
         let first = x(0);
         let mut mean = [0.0; D];
@@ -157,8 +157,8 @@ impl<const D: usize> Rest<D> {
         out
     }
 
-    /// How the frame follows displacements, for the second derivatives. K is multiplied by `factor`; the terms that depend on
-    /// forces are included only with `Exact`.
+    /// How the frame follows displacements, for the second derivatives. K is multiplied by `factor`. The terms that depend on forces
+    /// are included only with `Exact`.
     pub(super) fn following(
         &self,
         frame: &Frame<D>,

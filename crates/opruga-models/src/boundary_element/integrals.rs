@@ -4,8 +4,8 @@
 //! nor T (u(y) − u(ξ)) dS depends on s, and the integral over s is computed analytically. The remaining integrand is smooth in
 //! the variable τ with dt/ρ = dτ/ℓ; each piece of length 1 gets 12 points. If the source does not lie on the side, Gauss's
 //! rules have as many points as the distance requires. Sides that are nearer than 1.6 times their size (in the plane, their
-//! length) are halved in each direction. The total error is below 1e-9 of the integrals. It is measured by the tractions of a
-//! rotation, which should be zero (docs/boundary-elements.md).
+//! length) are halved in each direction. The total error is below 1e-9 of the integrals. The error is measured by the tractions
+//! of a rotation, which should be zero (docs/boundary-elements.md).
 
 use super::kernels::{Block, Kelvin};
 use super::quadrature::{Rule, SimplexRule};
@@ -43,8 +43,8 @@ struct Piece<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Integrator<const D: usize> {
     pub(super) kelvin: Kelvin,
-    /// The rules in the order of descending distance, each with the smallest distance at which it is accurate enough, relative
-    /// to the size of a piece.
+    /// The rules in the order of descending distance. Each comes with the smallest distance at which it is accurate enough,
+    /// relative to the size of a piece.
     rules: Vec<(f64, SimplexRule<D>)>,
     along: Rule,
 }

@@ -50,7 +50,7 @@ use opruga_core::spec::Spec;
 /// The largest number of vertices.
 pub const MOST_VERTICES: usize = 2000;
 
-/// The kind of model that scenes name `boundary_element`.
+/// The kind of model that scenes call `boundary_element`.
 #[derive(Debug)]
 pub struct BoundaryElementModel;
 

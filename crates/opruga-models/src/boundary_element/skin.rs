@@ -93,8 +93,8 @@ impl<const D: usize> Skin<D> {
         Skin { facets: facets.collect() }
     }
 
-    /// The stress of every facet from u [m] and the forces g [N]. It is rotated from the frame of the body into that of the
-    /// world.
+    /// The stress of every facet from u [m] and the forces g [N]. The stress is rotated from the frame of the body into that
+    /// of the world.
     pub(super) fn states(&self, law: Constants, frame: &[[f64; D]; D], u: &[f64], g: &[f64]) -> Vec<CellState> {
         let of = |facet: &Facet<D>| -> [[f64; 3]; 3] {
             let local = facet.stress(law, u, g);

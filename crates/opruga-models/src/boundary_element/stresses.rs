@@ -20,8 +20,8 @@ pub(super) const fn components(dimensions: usize) -> &'static [(usize, usize, &'
     if dimensions == 2 { ALL.split_at(3).0 } else { ALL }
 }
 
-/// Returns the matrix from the displacements of the vertices to the stress, given the tractions due to each displacement. It
-/// has a row for every component of stress at every point.
+/// Returns the matrix from the displacements of the vertices to the stress, given the tractions due to each displacement.
+/// The matrix has a row for every component of stress at every point.
 pub(super) fn rows<const D: usize>(
     surface: &Surface<D>,
     kelvin: Kelvin,

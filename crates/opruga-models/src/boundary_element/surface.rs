@@ -7,16 +7,16 @@ use opruga_mesh::{Mesh, MeshError, THIN_ELEMENT, crossing_edges, winding_number}
 /// Sides belong to one smooth part if their normals differ by less than 40°.
 const COSINE_OF_SMOOTH: f64 = 0.766_044_443_118_978;
 
-/// If a vertex has several normals, its collocation points lie inside the sides. These are the distances of the points from the
-/// vertex, as fractions of the distance to each of the other corners. A quarter of an edge is close to (1 − 1/√3)/2, the best
-/// point for linear elements with a jump at their ends.
+/// If a vertex has several normals, its collocation points lie inside the sides. The constants are the distances of the points
+/// from the vertex, as fractions of the distance to each of the other corners. A quarter of an edge is close to (1 − 1/√3)/2,
+/// the best point for linear elements with a jump at their ends.
 const INSET: [f64; 2] = [0.25, 1.0 / 6.0];
 
 /// A collocation point.
 #[derive(Clone, Debug)]
 pub(super) struct Source<const D: usize> {
     pub(super) at: [f64; D],
-    /// The vertex at this point; none if the point lies inside a side.
+    /// The vertex at this point, or `None` if the point lies inside a side.
     pub(super) vertex: Option<u32>,
     /// A side that contains the collocation point, and the shape functions of the side there.
     pub(super) side: u32,
@@ -155,7 +155,7 @@ impl<const D: usize> Surface<D> {
         parts
     }
 
-    /// The cosine of the angle of a side at a corner; zero in the plane, so that all edges count alike.
+    /// The cosine of the angle of a side at a corner. In the plane it is zero, so that all edges count alike.
     fn cosine_at(&self, (facet, corner): (u32, usize)) -> f64 {
         if D == 2 {
             return 0.0;

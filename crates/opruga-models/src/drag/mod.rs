@@ -19,7 +19,7 @@ use opruga_core::state::{Parameter, View};
 use opruga_core::tile::Tile;
 use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
 
-/// The kind of model that scenes name `drag`.
+/// The kind of model that scenes call `drag`.
 #[derive(Debug)]
 pub struct DragModel;
 

@@ -147,7 +147,7 @@ impl<'a, const D: usize> Builder<'a, D> {
         Ok(())
     }
 
-    /// Refuses a cell that is degenerate or inverted at rest; returns its volume, in the plane its area.
+    /// Refuses a cell that is degenerate or inverted at rest. Returns the volume of the cell (area in the plane).
     fn check<E: Shape<D, N>, const N: usize>(&self, cell: &Cell<N>, positions: &[[f64; D]]) -> Result<f64, BuildError> {
         let rest: [[f64; D]; N] = cell.nodes.map(|n| positions[n as usize]);
         let mut longest = 0.0;

@@ -21,7 +21,7 @@
 //! **Damping** is of the Kelvin–Voigt type: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ; zero under rigid motion.
 //!
 //! **Heat**: a point that has expanded by the factor g = 1 + α ΔT has the energy g³ ψ(F/g), or ψ(ε − αΔT 1) under the law of
-//! small strain (file `materials/heat`). Without expansion none of this is computed.
+//! small strain (file `materials/heat`). Without expansion none of these terms is computed.
 //!
 //! Limits: energies of quadratic cells are integrated with rules of degree 2, which are exact for straight sides and linear
 //! laws. At small strain, boxes bend according to Hooke's law with their E and ν. In all states, Hooke's law also determines
@@ -58,7 +58,7 @@ use opruga_core::potential::{Ingredients, Model, Potential};
 use opruga_core::spec::Spec;
 use solid::Built;
 
-/// The kind of model that scenes name `fem`.
+/// The kind of model that scenes call `fem`.
 #[derive(Debug)]
 pub struct FemModel;
 

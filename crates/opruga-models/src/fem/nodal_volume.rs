@@ -41,7 +41,7 @@ pub(super) struct NodalVolumes<const D: usize> {
     /// The cells around each node: the start of its list, and the lists.
     start: Vec<u32>,
     around: Vec<u32>,
-    /// The location of J − 1 of each of these cells in the scratch; empty until it is set.
+    /// The location of J − 1 of each of these cells in the scratch. The list is empty until it is set.
     grown: Vec<u32>,
     /// The start of the energies and pressures of every block of nodes in the scratch.
     starts: Vec<usize>,
@@ -195,7 +195,7 @@ impl<const D: usize> NodalVolumes<D> {
         self.starts.len() * (WIDTH + BLOCK * self.bodies())
     }
 
-    /// Computes κₐ (Jₐ − 1) of all nodes from J − 1 of their cells; returns the energies of the bodies [J].
+    /// Computes κₐ (Jₐ − 1) of all nodes from J − 1 of their cells. Returns the energies of the bodies [J].
     pub(super) fn press(&self, threads: usize, grown: &[f64], scratch: &mut [f64]) -> [f64; WIDTH] {
         let bodies = self.bodies();
         each_part(threads, scratch, &self.starts, |block, scratch| {

@@ -38,7 +38,7 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     shape: PhantomData<E>,
     pub(super) layout: Layout,
     pub(super) law: Box<dyn Law<D>>,
-    /// The law in space, for the out-of-plane stress; none in plane stress.
+    /// The law in space, which gives the out-of-plane stress. It is `None` in plane stress.
     pub(super) law_in_space: Option<Box<dyn Law<3>>>,
     /// The elements, ordered by lowest node.
     pub(super) cells: Vec<Cell<N>>,
@@ -272,7 +272,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         self.grown(share) + if self.nodal { share.packs * WIDTH } else { 0 }
     }
 
-    /// The measure of a point of an element [m³]; at the mean of a box, the measure of the box.
+    /// The measure of a point of an element [m³]. For the mean of a box, it is the measure of the box.
     pub(super) fn measure(&self, pack: usize, point: usize, lane: usize) -> f64 {
         let (lanes, lane) = if self.layout == Layout::Single { (WIDTH, lane) } else { (1, 0) };
         if E::BOX {

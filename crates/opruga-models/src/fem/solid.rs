@@ -276,7 +276,7 @@ impl<const D: usize> Solid<D> {
         Solid { layout, nodes, parts, shares, starts, sums, inertia, volumes, damped, energy_parts }
     }
 
-    /// Computes the pressures of the nodes that resist changes of volume, in the scratch of these nodes; returns the energies of
+    /// Computes the pressures of the nodes that resist changes of volume, in the scratch of these nodes. Returns the energies of
     /// the bodies [J].
     fn press(&self, simd: Simd, view: &View<D>, cells: &mut [f64], of_volumes: &mut [f64]) -> [f64; WIDTH] {
         let Some(volumes) = &self.volumes else { return [0.0; WIDTH] };

@@ -1,6 +1,6 @@
 //! The work on some packs of elements, compiled for every set of vector instructions.
 //!
-//! It proceeds register by register, because the data of a point barely fit into the registers.
+//! The work proceeds register by register, because the data of a point barely fit into the registers.
 
 use super::elements::Shape;
 use super::group::Group;
@@ -191,7 +191,7 @@ pub(super) fn parameters_of_points(group: &Group<'_>, points: usize, parameters:
     }
 }
 
-/// Forces of elements on nodes; densities of energy and power become energies and powers of elements.
+/// Computes the forces of elements on nodes. Densities of energy and power become energies and powers of elements.
 pub(super) struct Forces<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
     pub(super) group: Group<'a>,

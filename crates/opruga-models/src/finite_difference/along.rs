@@ -236,8 +236,8 @@ impl<const D: usize, const BATCH: bool, const DAMPED: bool> Work for Force<'_, '
     }
 }
 
-/// The results of the previous nodes that the next ones need: g of their edges, its rate, 1/L, the known part of N, and N of
-/// the edges before them.
+/// The results of the previous nodes that the next nodes need: g of their edges, its rate, 1/L, the known part of N, and N of the
+/// edges before them.
 ///
 /// For bodies side by side, each result is a pack with the numbers of the previous node of each body. For one body, it is the
 /// previous register, stored in the first part of each pack.
@@ -263,8 +263,8 @@ fn back<R: Register, const BATCH: bool>(now: R, previous: R) -> R {
 
 impl<P: Pack, const D: usize> Walker<'_, P, D> {
     /// Processes one part of eight nodes from index `k` of the strips on. Returns the forces on the previous nodes, shifted by
-    /// one, and the power that damping dissipates. It proceeds register by register, because the data of a bend fit into the
-    /// registers of any processor.
+    /// one, and the power that damping dissipates. The loop proceeds register by register, because the data of a bend fit into
+    /// the registers of any processor.
     #[inline(always)]
     fn step<const BATCH: bool, const DAMPED: bool>(&mut self, k: usize, part: usize) -> ([P::Part; D], P::Part) {
         let (next, slot) = if BATCH { (WIDTH, part) } else { (1, 0) };

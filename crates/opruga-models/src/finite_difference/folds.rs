@@ -7,9 +7,9 @@ use opruga_core::state::View;
 /// Below this squared stretch, the force of an edge decreases, because the St. Venant–Kirchhoff law softens.
 const TURNING_POINT: f64 = 1.0 / 3.0;
 
-/// The cosine of 60°. Two edges count as one line if their directions differ by less than this angle at rest. They are folded
-/// back if their directions later differ by more than 120°. The angles of a smooth closed curve with more than six edges are
-/// smaller.
+/// The cosine of 60°. Two edges count as one line if their directions differ by less than this angle at rest. Such edges
+/// count as folded back if their directions later differ by more than 120°. The angles of a smooth closed curve with more
+/// than six edges are smaller.
 const IN_LINE: f64 = 0.5;
 
 /// The edges of a curve or a surface, and the nodes between two edges of one line.
@@ -26,7 +26,7 @@ fn minus<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
 fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     (0..D).map(|d| a[d] * b[d]).sum()
 }
-/// The cosine between the directions from a to b and from b to c; NaN if two of these points coincide.
+/// The cosine between the directions from a to b and from b to c, or NaN if two of these points coincide.
 fn cosine<const D: usize>([a, b, c]: [[f64; D]; 3]) -> f64 {
     let (first, second) = (minus(&b, &a), minus(&c, &b));
     dot(&first, &second) / (dot(&first, &first) * dot(&second, &second)).sqrt()

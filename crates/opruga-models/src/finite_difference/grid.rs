@@ -111,8 +111,8 @@ impl Grid {
         Ok(Grid::Curve { edges, nodes })
     }
 
-    /// Finds the nodes with all four neighbours, and the nodes on the edge, each with both neighbours along the edge and one
-    /// inside.
+    /// Finds the nodes with all four neighbours, and the nodes on the edge. A node on the edge has both neighbours along the edge
+    /// and one neighbour inside.
     fn surface(cells: &[[u32; 4]]) -> Result<Grid, Refusal> {
         // The neighbours of every node: backward and forward along both axes.
         let mut around: BTreeMap<u32, [Option<u32>; 4]> = BTreeMap::new();

@@ -124,7 +124,7 @@ impl From<FiniteDifferenceError> for BuildError {
     }
 }
 
-/// The kind of model that scenes name `finite_difference`.
+/// The kind of model that scenes call `finite_difference`.
 #[derive(Debug)]
 pub struct FiniteDifferenceModel;
 

@@ -2,7 +2,7 @@
 //!
 //! Every edge (i, j) of a cell has one dual face between the parts of the cell that belong to i and to j. In the plane it is the
 //! segment from the midpoint of the edge to the centre of the cell. In space it is the quadrilateral through the midpoint of the
-//! edge, the centres of the two adjacent sides, and the centre of the cell. Its area vector points from i to j.
+//! edge, the centres of the two adjacent sides, and the centre of the cell. The area vector of the dual face points from i to j.
 //!
 //! ```text
 //!  3 ──── 2      3           quadrilaterals counter-clockwise; hexahedra 0123 below
@@ -201,7 +201,7 @@ mod tests {
     use super::*;
 
     /// The part of a cell around a node is closed: the area vectors of its dual faces and of its shares of the outer sides sum to
-    /// zero. So Σ S ⊗ (xⱼ − xᵢ) over the edges of a simplex is its volume times the unit matrix.
+    /// zero. So Σ S ⊗ (xⱼ − xᵢ) over the edges of a simplex equals the volume of the simplex times the unit matrix.
     fn check<C: Cell<D, N>, const D: usize, const N: usize>(x: [[f64; D]; N], measure: f64, is_exact: bool) {
         let faces = dual_faces::<C, D, N>(&x);
         assert!(

@@ -1,8 +1,8 @@
 //! # Finite volumes
 //!
 //! The force on a node is the force that the stress exerts on the part of the body that belongs to the node (Teran, Blemker,
-//! Ng-Thow-Hing, Fedkiw 2003). That part is the dual cell of the node. Its faces lie between the centres of edges, sides and
-//! cells. With the area vectors S of the dual faces at rest,
+//! Ng-Thow-Hing, Fedkiw 2003). That part is the dual cell of the node. The faces of the dual cell lie between the centres of
+//! edges, sides and cells. With the area vectors S of the dual faces at rest,
 //!
 //! fᵢ = Σ P(F) S,  fⱼ = −Σ P(F) S over the dual faces from i to j.
 //!
@@ -48,14 +48,14 @@ use opruga_core::spec::Spec;
 use opruga_math::WIDTH;
 use part::{Matter, Part};
 
-/// The kind of model that scenes name `finite_volume`.
+/// The kind of model that scenes call `finite_volume`.
 #[derive(Debug)]
 pub struct FiniteVolumeModel;
 
 /// Poisson's ratio above which triangles and tetrahedra are refused.
 const LOCKS_ABOVE: f64 = 0.45;
 
-/// Some bodies have no energy; all have a tangent.
+/// Some bodies have no energy, but all have a tangent.
 const VIEWS: Views = Views { energy: false, hessian: true, symmetric: false, damping: false };
 
 /// The data common to both dimensions.

@@ -15,7 +15,7 @@ use opruga_math::{Simd, WIDTH, matrix};
 #[derive(Debug)]
 pub(super) struct Matter<const D: usize> {
     pub(super) law: Box<dyn Law<D>>,
-    /// The same law in 3D, which gives the out-of-plane stress in plane strain; none in plane stress and in 3D.
+    /// The same law in 3D, which gives the out-of-plane stress in plane strain. It is `None` in plane stress and in 3D.
     pub(super) in_space: Option<Box<dyn Law<3>>>,
     /// μ, λ, the material's own parameter and a thermal growth of one, for [`MOST_PACKS`] packs of points.
     pub(super) parameters: Vec<f64>,
@@ -33,7 +33,7 @@ impl<const D: usize> Matter<D> {
 
 /// Cells of any kind.
 pub(super) trait Part<const D: usize>: Send + Sync + Debug {
-    /// Adds forces; for triangles and tetrahedra also adds V ψ to eight partial sums for each body.
+    /// Adds forces. For triangles and tetrahedra, also adds V ψ to eight partial sums for each body.
     fn evaluate(
         &self,
         matter: &Matter<D>,

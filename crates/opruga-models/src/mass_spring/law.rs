@@ -12,7 +12,8 @@ pub(super) struct SpringLaw<'a, const DAMPED: bool> {
     pub(super) damping: &'a Parameter,
 }
 
-/// 1/|d|; zero for coincident ends, whose force has no direction and is set to zero.
+/// 1/|d|. It is zero if the ends coincide, since the force then has no direction and is set to
+/// zero.
 #[inline(always)]
 fn inverse_length<S: Lane, const D: usize>(d: &[S; D]) -> S {
     let square = dot(d, d);
@@ -21,7 +22,7 @@ fn inverse_length<S: Lane, const D: usize>(d: &[S; D]) -> S {
     S::select(S::splat(f64::MIN_POSITIVE).less_or_equal(square), inverse, S::zero())
 }
 
-/// The length of d and its inverse; both zero for coincident ends.
+/// The length of d and its inverse. Both are zero if the ends coincide.
 #[inline(always)]
 pub(super) fn length<S: Lane, const D: usize>(d: &[S; D]) -> (S, S) {
     let inverse = inverse_length(d);

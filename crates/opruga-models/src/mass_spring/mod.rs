@@ -27,7 +27,7 @@ use opruga_core::tile::Tile;
 use opruga_math::{Pack, Simd, WIDTH, Work};
 use opruga_mesh::EdgeSet;
 
-/// The kind of model that scenes name `mass_spring`.
+/// The kind of model that scenes call `mass_spring`.
 #[derive(Debug)]
 pub struct MassSpring;
 

@@ -20,8 +20,8 @@ pub struct AtPoint<const D: usize> {
     pub stress: [[f64; D]; D],
     /// ∂Pᵢⱼ/∂Fₖₗ in row i·D + j and column k·D + l [Pa].
     pub tangent: Vec<Vec<f64>>,
-    /// The out-of-plane stretch. It is 1 in plane strain. In plane stress, it is the stretch for which the out-of-plane stress
-    /// is zero. None in space.
+    /// The out-of-plane stretch. In plane strain, this stretch is 1. In plane stress, it is the stretch for which the
+    /// out-of-plane stress is zero. `None` in space.
     pub across: Option<f64>,
 }
 

@@ -8,8 +8,8 @@ use opruga_math::rotation::nearest_rotation;
 
 /// ψ = μ |F − R|² + λ/2 (J − 1)² with the rotation R nearest to F and J = det F; P = 2μ(F − R) + λ(J − 1) cof F.
 ///
-/// This law resists changes of the true volume, whereas the corotated law resists changes of its linear measure. It has a
-/// stress for every F.
+/// This law resists changes of the true volume, whereas the corotated law resists changes of its linear measure. The law
+/// has a stress for every F.
 ///
 /// # Source
 /// Stomakhin, Howes, Schroeder, Teran, "Energetically consistent invertible elasticity" (2012).

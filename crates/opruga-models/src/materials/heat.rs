@@ -5,9 +5,9 @@
 //! F = g F_e,  ψ_T(F) = g³ ψ(F/g),  P = g² P_e,  ∂P/∂F = g ∂P_e/∂F_e.
 //!
 //! g³ is the volume of the unconstrained heated body divided by the volume at rest, to which ψ refers. The law of small strain
-//! subtracts the thermal strain instead, ψ_T = ψ(ε − αΔT 1). This equals g² ψ(F/g) with that law. Both forms hold in space and
-//! for a plate, whose thickness is free to change. In plane strain nothing moves out of the plane, so the elastic stretch in
-//! that direction is 1/g, and the law in space is evaluated.
+//! subtracts the thermal strain instead, ψ_T = ψ(ε − αΔT 1). With the law of small strain, this ψ_T equals g² ψ(F/g). Both forms
+//! of ψ_T hold in space and for a plate, whose thickness is free to change. In plane strain nothing moves out of the plane, so
+//! the elastic stretch in that direction is 1/g, and the law in space is evaluated.
 //!
 //! # Source
 //! Vujošević, Lubarda, "Finite-strain thermoelasticity based on multiplicative decomposition of deformation gradient",
@@ -112,8 +112,8 @@ impl HeatedSlice {
         out
     }
 
-    /// Replaces the results of the law in space by those of the law in the plane for points that have not expanded. The result of
-    /// a body therefore does not depend on the bodies in the other lanes.
+    /// For points that have not expanded, replaces the results of the law in space by the results of the law in the plane. The
+    /// result of a body therefore does not depend on the bodies in the other lanes.
     fn keep_what_is_cold(points: &Points<'_>, packs: usize, cold: &[f64], numbers: &mut [f64]) {
         for point in 0..points.count {
             let growths = growths(points, point);

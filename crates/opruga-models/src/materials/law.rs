@@ -22,7 +22,7 @@ pub(crate) trait Law<const D: usize>: Send + Sync + Debug {
         self.tangent(simd, points, keep, out);
         Form::Whole
     }
-    /// Writes the out-of-plane stretch that the law determines at every point (a pack per pack of points); returns whether the
+    /// Writes the out-of-plane stretch that the law determines at every point (a pack per pack of points). Returns whether the
     /// law determines one.
     fn thickness(&self, _simd: Simd, _points: Points<'_>, _out: &mut [f64]) -> bool {
         false
@@ -134,7 +134,7 @@ impl<M: Material<D>, const D: usize> Work for Tangents<'_, M, D> {
     }
 }
 
-/// Computes the derivatives by invariants, from which the tangent follows; returns whether the material has them.
+/// Computes the derivatives by invariants, from which the tangent follows. Returns whether the material has them.
 struct ByInvariants<'a, M, const D: usize> {
     points: Points<'a>,
     out: &'a mut [f64],

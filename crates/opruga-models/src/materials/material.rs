@@ -26,7 +26,7 @@ pub type Tangent<S, const D: usize> = [[[[S; D]; D]; D]; D];
 pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     /// The name of the material in scenes.
     const NAME: &'static str;
-    /// Whether rotating a body takes no energy. This is true for all laws except the law for small rotations.
+    /// Whether rotating a body takes no energy. All laws have this property except the law for small rotations.
     const TURNS: bool = true;
     /// Whether ψ at rest is a difference of terms as large as the moduli instead of a sum of squares. Rounding then leaves a
     /// remainder of these terms.
@@ -35,8 +35,8 @@ pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
     fn energy_and_stress<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>) -> (S, Matrix<S, D>);
     /// The second derivatives by the principal stretches σ of F: ∂P/∂F in the frame of its singular vectors [Pa].
     fn principal<S: Lane>(p: &Parameters<S>, f: &Matrix<S, D>, sigma: &[S; D]) -> Principal<S, D>;
-    /// The derivatives by tr FᵀF and det F, for a law that depends on nothing else. Its tangent follows from these derivatives
-    /// alone.
+    /// The derivatives by tr FᵀF and det F, for a law that depends on nothing else. The tangent of such a law follows from these
+    /// derivatives alone.
     #[inline(always)]
     fn invariants<S: Lane>(_p: &Parameters<S>, _f: &Matrix<S, D>) -> Option<Invariants<S>> {
         None
@@ -58,7 +58,7 @@ pub trait Material<const D: usize>: Copy + Debug + Send + Sync + 'static {
 pub struct Invariants<S> {
     /// 2 ∂ψ/∂I.
     pub stretch: S,
-    /// 4 ∂²ψ/∂I²; none if the law is linear in I.
+    /// 4 ∂²ψ/∂I², or `None` if the law is linear in I.
     pub stretch_twice: Option<S>,
     /// ∂ψ/∂J.
     pub volume: S,
@@ -92,7 +92,7 @@ impl<S: Lane> Invariants<S> {
 pub struct Principal<S, const D: usize> {
     /// ψᵢⱼ = ∂²ψ/∂σᵢ∂σⱼ.
     pub second: Matrix<S, D>,
-    /// (ψᵢ − ψⱼ)/(σᵢ − σⱼ), for i < j; its limit if the two stretches are equal.
+    /// (ψᵢ − ψⱼ)/(σᵢ − σⱼ), for i < j, or its limit if the two stretches are equal.
     pub difference: Matrix<S, D>,
     /// (ψᵢ + ψⱼ)/(σᵢ + σⱼ), for i < j.
     pub sum: Matrix<S, D>,

@@ -109,8 +109,8 @@ impl Law<2> for PlaneStress {
     }
 }
 
-/// One Newton iteration for the thickness; returns whether all points have converged. In the `last` call, points that have not
-/// converged become NaN.
+/// Makes one Newton iteration for the thickness. Returns whether all points have converged. In the `last` call, points that have
+/// not converged become NaN.
 struct Thin<'a> {
     count: usize,
     space: &'a mut Space,

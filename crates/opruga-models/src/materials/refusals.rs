@@ -2,7 +2,7 @@
 
 use opruga_math::messages;
 
-/// The hint with the nearest name; empty if there is none.
+/// The hint with the nearest name, or an empty text if no name is near.
 fn did_you_mean(word: &Option<String>) -> String {
     word.as_ref().map_or_else(String::new, |word| format!("did you mean `{word}`?"))
 }

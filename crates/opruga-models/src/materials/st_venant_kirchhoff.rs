@@ -6,8 +6,8 @@ use opruga_math::matrix::{self, Matrix};
 
 /// ψ = μ E:E + λ/2 tr² E with E = ½(FᵀF − 1); P = F S, S = 2μE + λ tr E 1.
 ///
-/// It is exact for large rotation, but it softens under compression: below a stretch of 1/√3 a bar collapses and may invert, and
-/// the inverted state has the same energy. Use another law for large strain.
+/// The law is exact for large rotation, but it softens under compression: below a stretch of 1/√3 a bar collapses and may
+/// invert, and the inverted state has the same energy. Use another law for large strain.
 #[derive(Clone, Copy, Debug)]
 pub struct StVenantKirchhoff;
 

@@ -7,8 +7,8 @@ use opruga_math::matrix::{self, Matrix};
 /// ψ = m/2 (I − 3) − 3m/4 (J − 1) + l/2 (J − 1)² − m/2 ln((I + 1)/4) with m = 4/3 μ, l = λ + 5/6 μ, I = tr FᵀF in space and
 /// tr FᵀF + 1 in plane strain, J = det F; P = m (1 − 1/(I + 1)) F + (l (J − 1) − 3m/4) cof F.
 ///
-/// This is m/2 (I − 3) + l/2 (J − α)² − m/2 ln(I + 1) with α = 1 + 3m/4l, minus its value at rest. The law has a stress for every
-/// F, including degenerate and inverted states, and no equilibrium except the rest shape.
+/// This ψ is m/2 (I − 3) + l/2 (J − α)² − m/2 ln(I + 1) with α = 1 + 3m/4l, minus its value at rest. The law has a stress for
+/// every F, including degenerate and inverted states, and no equilibrium except the rest shape.
 ///
 /// # Source
 /// Smith, de Goes, Kim, "Stable neo-Hookean flesh simulation", ACM Trans. Graph. 37 (2018), eq. 14 and section 3.4.

@@ -120,7 +120,7 @@ impl<const D: usize> Work for Push<'_, '_, D> {
     }
 }
 
-/// The position of the first node of each body. It is subtracted, so that no digits are lost far from the origin.
+/// The position of the first node of each body. This position is subtracted, so that no digits are lost far from the origin.
 #[inline(always)]
 fn origin<P: Pack, const D: usize>(view: &View<D>) -> [P; D] {
     match view.layout {
@@ -130,7 +130,7 @@ fn origin<P: Pack, const D: usize>(view: &View<D>) -> [P; D] {
 }
 
 impl Boundary {
-    /// Computes the volume of each body (area in the plane); in space also writes ∂V/∂x of every node to `area`, column by
+    /// Computes the volume of each body (area in the plane). In space, also writes ∂V/∂x of every node to `area`, column by
     /// column.
     #[inline(always)]
     pub(super) fn volume<P: Pack, const D: usize>(&self, view: &View<D>, area: &mut [f64]) -> P {

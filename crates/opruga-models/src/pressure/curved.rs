@@ -55,8 +55,8 @@ type Term = ([usize; 3], f64);
 /// Facets by the indices of their nodes in a side.
 type Facets = [[usize; 3]];
 
-/// The possible divisions of a side of a cell into facets, and the terms that the side adds to the volume; none for a straight
-/// side.
+/// The possible divisions of a side of a cell into facets, and the terms that the side adds to the volume. Returns `None` for a
+/// straight side.
 fn kind<const D: usize>(nodes: usize) -> Option<(&'static [&'static Facets], &'static [Term])> {
     match (D, nodes) {
         (2, 3) => Some((&[&[[0, 2, 2], [2, 1, 1]]], &PARABOLA)),
@@ -79,8 +79,8 @@ fn face_alike<const D: usize>(one: &[u32; D], other: &[u32; D]) -> bool {
 }
 
 impl CurvedSides {
-    /// Finds the curved sides of a chamber: those of `sides` whose pieces are among its facets. None if the chamber has no
-    /// curved sides.
+    /// Finds the curved sides of a chamber: those of `sides` whose pieces are among its facets. Returns `None` if the chamber has
+    /// no curved sides.
     pub(super) fn of<const D: usize>(facets: &[[u32; D]], sides: &[Vec<u32>]) -> Option<CurvedSides> {
         let mut left: BTreeMap<[u32; D], [u32; D]> = facets.iter().map(|facet| (ascending(facet), *facet)).collect();
         let mut terms = Vec::new();

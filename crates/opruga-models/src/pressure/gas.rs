@@ -52,7 +52,7 @@ pub(super) struct GasState {
     pub(super) pressure: f64,
     /// U(V), including the ambient pressure [J].
     pub(super) energy: f64,
-    /// U″(V) = γP/V [Pa/m³]; zero if the pressure is limited.
+    /// U″(V) = γP/V [Pa/m³], or zero if the pressure is limited.
     pub(super) curvature: f64,
     /// Whether the volume is below the limit.
     pub(super) limited: bool,
@@ -135,7 +135,7 @@ impl Gas {
     /// The state at a volume V for this nRT (at the rest volume).
     ///
     /// Below the volume V_s (a fraction of the rest volume, or the volume at which the largest pressure is reached) the
-    /// pressure stays P(V_s), and the energy continues along its tangent. This also holds at zero volume and for inverted
+    /// pressure stays P(V_s), and the energy continues along its tangent. The same rule holds at zero volume and for inverted
     /// bodies. U is a function of V with a continuous slope, so no energy is created, and the force still inflates the body.
     pub(super) fn at(&self, volume: f64, amount: f64) -> GasState {
         let v0 = self.rest_volume;

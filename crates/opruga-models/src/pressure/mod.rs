@@ -35,7 +35,7 @@ use opruga_core::tile::Tile;
 use opruga_math::{Lane, Pack, Simd, WIDTH, Work};
 use opruga_mesh::{Mesh, MeshError};
 
-/// The kind of model that scenes name `pressure`.
+/// The kind of model that scenes call `pressure`.
 #[derive(Debug)]
 pub struct PressureModel;
 
@@ -69,7 +69,8 @@ const NUMBERS: usize = 4 * WIDTH;
 /// chamber enclosed no volume, and the full nRT₀ [J] to which the loss refers.
 const MEMORY: usize = 4 * WIDTH;
 
-/// The loss of a gas since it was filled [J], from the memory of its chamber; zero if the scene has since set another amount.
+/// The loss of a gas since it was filled [J], from the memory of its chamber. It is zero if the scene has since set another
+/// amount.
 fn lost(gas: &Gas, memory: &[f64], body: usize) -> f64 {
     if memory[3 * WIDTH + body] == gas.amount { memory[body] } else { 0.0 }
 }

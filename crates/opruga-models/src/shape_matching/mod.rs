@@ -58,7 +58,7 @@ use opruga_math::{Pack, Simd, WIDTH, Work};
 use piece_kernels::{PieceForces, PieceMaps, PieceMoments};
 use pieces::Pieces;
 
-/// The kind of model that scenes name `shape_matching`.
+/// The kind of model that scenes call `shape_matching`.
 #[derive(Debug)]
 pub struct ShapeMatchingModel;
 
@@ -158,7 +158,7 @@ impl<const D: usize> Potential<D> for Matching<D> {
             ..Properties::new(SPEC.kind, views)
         }
     }
-    /// Visits the nodes of every cluster; does nothing if a cluster is the whole body.
+    /// Visits the nodes of every cluster. Does nothing if a cluster is the whole body.
     fn stencils(&self, visit: &mut dyn FnMut(&[u32])) {
         let stride = self.clusters.layout.stride() as u32;
         for cluster in (0..self.clusters.len()).filter(|_| !self.clusters.is_whole) {

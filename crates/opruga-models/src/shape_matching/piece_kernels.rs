@@ -15,7 +15,7 @@ use opruga_math::{Lane, Pack, Register, WIDTH, Work, lanes};
 /// The largest number of registers that a row of one body needs: sixteen numbers, two in each register.
 const REGISTERS: usize = 8;
 
-/// The number of registers that hold the D maps of a row; later ones are not read.
+/// The number of registers that hold the D maps of a row. Later registers are not read.
 const fn registers<P: Pack, const D: usize>() -> usize {
     (MAP * D).div_ceil(P::Part::NUMBERS)
 }
@@ -26,8 +26,8 @@ fn at<const D: usize>(row: usize, d: usize, c: usize) -> usize {
     row * WIDTH * MAP * D + (d * MAP + c) * WIDTH
 }
 
-/// Sums the rows of a list: those at even and at odd positions separately, and then both, so that no addition waits for the
-/// previous one.
+/// Sums the rows at even positions of a list and the rows at odd positions separately, and then adds both sums, so that no
+/// addition waits for the previous one.
 #[inline(always)]
 fn sum_rows<P: Pack, const D: usize>(rows: &[f64], list: &[u32]) -> [P::Part; REGISTERS] {
     let length = WIDTH * (D - 1);

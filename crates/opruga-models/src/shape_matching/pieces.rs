@@ -7,10 +7,10 @@
 //! nodes ──moments──▶ pieces ──sums──▶ clusters: R, T ──maps t + H Q──▶ pieces, summed ──▶ nodes
 //! ```
 //!
-//! So a node is read and written once, however many clusters it is in. For all clusters, u = x − x₀ and Q = X − X₀ are relative
-//! to one node in the middle of the body, so that the clusters can share the sums. This loses digits. The rounding error grows
-//! with the square of the size of the body divided by the size of its smallest cluster. Beyond [`MOST_DIGITS_LOST`] the
-//! clusters are evaluated slot by slot.
+//! A node is therefore read and written once, however many clusters it is in. For all clusters, u = x − x₀ and Q = X − X₀ are
+//! relative to one node in the middle of the body, so that the clusters can share the sums. Taking positions relative to this
+//! node loses digits. The rounding error grows with the square of the size of the body divided by the size of its smallest
+//! cluster. Beyond [`MOST_DIGITS_LOST`] the clusters are evaluated slot by slot.
 
 use super::layout::Clusters;
 use opruga_core::potential::Ingredients;
@@ -35,7 +35,7 @@ pub(super) struct Pieces<const D: usize> {
     pub(super) start: Vec<u32>,
     /// One over the number of clusters that contain a piece.
     pub(super) share: Vec<f64>,
-    /// For one body: the first row of the piece of each node, in rows of [`MAP`] numbers; filled up to whole packs.
+    /// For one body: the first row of the piece of each node, in rows of [`MAP`] numbers. The list is filled up to whole packs.
     pub(super) row_of: Vec<u32>,
     /// The piece of each node.
     pub(super) piece_of: Vec<u32>,
@@ -76,7 +76,7 @@ fn inverse<const D: usize>(frame: &[[f64; D]; D]) -> [[f64; D]; D] {
 }
 
 impl<const D: usize> Pieces<D> {
-    /// Makes the pieces of overlapping clusters with a linear fit; `None` if too many digits would be lost.
+    /// Makes the pieces of overlapping clusters with a linear fit. Returns `None` if too many digits would be lost.
     pub(super) fn new(ingredients: &Ingredients<D>, clusters: &Clusters<D>) -> Option<Pieces<D>> {
         let (layout, mesh) = (ingredients.layout, ingredients.mesh);
         if clusters.is_whole || clusters.columns > D {

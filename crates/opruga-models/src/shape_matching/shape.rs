@@ -6,14 +6,15 @@ use opruga_math::Lane;
 /// The largest number of columns: 3 coordinates and 6 products of them in space.
 pub(super) const MOST_COLUMNS: usize = 9;
 
-/// If the part of a column that is independent of the previous ones is below this fraction of the size of the cluster, the column
-/// counts as dependent.
+/// A column counts as dependent if the part of it that is independent of the previous columns is below this fraction of the size
+/// of the cluster.
 const OWN: f64 = 1e-7;
 
 /// A cluster of one body at rest.
 #[derive(Debug)]
 pub(super) struct Shape<const D: usize> {
-    /// φₖ of every node [1/√kg], `[k][node]`: Σ m φₖ = 0 and Σ m φₖ φₗ = δₖₗ; zero if column k depends on the previous ones.
+    /// φₖ of every node [1/√kg], `[k][node]`: Σ m φₖ = 0 and Σ m φₖ φₗ = δₖₗ. It is zero if column k depends on the previous
+    /// ones.
     pub(super) columns: Vec<Vec<f64>>,
     /// L [m √kg] with q = Σₖ Lₖ φₖ over the first D columns, `[axis][k]`.
     pub(super) frame: [[f64; D]; D],

@@ -97,7 +97,7 @@ impl<R: Lane, const D: usize, const N: usize> ByColumns<R, D, N> {
         }
     }
 
-    /// Adds the derivatives by g, except those that come through q.
+    /// Adds the derivatives by g, except the derivatives that come through q.
     #[inline(always)]
     fn add_by_amplitudes(&mut self, by_q: &ByAmplitudes<R, D>, frame: &Frame<R, D>) {
         let (count, cofactors) = (modes::<D, N>(), &frame.cofactors);
@@ -168,7 +168,7 @@ impl<R: Register, const D: usize> ByAmplitudes<R, D> {
 }
 
 impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
-    /// Second derivatives by F and g, from those by F and β.
+    /// Second derivatives by F and g, computed from the second derivatives by F and β.
     #[inline(always)]
     pub(super) fn by_columns<R: Register>(
         &self,
@@ -237,9 +237,9 @@ fn change_of_amplitudes<R: Lane, const D: usize, const N: usize>(
     change
 }
 
-/// Adds the second derivatives of q under the forces u on q, which are those of φ(J) N : cof F with N = Σ gₐ ⊗ uₐ. Also adds
-/// the second derivatives of the guard energy ½ (1 − s) Σ kₐ gₐ·gₐ, except the second derivatives by g alone. The guard energy
-/// replaces the law in a degenerate cell.
+/// Adds the second derivatives of q under the forces u on q. They are the second derivatives of φ(J) N : cof F with N = Σ gₐ ⊗
+/// uₐ. Also adds the second derivatives of the guard energy ½ (1 − s) Σ kₐ gₐ·gₐ, except the second derivatives by g alone. The
+/// guard energy replaces the law in a degenerate cell.
 #[inline(always)]
 fn add_bent_frame<R: Lane, const D: usize, const N: usize>(
     kept: &Kept<R, D>,

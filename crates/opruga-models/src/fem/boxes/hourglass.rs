@@ -1,9 +1,9 @@
 //! How quadrilaterals and hexahedra resist the motions that do not change their mean deformation.
 //!
-//! The displacement of a cell with N corners is affine except for N − 1 − D *hourglass* modes. Their amplitudes gₐ = Σ xₐ γₐ
-//! belong to vectors γ orthogonal to all affine fields (Flanagan and Belytschko 1981). At small strain, the strain ε of these
-//! modes is that of an assumed stress. It follows from stress fields s that bend and twist a box exactly (Pian and Sumihara
-//! 1984 in the plane, Pian and Tong 1986 in space; here without their mean) and from the compliance of Hooke's law,
+//! The displacement of a cell with N corners is affine except for N − 1 − D *hourglass* modes. The amplitudes of these modes, gₐ
+//! = Σ xₐ γₐ, belong to vectors γ orthogonal to all affine fields (Flanagan and Belytschko 1981). At small strain, the strain ε
+//! of these modes is that of an assumed stress. It follows from stress fields s that bend and twist a box exactly (Pian and
+//! Sumihara 1984 in the plane, Pian and Tong 1986 in space; here without their mean) and from the compliance of Hooke's law,
 //!
 //! ε = C⁻¹ Σ s β,  β = H⁻¹ L g,  L = ∫ s : ∇h,  H = ∫ s : C⁻¹ s,
 //!
@@ -17,7 +17,7 @@ use super::corners::sums;
 /// The number of hourglass modes of a hexahedron.
 pub(super) const MOST_MODES: usize = 4;
 
-/// The number of assumed stresses of a hexahedron. It equals the number of amplitudes, modes times axes.
+/// The number of assumed stresses of a hexahedron. This number equals the number of amplitudes, modes times axes.
 pub(super) const MOST_STRESSES: usize = 12;
 
 /// The number of functions of the assumed stresses of a hexahedron.
@@ -39,8 +39,8 @@ pub(super) const fn term<const D: usize>(stress: usize) -> (usize, usize) {
     if D == 2 { (1 - stress, stress) } else { of_space[stress] }
 }
 
-/// The first stress of a function, and its axes. If there are two different axes, the stresses are those along the first axis,
-/// along the second axis, and of both.
+/// The first stress of a function, and its axes. If there are two different axes, the first stress acts along the first axis,
+/// the second along the second axis, and the third is that of both.
 pub(super) const fn axes_of_field<const D: usize>(field: usize) -> (usize, [usize; 2]) {
     match (D, field) {
         (2, _) => (field, [1 - field; 2]),

@@ -36,7 +36,7 @@ pub(in super::super) struct Contract<'a, E, const D: usize, const N: usize> {
     pub(in super::super) of: Of,
     /// The quantities that [`super::Deform`] has kept.
     pub(in super::super) kept: &'a [f64],
-    /// The stress at the points; read only if the energy is differentiated exactly.
+    /// The stress at the points. It is read only if the energy is differentiated exactly.
     pub(in super::super) stress: &'a [f64],
     /// D⁴ packs for every pack of points.
     pub(in super::super) tangent: &'a [f64],

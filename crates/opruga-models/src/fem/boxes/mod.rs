@@ -9,12 +9,12 @@
 //!
 //! U = Σ_q V_q ψ(F_q; μ, λ′) + V ψ(F; 0, λ − λ′) + ½ (λ − λ′) Σ_q V_q tr² ε_q + ½ (1 − s) Σ kₐ gₐ·gₐ,  λ′ = min(λ, 2μ):
 //!
-//! All laws are linear in μ and λ, so the volumetric stiffness beyond λ′ can be separated. It acts on the mean F, since no cell
-//! with so few corners could bend much and keep the volume of every point. F⁻¹ is replaced by cof Fᵀ φ(J) with φ = J/(J² + δ²
-//! (1 − J)²). This equals F⁻¹ at rest, is close to it while the cell has a volume, and goes to zero with the volume. Then s =
-//! Jφ goes to zero too, and an isotropic stiffness replaces the law. In space, (J − 3/2)³ times that stiffness is added above
-//! 3/2 of the rest volume. Under `linear`, which does not account for rotations, F_q is F + ε_q and q is g. In plane stress λ′
-//! is λ.
+//! All laws are linear in μ and λ, so the volumetric stiffness beyond λ′ can be separated. This separate stiffness acts on the
+//! mean F, since no cell with so few corners could bend much and keep the volume of every point. F⁻¹ is replaced by cof Fᵀ φ(J)
+//! with φ = J/(J² + δ² (1 − J)²). The replacement equals F⁻¹ at rest, is close to it while the cell has a volume, and goes to
+//! zero with the volume. Then s = Jφ goes to zero too, and an isotropic stiffness replaces the law. In space, (J − 3/2)³ times
+//! that stiffness is added above 3/2 of the rest volume. Under `linear`, which does not account for rotations, F_q is F + ε_q
+//! and q is g. In plane stress λ′ is λ.
 
 mod columns;
 mod corners;
@@ -53,7 +53,7 @@ pub(super) type Modes<R, const D: usize> = [[R; D]; MOST_MODES];
 /// Factors of the assumed stresses, or quantities that belong to them.
 pub(super) type Stresses<R> = [R; MOST_STRESSES];
 
-/// The derivative of cof F in the direction Z; symmetric in F and Z.
+/// The derivative of cof F in the direction Z. It is symmetric in F and Z.
 #[inline(always)]
 pub(super) fn cofactor_along<R: Lane, const D: usize>(f: &Matrix<R, D>, z: &Matrix<R, D>) -> Matrix<R, D> {
     if D == 2 {

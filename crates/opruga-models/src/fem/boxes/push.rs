@@ -21,7 +21,7 @@ pub(in super::super) struct Rates<'a> {
     pub(in super::super) power: &'a mut [f64],
 }
 
-/// Forces of cells on nodes; densities of energy and power become energies and powers of cells.
+/// Computes the forces of cells on nodes. Densities of energy and power become energies and powers of cells.
 pub(in super::super) struct Push<'a, E, const D: usize, const N: usize> {
     pub(in super::super) shape: PhantomData<E>,
     pub(in super::super) group: Group<'a>,
