@@ -152,7 +152,7 @@ fn read(path: &Path, registries: &Registries) -> Result<(SavedRun, Source), Box<
     Ok((run, source))
 }
 
-/// What happens to an existing checkpoint when the first one of a run is written.
+/// What happens to an existing checkpoint when a run writes its first one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Older {
     /// The checkpoint belongs to this run: it is kept as the previous one.
@@ -174,7 +174,7 @@ pub(crate) struct Keeper<'a> {
     older: Older,
     /// Whether this run has written a checkpoint.
     begun: bool,
-    /// The number of intermediate checkpoints that could not be written, and why the last one could not.
+    /// The number of intermediate checkpoints that could not be written, and the reason why the last of them could not be written.
     failed: Option<(u64, AnyMessage)>,
 }
 

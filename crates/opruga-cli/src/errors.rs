@@ -1,4 +1,4 @@
-//! Errors of the command line in addition to those of the library.
+//! Errors of the command line, in addition to the errors of the library.
 
 use opruga::math::message::AnyMessage;
 use opruga::math::words::{counted, number, rounded};

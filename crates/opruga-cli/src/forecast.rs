@@ -1,4 +1,4 @@
-//! Estimates the duration of a run, which is reported once if it is long, with ways to make the run shorter.
+//! Estimates the duration of a run. A long duration is reported once, with ways to make the run shorter.
 
 use crate::errors::{CallNote, Shorter};
 use opruga::core::spec::{Role, Value, Values};

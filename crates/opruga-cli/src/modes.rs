@@ -46,8 +46,8 @@ fn integrator_with(registries: &Registries, role: Role) -> Option<&'static Spec>
     catalogue_of(registries).integrators.into_iter().find(|spec| spec.has_role(role))
 }
 
-/// Gives every body the integrator `equilibrium` if that is requested, with the parameters of its former integrator that it supports: the tolerance,
-/// the number of iterations, the linear solver.
+/// If `equilibrium` is requested, gives every body this integrator. It keeps the parameters of the former integrator that it supports: the
+/// tolerance, the number of iterations and the linear solver.
 fn look_for_equilibrium(call: &Modes, registries: &Registries, blueprint: &mut AnyBlueprint) {
     let dimension = blueprint.scene().dimension();
     let Some(spec) = integrator_with(registries, Role::Statics).filter(|_| call.equilibrium) else { return };

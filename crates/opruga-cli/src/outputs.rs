@@ -29,7 +29,7 @@ pub(crate) struct Outputs<'a> {
     pub(crate) steps: u64,
     /// The time of the checkpoint from which the run was resumed [s].
     pub(crate) resumed_at: Option<f64>,
-    /// Warnings about the call and the scene, and failures during the run; all of them have been reported already.
+    /// Warnings about the call and the scene, and failures during the run. All of them have been reported already.
     pub(crate) reported: Vec<Warning>,
     pub(crate) stop: &'a AtomicBool,
     /// Whether `final.csv` also contains the stress at every node.

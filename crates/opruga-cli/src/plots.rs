@@ -6,7 +6,7 @@ use opruga::blueprint::Recorded;
 use opruga::draw::{Axis, Chart, DrawError, Level, Line, Marker, OKABE_ITO, Panel, format_value};
 use opruga::io::tables::NumberTable;
 
-/// The largest number of lines in a panel; more bodies are drawn as their mean and their range.
+/// The largest number of lines in a panel. If there are more bodies, their mean and their range are drawn.
 const MOST_LINES: usize = 8;
 
 /// A table and the meanings of its columns.
@@ -184,7 +184,7 @@ fn mean_and_range(lines: &[Line]) -> Line {
     mean
 }
 
-/// Frames per second against vertices, with the thesis's 40 FPS: its figure 4.
+/// Frames per second against vertices, as in figure 4 of the thesis, with the 40 FPS of the thesis.
 pub(crate) fn of_bench(rows: &[Row]) -> Result<String, DrawError> {
     let points = |many: bool| -> Vec<[f64; 2]> {
         rows.iter().filter(|r| (r.bodies() > 1) == many).map(|r| [r.point().0, r.point().1]).collect()

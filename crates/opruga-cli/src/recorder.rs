@@ -57,7 +57,7 @@ pub(crate) struct Recorder {
     pub(crate) table: NumberTable,
     /// The table for the plots. For small runs it also has rows for times within frames.
     pub(crate) seen: NumberTable,
-    /// Whether the run is small enough for rows within frames.
+    /// Whether the run is small enough for table rows at times within frames.
     pub(crate) looks_within: bool,
     pub(crate) columns: Columns,
     /// Bodies with columns of their own, and the number of these columns.

@@ -133,7 +133,7 @@ impl core::fmt::Display for Found {
     }
 }
 
-/// The specifications of one kind; there may be one for each dimension.
+/// The specifications of one kind. There may be one for each dimension.
 struct Kind {
     kind: &'static str,
     summary: &'static str,

@@ -279,7 +279,7 @@ struct Progress {
     first: u64,
     frames: u64,
     quiet: bool,
-    /// The time at which the last line was written, from the start [s].
+    /// The time, from the start, at which the last line was written [s].
     last_line: f64,
 }
 
@@ -319,7 +319,7 @@ impl Progress {
     }
 }
 
-/// The failure if the recording cannot continue: the run ends, and its state is kept so that it can be resumed elsewhere.
+/// The failure if the recording cannot continue. The run ends, and its state is kept so that the run can be resumed elsewhere.
 fn unrecorded(error: WriteError) -> Failure {
     Failure::Write(error.advice(TapeHint::RunEnded))
 }

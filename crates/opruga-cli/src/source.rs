@@ -16,13 +16,13 @@ use std::sync::Arc;
 
 /// The text of a scene and its origin.
 pub(crate) struct Source {
-    /// The name of the scene: that of its file, without the ending.
+    /// The name of the scene: the name of its file without the ending.
     pub(crate) name: String,
     /// The file named in errors.
     pub(crate) file: String,
     /// The file of the scene, or `None` if the scene comes with the program or is stored in another file.
     pub(crate) path: Option<PathBuf>,
-    /// The bytes as they were read; the reader refuses invalid UTF-8 with its location.
+    /// The bytes as they were read. The reader refuses invalid UTF-8 and names its location.
     pub(crate) bytes: Vec<u8>,
     /// The location of the files that it names.
     pub(crate) files: Files,

@@ -16,7 +16,7 @@ use std::time::{Duration, SystemTime};
 const EVERY: Duration = Duration::from_millis(100);
 /// The number of consecutive checks that must show the same files, because editors write in several steps.
 const SETTLED: u32 = 2;
-/// After this many checks, a missing file is considered removed, and not just being replaced.
+/// A missing file counts as removed after this many checks. Until then, a program may just be replacing it.
 const GONE: u32 = 5;
 
 /// Runs a scene, and with `--watch` again whenever it changes.
@@ -46,7 +46,7 @@ pub(crate) fn check(call: &Check, registries: &Registries) -> Result<u8, Failure
 }
 
 /// Does the work now and after every change of the scene or of a file that it names; work that is still running at a change is stopped. After an
-/// error, it reports the error and waits for the next change.
+/// error, reports the error and waits for the next change.
 fn again_and_again(
     scene: &str,
     registries: &Registries,
@@ -111,7 +111,7 @@ fn named_files(scene: &str, registries: &Registries, outside: bool) -> (Vec<Path
     (files, stamps)
 }
 
-/// Waits until a file differs from its former state and all files have stayed the same for a while, then stops the present work and returns the index
+/// Waits until a file differs from its former state and all files have stayed the same for a while. Then stops the present work and returns the index
 /// of the file. Returns `None` if the work was stopped for another reason. A file that disappears and does not come back is reported once.
 fn wait_for_change(files: &[PathBuf], before: &[Option<Stamp>], json: bool) -> Option<usize> {
     let stop = interrupt::asked_to_stop();

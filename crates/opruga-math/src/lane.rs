@@ -44,12 +44,12 @@ pub trait Lane:
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Whether the mask is true anywhere.
     fn any(mask: Self::Mask) -> bool;
-    /// Natural logarithm, with the same bits everywhere; fast if the argument is positive and normal.
+    /// Natural logarithm, with the same bits everywhere. It is fast if the argument is positive and normal.
     fn ln(self) -> Self;
     /// Exponential function, with the same bits everywhere.
     fn exp(self) -> Self;
 
-    /// The smaller of the two; `other` if `self` is NaN.
+    /// The smaller of the two, or `other` if `self` is NaN.
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
         Self::select(self.less(other), self, other)
@@ -159,11 +159,11 @@ pub trait Register: Lane {
     fn load_single(from: &[f32]) -> Self;
     /// Reads the numbers at the given indices of a slice.
     fn gather(from: &[f64], indices: &[u32]) -> Self;
-    /// Reads rows of [`ROW`] numbers, one for each lane; the first register has the first numbers of all rows.
+    /// Reads rows of [`ROW`] numbers, one row for each lane. The first register has the first numbers of all rows.
     ///
-    /// If positions have been copied to rows first, this is four times faster than gathering column by column.
+    /// If positions have been copied to rows first, reading rows is four times faster than gathering column by column.
     fn gather_rows(from: &[f64], rows: &[u32]) -> [Self; ROW];
-    /// Writes consecutive rows of [`ROW`] numbers; the first register has the first numbers of all rows.
+    /// Writes consecutive rows of [`ROW`] numbers. The first register has the first numbers of all rows.
     fn store_rows(columns: [Self; ROW], to: &mut [f64]);
     /// The numbers shifted up by one lane, with the last number of the previous register in the first lane.
     fn after(self, before: Self) -> Self;
@@ -173,7 +173,8 @@ pub trait Register: Lane {
 
 /// Eight numbers computed side by side: a [`Lane`] that can be read from and written to columns of memory.
 ///
-/// Each type that implements it belongs to one set of vector instructions, and only [`crate::Simd::run`] creates its values.
+/// Each type that implements this trait belongs to one set of vector instructions, and only [`crate::Simd::run`] creates its
+/// values.
 pub trait Pack: Lane {
     /// The part of a pack that the processor computes at once.
     type Part: Register;

@@ -65,7 +65,7 @@ pub struct Replacing<'r> {
 
 /// An error, a warning, or a part of one.
 pub trait Message: std::error::Error + Send + Sync + 'static {
-    /// The stable code, such as `model.open_surface`; the code of a part of a text begins with `part.`.
+    /// The stable code, such as `model.open_surface`. The code of a part of a text begins with `part.`.
     fn code(&self) -> &'static str;
     /// The name of the variant, which distinguishes texts that share a code.
     fn variant(&self) -> &'static str;
@@ -306,8 +306,8 @@ pub fn if_any<T: fmt::Display>(part: &Option<T>) -> String {
 ///
 /// `#[value(…)]`, `#[parameters(…)]`, `#[allowed(…)]` and `#[hint(…)]` may follow, in this order: the text of the offending
 /// value, the names of the parameters of a scene to which the message refers, and the texts of the allowed values and of the
-/// hint. If one of the last two is empty, there are no allowed values or no hint. A message without parameters has the parameters
-/// of its parts. A message may be a field of another one, because the macro also implements [`IntoField`].
+/// hint. If one of the last two texts is empty, the message has no allowed values or no hint. A message without parameters has
+/// the parameters of its parts. A message may be a field of another one, because the macro also implements [`IntoField`].
 ///
 /// ```
 /// use opruga_math::words::number;

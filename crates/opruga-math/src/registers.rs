@@ -12,7 +12,8 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[repr(C, align(64))]
 pub(crate) struct Registers<R, const N: usize>([R; N]);
 
-/// Processes one register after the other. This is a macro, because closures are not inlined reliably.
+/// Processes one register after the other. The loop is a macro, because closures are not inlined
+/// reliably.
 macro_rules! each {
     ($r:ident => $value:expr) => {{
         let mut out = [R::zero(); N];

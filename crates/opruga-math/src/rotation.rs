@@ -23,14 +23,14 @@ const WELL_DETERMINED: f64 = 0.02;
 /// The relative change of f below which it has converged, because the next change would be the square of this one.
 const FOUND: f64 = 1e-9;
 
-/// The largest number of iterations. If the rotation is well determined, ten are enough. For strains of a few per cent, three are
-/// enough.
+/// The largest number of iterations. If the rotation is well determined, ten iterations are enough. For strains of a few per
+/// cent, three iterations are enough.
 const MOST_ITERATIONS: usize = 12;
 
 /// The rotation nearest to a matrix F: the R in F = R S for which det R = 1, S is symmetric and tr S is as large as possible.
 ///
-/// F may be degenerate or inverted. If R is not unique (the two smallest stretches of S add up to zero), the result in space is
-/// the rotation of the singular vectors, and in the plane the unit matrix.
+/// F may be degenerate or inverted. If R is not unique (the two smallest stretches of S add up to zero), the result is the
+/// rotation of the singular vectors in space, and the unit matrix in the plane.
 #[inline(always)]
 pub fn nearest_rotation<S: Lane, const D: usize>(f: &Matrix<S, D>) -> Matrix<S, D> {
     const { assert!(D == 2 || D == 3) }

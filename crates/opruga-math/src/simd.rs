@@ -70,8 +70,8 @@ impl Simd {
         }
         Simd::Baseline
     }
-    /// The set with this name (`sse2`, `avx2`, `avx512`), or the best one below it that this processor has; `scalar` is the set
-    /// that every machine of the target has.
+    /// The set with this name (`sse2`, `avx2`, `avx512`), or the best set below it that this processor has. The name `scalar`
+    /// means the set that every machine of the target has.
     pub fn named(name: &str) -> Option<Simd> {
         let wanted = match name {
             "scalar" | "sse2" => Simd::Baseline,
@@ -107,7 +107,7 @@ impl Simd {
     }
 }
 
-/// A piece of work that is compiled once per set of instructions; its `run` must be `#[inline(always)]`.
+/// A piece of work that is compiled once per set of instructions. Its `run` must be `#[inline(always)]`.
 pub trait Work {
     /// The result of the work.
     type Output;

@@ -1,7 +1,7 @@
 //! Singular values with proper rotations.
 //!
-//! F = U diag(σ) Vᵀ with det U = det V = 1 and decreasing |σ|. So the last σ is negative if F is inverted, and R = U Vᵀ is always
-//! a rotation (Irving, Teran, Fedkiw 2004).
+//! F = U diag(σ) Vᵀ with det U = det V = 1 and decreasing |σ|. The last σ is therefore negative if F is inverted, and R = U Vᵀ
+//! is always a rotation (Irving, Teran, Fedkiw 2004).
 //!
 //! One-sided Jacobi rotations (Hestenes 1958) make the columns of B = F V orthogonal: small singular values are as accurate as
 //! large ones. A matrix whose columns are already orthogonal does not change in any bit, so its result does not depend on its
@@ -15,7 +15,7 @@ use crate::matrix::{self, Matrix};
 pub struct Singular<S, const D: usize> {
     /// The left rotation.
     pub u: Matrix<S, D>,
-    /// The singular values, in decreasing size; the last has the sign of the determinant.
+    /// The singular values, in decreasing size. The last one has the sign of the determinant.
     pub sigma: [S; D],
     /// The right rotation.
     pub v: Matrix<S, D>,
@@ -29,7 +29,7 @@ impl<S: Lane, const D: usize> Singular<S, D> {
     }
 }
 
-/// The largest number of sweeps over all pairs of columns; six make any 3×3 matrix as accurate as rounding permits.
+/// The largest number of sweeps over all pairs of columns. Six make any 3×3 matrix as accurate as rounding permits.
 const MOST_SWEEPS: usize = 12;
 
 /// Columns whose cosine is less than this count as orthogonal.

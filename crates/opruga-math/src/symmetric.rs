@@ -2,10 +2,10 @@
 
 use crate::lane::Lane;
 
-/// The largest number of sweeps; seven make a 4×4 matrix as accurate as rounding permits.
+/// The largest number of sweeps. Seven make a 4×4 matrix as accurate as rounding permits.
 const MOST_SWEEPS: usize = 12;
 
-/// An off-diagonal entry below this fraction of the diagonal entries of its row and column counts as zero.
+/// An off-diagonal entry counts as zero below this fraction of the diagonal entries of its row and column.
 const ZERO: f64 = 1e-17;
 
 /// Eigenvalues, and eigenvectors in columns, of a symmetric matrix (cyclic Jacobi rotations).

@@ -1,5 +1,5 @@
 //! Threads that work on pieces in parallel and stay awake while they wait for more. Distributing pieces costs less than a
-//! microsecond; waking a sleeping thread takes fifty.
+//! microsecond, but waking a sleeping thread takes fifty microseconds.
 //!
 //! The thread that distributes pieces, the *leader*, works too. The leader waits for pieces that a member has taken, but never
 //! for members to arrive. If a member is late or never arrives, the others do more of the work.
@@ -13,7 +13,7 @@ use core::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 /// How often a waiting thread checks before it yields. These checks take about twenty microseconds.
 const LOOKS: u32 = 2_000;
 
-/// The largest number of pieces that are distributed one by one; if there are more, several are distributed at a time.
+/// The largest number of pieces that are distributed one by one. If there are more, several are distributed at a time.
 const MOST_PIECES: usize = u16::MAX as usize;
 
 /// The work on the piece with this number.
@@ -157,7 +157,7 @@ impl Team {
         });
     }
 
-    /// Does the work on parts of a slice that begin at the given indices, the first of which is 0.
+    /// Does the work on parts of a slice that begin at the given indices. The first index is 0.
     ///
     /// # Panics
     /// Panics if an index is smaller than the previous one or beyond the end.

@@ -3,7 +3,7 @@
 /// Writes a number in readable form: at most six significant digits without trailing zeros, and an exponent below 10⁻⁴ and from
 /// 10⁷ up.
 ///
-/// Tables and JSON contain all digits; sentences need only as many as a person reads.
+/// Tables and JSON contain all digits. Sentences need only as many digits as a person reads.
 #[must_use]
 pub fn number(x: f64) -> String {
     rounded(x, 6)

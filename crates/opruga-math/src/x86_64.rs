@@ -149,8 +149,8 @@ const ROOT_OF_HALF: i64 = 0x3fe6_a09e << 32;
 const SHIFT: i64 = (0x3ff0_0000 - 0x3fe6_a09e) << 32;
 /// The bits of the fraction.
 const FRACTION: i64 = (1 << 52) - 1;
-/// The bits of 2⁵²: a small whole number that is written to its last bits becomes a floating-point number. `BIAS` is then
-/// subtracted; it includes the bias of the exponent.
+/// The bits of 2⁵²: a small whole number that is written to its last bits becomes a floating-point number. `BIAS`, which includes
+/// the bias of the exponent, is then subtracted.
 const WHOLE: i64 = 0x4330_0000_0000_0000;
 const BIAS: f64 = 4_503_599_627_370_496.0 + 1023.0;
 

@@ -1,8 +1,8 @@
 //! `opruga bench elements`: measures the forces and Hessians of finite elements and of other methods.
 //!
 //! The body is a bent cube of tetrahedra, hexahedra or quadratic tetrahedra, or a bent ring, on one thread. Hessians are added to the matrix of a
-//! solver, which knows the positions of their blocks after the first time. Finite volumes, finite differences and shape matching are shown next to
-//! the existing model with which they are compared, measured in the same run.
+//! solver, which knows the positions of their blocks after the first time. Finite volumes, finite differences and shape matching are each shown
+//! next to an existing model, which is measured in the same run for comparison.
 
 use super::{Machine, best};
 use crate::arguments::BenchElements;
@@ -29,7 +29,7 @@ struct Row {
     forces: Vec<(&'static str, f64)>,
     hessian: f64,
     clamped_hessian: f64,
-    /// The time of the forces divided by that of the row with which this one is compared, both with the best vector instructions.
+    /// The time of the forces, divided by the time of the row with which this row is compared. Both times are with the best vector instructions.
     #[serde(skip_serializing_if = "Option::is_none")]
     ratio: Option<f64>,
 }
@@ -105,7 +105,7 @@ pub(crate) fn bench(call: &BenchElements, registries: &Registries) -> Result<u8,
     Ok(0)
 }
 
-/// The field of Young's modulus with its value in all measurements, 1e5 Pa.
+/// The field of Young's modulus, with the value that all measurements use, 1e5 Pa.
 fn modulus() -> (&'static str, Value) {
     ("youngs_modulus", Value::Number(1e5))
 }

@@ -1,5 +1,6 @@
-//! `opruga bench load`: measures how long it takes to make a body from a file with many triangles, compared with reading the bytes of the file, and
-//! to make a world with this body, including springs along its edges and the estimate of the stable step.
+//! `opruga bench load`: measures how long it takes to make a body from a file with many triangles, and to make a world with this body. The first
+//! time is compared with the time for reading the bytes of the file. The second includes springs along the edges and the estimate of the stable
+//! step.
 
 use super::{Machine, median, processor_time};
 use crate::arguments::BenchLoad;

@@ -10,7 +10,7 @@ pub(crate) mod vertices;
 use opruga::Simd;
 use opruga::math::{WIDTH, calibration};
 
-/// Processor time of this thread [s]; wall time if the system has no such clock.
+/// Processor time of this thread [s], or wall time if the system has no such clock.
 pub(crate) fn processor_time() -> f64 {
     #[cfg(unix)]
     {
@@ -25,7 +25,7 @@ pub(crate) fn processor_time() -> f64 {
     }
 }
 
-/// Processor time of all threads of this program [s]; that of this thread if the system has no such clock.
+/// Processor time of all threads of this program [s], or processor time of this thread if the system has no such clock.
 pub(crate) fn processor_time_of_all() -> f64 {
     #[cfg(unix)]
     {

@@ -37,7 +37,7 @@ fn count<T>(to: &AtomicU64, work: impl FnOnce() -> T) -> T {
     out
 }
 
-/// Registries with timed models; everything else is unchanged.
+/// Registries with timed models. Everything else is unchanged.
 pub(crate) fn registries(library: &Registries, spent: &Arc<Spent>) -> Registries {
     fn timed<const D: usize>(library: &Arc<Registry<D>>, spent: &Arc<Spent>) -> Arc<Registry<D>> {
         let mut out = Registry::clone(library);

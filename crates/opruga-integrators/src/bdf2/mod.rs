@@ -54,7 +54,7 @@ const STEP: PerBody<f64> = PerBody::new("bdf2.step");
 #[derive(Debug)]
 pub struct Bdf2Kind;
 
-/// The second-order backward differentiation formula. After a restart, its first step uses the first-order formula.
+/// The second-order backward differentiation formula. After a restart, the first step uses the first-order formula.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bdf2 {
     begins: bool,

@@ -27,11 +27,11 @@ const MOST_HALVINGS: u32 = 10;
 /// The cosine of the largest angle by which the curve may turn from step to step and within a step.
 const LEAST_COSINE: f64 = 0.5;
 
-/// The largest number of iterations of a step; if more are needed, the step is too long.
+/// The largest number of iterations of a step. If more are needed, the step is too long.
 const ITERATIONS: u32 = 25;
 
-/// Moves by the given length along the curve, from the state at the start of the step and `load`; `workspace.u` is then the
-/// displacement. Returns the load, which is 1 if the end was reached.
+/// Moves by the given length along the curve, from the state at the start of the step and `load`. Afterwards, `workspace.u` is
+/// the displacement. Returns the load, which is 1 if the end was reached.
 pub(super) fn follow<const D: usize>(
     rule: &Equilibrium,
     system: &mut System<D>,
@@ -83,7 +83,7 @@ struct Tried {
     unloaded: bool,
 }
 
-/// Whether the angle between two vectors is at most the angle by which the curve may turn; a zero vector agrees with every
+/// Whether the angle between two vectors is at most the angle by which the curve may turn. A zero vector agrees with every
 /// vector.
 fn agree(a: &[f64], b: &[f64]) -> bool {
     // Written so that the result is false for NaN.

@@ -28,8 +28,8 @@
 //! may hold the body too. Within the iteration, a direction without stiffness then gets a billionth of the stiffness of the
 //! others. If the iteration still fails, the error names the motions that contact leaves free.
 //!
-//! Other bodies may hold a body too, but how they do so is not known in advance. So the common equilibrium of touching bodies is
-//! found by the caller, with the forces and the matrix of each body ([`OpenStep`]).
+//! Other bodies may hold a body too, but it is not known in advance how they hold it. The caller therefore finds the common
+//! equilibrium of touching bodies, with the forces and the matrix of each body ([`OpenStep`]).
 //!
 //! Source: Riks 1979; Crisfield 1981; for the direction along the curve, Feng, Perić, Owen 1996.
 

@@ -11,8 +11,8 @@ pub(super) fn whole<const D: usize>(system: &System<D>) -> Vec<usize> {
     (0..system.nodes).collect()
 }
 
-/// The pieces of a body, each as a list of nodes in order; pieces are ordered by their first nodes. If a model has no value in
-/// the present state, the body counts as one piece.
+/// The pieces of a body, each as an ordered list of nodes. The pieces are ordered by their first nodes. If a model has no
+/// value in the present state, the body counts as one piece.
 pub(crate) fn pieces<const D: usize>(system: &System<D>) -> Vec<Vec<usize>> {
     let mut ties = Ties { tied_to: whole(system) };
     let rest = Columns::zeros(system.index_count());

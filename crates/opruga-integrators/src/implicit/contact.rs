@@ -86,7 +86,7 @@ impl<const D: usize> Contact<D> {
     pub(super) fn rubs(&self) -> bool {
         self.hold == Hold::Slip && self.touch.friction > 0.0
     }
-    /// The displacement along the surface in the stage, relative to that of the surface.
+    /// The displacement along the surface in the stage, relative to the displacement of the surface.
     pub(super) fn slide(&self, u: &[f64], theta: f64, x0: &[f64]) -> [f64; D] {
         let (at, carried) = (self.node * D, &self.touch.carried);
         self.along(&core::array::from_fn(|d| u[at + d] - theta * (carried[d] - x0[at + d])))
@@ -233,7 +233,7 @@ impl<const D: usize> Contacting<D> {
         changed
     }
 
-    /// Removes the held directions from the free ones, and writes how far pinned nodes have to move in the stage.
+    /// Removes the held directions from the free directions, and writes how far pinned nodes have to move in the stage.
     #[allow(clippy::too_many_arguments)]
     pub(crate) fn hold(
         &self,

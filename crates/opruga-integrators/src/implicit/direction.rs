@@ -44,7 +44,7 @@ const MOST_ROUNDS: u32 = 12;
 /// The relative error of the friction force that may remain in the first iteration.
 const FRICTION_TOLERANCE: f64 = 1e-3;
 
-/// Computes b = −(r − friction) − A d from the residual r and the prescribed displacements d; `trial` is a buffer.
+/// Computes b = −(r − friction) − A d from the residual r and the prescribed displacements d. `trial` is a buffer.
 pub(crate) fn wanted_forces<const D: usize>(
     threads: usize,
     mixture: &Mixture<D>,

@@ -95,8 +95,8 @@ pub(crate) fn exactly(settings: &Settings) -> Settings {
     Settings { real_time: false, iterations: MOST_ITERATIONS, ..*settings }
 }
 
-/// Whether the incremental potential of the result is above that of the initial positions with only held nodes moved. Returns
-/// true if the potential is NaN, or if forces without a potential may have raised it.
+/// Whether the incremental potential of the result is above the potential of the initial positions, from which only held nodes
+/// were moved. Returns true if the potential is NaN, or if forces without a potential may have raised it.
 fn has_risen<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

@@ -9,8 +9,8 @@
 //!
 //! Among all motions with these pins, the new motion is the nearest to the previous one in the norm of M. If the pins are at
 //! rest, the new motion never has more energy than the previous one. Within the step pinned nodes do not accelerate, whatever
-//! the rule, and at its end they still have the velocity w. Otherwise each rule would treat a jump of velocity within a step
-//! differently, and the motion would depend on the rule.
+//! the rule is. At the end of the step they still have the velocity w. Otherwise each rule would treat a jump of velocity
+//! within a step differently, and the motion would depend on the rule.
 //!
 //! With lumped masses no impulse reaches a neighbour, so none of this is needed.
 
@@ -21,7 +21,7 @@ use opruga_solve::blocks::{Block, isotropic};
 use opruga_solve::{BlockJacobi, Directions, conjugate_gradients};
 
 /// Gives pinned nodes the velocities for the coming step of length `h`, and their neighbours the velocities that follow from
-/// the masses. The change of kinetic energy is work of the pins. Afterwards `kick` holds the change of every velocity; it is
+/// the masses. The change of kinetic energy is work of the pins. Afterwards `kick` holds the change of every velocity. It is
 /// empty if no velocity has changed. Returns the previous velocities if they have changed.
 pub(super) fn take_hold<const D: usize>(system: &mut System<D>, kick: &mut Vec<f64>, h: f64) -> Option<Columns<D>> {
     kick.clear();

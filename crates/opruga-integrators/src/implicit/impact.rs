@@ -12,8 +12,8 @@ use opruga_solve::blocks::{Block, isotropic, nodes};
 const MOVES_ALONG: f64 = 0.1;
 
 impl<const D: usize> Contacting<D> {
-    /// Moves nodes that are still inside an obstacle to its surface, and records the energy that they gain; `reaction` is the
-    /// residual on the nodes [N].
+    /// Moves nodes that are still inside an obstacle to the surface of the obstacle, and records the energy that the nodes
+    /// gain. The residual on the nodes is `reaction` [N].
     pub(crate) fn expel(
         &self,
         system: &mut System<D>,

@@ -41,7 +41,8 @@ const MOST_PRODUCTS: u32 = 20_000;
 /// pair of terms one more number.
 const MOST_PARTS: usize = 64;
 
-/// After this many products the complete factor is used: a nearly incompressible solid needs thousands with an incomplete one.
+/// After this many products, the complete factor is used. A nearly incompressible solid needs thousands of products with an
+/// incomplete factor.
 const MANY_PRODUCTS: u32 = 1000;
 
 /// The fraction of the residual that the linear solver may leave in the first iteration.
@@ -296,7 +297,7 @@ impl<const D: usize> Linear<D> {
         (self.size_at(mixture, node) - D as f64 * mixture.sigma * mixture.mass_at(node)).larger(0.0)
     }
 
-    /// Solves for the correction; b and the result are in the free directions. Returns the number of products.
+    /// Solves for the correction. The vector b and the result are in the free directions. Returns the number of products.
     pub(crate) fn solve(
         &mut self,
         mixture: &Mixture<D>,

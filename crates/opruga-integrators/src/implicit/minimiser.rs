@@ -1,7 +1,7 @@
 //! The interface of methods that find the stage of a rule.
 //!
-//! A rule defines its stage by a [`Balance`]; a minimiser finds it and does not depend on the rule. All exact minimisers find
-//! the same stage. The guards of a step (file `step`) wrap any of them.
+//! A rule defines its stage by a [`Balance`]. A minimiser finds this stage and does not depend on the rule. All exact
+//! minimisers find the same stage. The guards of a step (file `step`) wrap any minimiser.
 
 use super::balance::{Balance, Solved};
 use super::workspace::Workspace;

@@ -7,7 +7,7 @@
 //!
 //! z' = z + f − Σ γⱼ (Δzⱼ + Δfⱼ),  γ = argmin |f − Σ γⱼ Δfⱼ|.
 //!
-//! On a linear problem this is the generalised minimal residual method (GMRES).
+//! On a linear problem, Anderson mixing is the generalised minimal residual method (GMRES).
 //!
 //! Source: Anderson 1965; Walker and Ni, *Anderson acceleration for fixed-point iterations*, SIAM J. Numer. Anal. 49 (2011).
 
@@ -19,7 +19,7 @@ const MOST: usize = 8;
 /// A difference adds no information if its component orthogonal to the others is below this fraction of its size.
 const NOTHING_NEW: f64 = 1e-6;
 
-/// The recorded iterations, in which nothing but the state has changed.
+/// The recorded iterations, between which nothing but the state has changed.
 #[derive(Debug, Default)]
 pub(crate) struct Mixing {
     /// The previous state and its change. Both are empty if there is no previous state.

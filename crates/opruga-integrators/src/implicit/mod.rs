@@ -39,11 +39,11 @@
 //! | `impact` | effects of obstacles at the end of a step: velocities and the ledger |
 //!
 //! **Newton.** The matrix is σM + βC + K with C = −∂F/∂v and K = ∂²U/∂x∂x. The exact matrix is used while it is positive
-//! definite. Otherwise the block of each element is used without its negative eigenvalues; every direction then leads downhill.
-//! The derivative of the damping force with respect to position is omitted from the matrix, and mixing of iterations compensates
-//! for it. The line search accepts a step if the slope of Φ along it, minus the work of friction and of the constraints, has
-//! fallen (Hager and Zhang 2005, approximate Wolfe condition) and, if Φ is known, Φ minus that work has not risen. The iteration
-//! ends when the last correction is below `tolerance` times the extent of the body.
+//! definite. Otherwise the block of each element is used without its negative eigenvalues, so that every direction leads
+//! downhill. The derivative of the damping force with respect to position is omitted from the matrix, and mixing of iterations
+//! compensates for it. The line search accepts a step if the slope of Φ along it, minus the work of friction and of the
+//! constraints, has fallen (Hager and Zhang 2005, approximate Wolfe condition) and, if Φ is known, Φ minus that work has not
+//! risen. The iteration ends when the last correction is below `tolerance` times the extent of the body.
 //!
 //! **Contact.** Obstacles hold nodes by constraints, not by penalties: a node that would end inside an obstacle is moved to the
 //! surface within the iteration. All other nodes follow by elasticity, and the force of the constraint follows from the

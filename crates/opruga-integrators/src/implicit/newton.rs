@@ -314,8 +314,8 @@ impl<'a> Iteration<'a> {
         Ok(self.solved.converged)
     }
 
-    /// Estimates how far rounding may have moved the result, or how large a displacement it hides if the iteration did not
-    /// converge.
+    /// Estimates how far rounding may have moved the result. If the iteration did not converge, estimates how large a
+    /// displacement rounding hides.
     fn estimate_error<const D: usize>(&mut self, system: &mut System<D>, workspace: &mut Workspace<D>) {
         let Iteration { balance, settings, size, .. } = *self;
         if !self.solved.converged {
@@ -334,8 +334,8 @@ impl<'a> Iteration<'a> {
     }
 }
 
-/// How far the residual would move a node with the matrix of the result [m]; the earlier estimate used an earlier matrix.
-/// Returns `None` if the matrix is not positive definite, or if obstacles hold nodes.
+/// How far the residual would move a node [m], computed with the matrix of the result. The earlier estimate used an earlier
+/// matrix. Returns `None` if the matrix is not positive definite, or if obstacles hold nodes.
 fn left_over<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,

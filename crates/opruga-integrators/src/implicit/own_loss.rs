@@ -6,7 +6,7 @@
 //!
 //! J = h i F + M m = M Δv − h i (r + R).
 //!
-//! With the work W of loads and pins minus that of damping, as recorded in the ledger, the rule dissipates
+//! With W, the work of loads and pins minus the work of damping, as recorded in the ledger, the rule dissipates
 //!
 //! L = W + U₀ − U₁ − v̄·J.
 //!
@@ -20,9 +20,9 @@
 //! | BDF2 | ½ Δv·M Δv − ⅓ v₁·M Δ₋v − ⅓ g₁·Δ₋x + U₀ − U₁ + g₁·Δx |
 //! | generalised-α | U₀ − U₁ + g_f·Δx + (1 − γ − α_m) Δx·M Δa + h² (β − γ/2) (½ Δ(a·M a) + (γ − ½) Δa·M Δa) |
 //!
-//! Δ goes from n to n + 1 and Δ₋ from n − 1 to n; g_f is g in the averaged state, which is (1 − α_f) g₁ + α_f g₀ if forces are
-//! linear. Tests compare the rules with these formulas. No channel of the ledger contains h i v̄·r, the work of r, so this work
-//! remains unexplained. The contact code records the work of R.
+//! Δ goes from n to n + 1 and Δ₋ from n − 1 to n. The gradient g_f is g in the averaged state, which is (1 − α_f) g₁ + α_f g₀
+//! if forces are linear. Tests compare the rules with these formulas. No channel of the ledger contains h i v̄·r, the work of
+//! r, so this work remains unexplained. The contact code records the work of R.
 //!
 //! Pinned nodes do not count: the work of pins is recorded with the kinetic energy of these nodes.
 
@@ -31,7 +31,7 @@ use super::workspace::Workspace;
 use opruga_core::system::{System, Work8};
 use opruga_math::WIDTH;
 
-/// The work of loads and pins minus that of damping, as recorded so far [J].
+/// The work of loads and pins minus the work of damping, as recorded so far [J].
 pub(super) fn given(work: &Work8) -> [f64; WIDTH] {
     core::array::from_fn(|lane| work.user[lane] - work.damping[lane])
 }

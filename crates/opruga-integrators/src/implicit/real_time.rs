@@ -1,12 +1,13 @@
-//! The real-time setting: few iterations, with a matrix that is kept as long as iterations with it find the end of a step.
+//! The real-time setting makes few iterations, with a matrix that is kept as long as iterations with it find the end of a step.
 //!
-//! Every iteration balances the exact forces; the matrix only determines the correction. If the matrix belongs to another shape
+//! Every iteration balances the exact forces. The matrix only determines the correction. If the matrix belongs to another shape
 //! of the body, or if its equations are solved only approximately, a part of the residual remains, and the next step begins
 //! with it. At rest no residual remains. The iteration begins with the positions to which the acceleration of the previous step
 //! would lead, and with the contact forces of that step (`contact_forces`).
 //!
 //! The residual of a step shows whether the matrix is still good enough. Near obstacles the residual comes mostly from changes
-//! of contacts. The measure is then the difference between the forces after an iteration and those that the matrix predicted.
+//! of contacts. Near obstacles, the measure is therefore the difference between the forces after an iteration and the forces
+//! that the matrix predicted.
 //!
 //! Residuals are measured in the norm of the inverse diagonal blocks of the matrix, √(r·B r).
 
@@ -47,9 +48,9 @@ const NOTHING: f64 = 1e-9;
 /// The largest number of products with the matrix in an iteration.
 const PRODUCTS: u32 = 1000;
 
-/// Iterations with more products than this count as cut off. A body that needs so many products is ill-conditioned. Stiff
-/// motions dominate the residual of such a body, so the residual is a poor measure of slow motions such as the bending of a
-/// slender body.
+/// An iteration counts as cut off if it has more products than this. A body that needs so many products is ill-conditioned.
+/// Stiff motions dominate the residual of such a body, so the residual is a poor measure of slow motions such as the bending of
+/// a slender body.
 const MANY_PRODUCTS: u32 = 120;
 
 /// The shape in which the matrix was made [m], the velocity at the start of the previous step [m/s], and the length of that
@@ -394,9 +395,9 @@ fn conclude<const D: usize>(
     Ok((solved, trust))
 }
 
-/// Applies the step, including prescribed displacements; `workspace.reaction` is then the force of the constraints. For bodies
-/// that are free or near obstacles, returns the difference r − (r₀ + A Δ) between the present forces and the forces that the
-/// matrix predicted. Here r₀ + A Δ is the residual of the linear solver; if no node is held, it counts as zero.
+/// Applies the step, including prescribed displacements. Afterwards `workspace.reaction` is the force of the constraints. For
+/// bodies that are free or near obstacles, returns the difference r − (r₀ + A Δ) between the present forces and the forces that
+/// the matrix predicted. Here r₀ + A Δ is the residual of the linear solver. If no node is held, this residual counts as zero.
 fn go<const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

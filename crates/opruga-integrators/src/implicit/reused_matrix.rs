@@ -63,7 +63,8 @@ impl<const D: usize> ReusedMatrix<D> {
         })
     }
 
-    /// Makes the matrix for `reference`, the shape that was evaluated last. `is_new` is true if the iteration is at that shape.
+    /// Makes the matrix for `reference`, the shape that was evaluated last. `is_new` is true if the iteration is at the shape
+    /// `reference`.
     pub(crate) fn make(&mut self, linear: &mut Linear<D>, mixture: &Mixture<D>, reference: &Columns<D>, is_new: bool) {
         linear.assemble(mixture);
         self.packed.take(linear.full(), mixture.system.threads);

@@ -1,11 +1,11 @@
 //! The balance of a stage in the rigid motions of a body that nothing prevents.
 //!
-//! Positions have sixteen digits. Rounding them causes forces of about ε |x| times the stiffness of a node. Such a force may be
-//! a multiple of the weight of the node: E ε |x|/(ρ g ℓ²) times this weight in a body with cells of size ℓ. The residual of a
-//! single node is then meaningless. But at all positions, the forces between nodes and their moments sum to zero over a piece
-//! of a body. The rounding of that sum is smaller by another ε. So the sum of the residuals, which consists of weight, loads
-//! and inertia, is known even if its terms are not. A matrix whose stiffness is 1/ε times its mass is also useless for these
-//! motions, since the sums of its rows are rounding errors.
+//! Positions have sixteen digits. Rounding the positions causes forces of about ε |x| times the stiffness of a node. Such a
+//! force may be a multiple of the weight of the node: E ε |x|/(ρ g ℓ²) times this weight in a body with cells of size ℓ. The
+//! residual of a single node is then meaningless. But at all positions, the forces between nodes and their moments sum to zero
+//! over a piece of a body. The rounding of that sum is smaller by another ε. The sum of the residuals, which consists of
+//! weight, loads and inertia, is therefore known even if its terms are not. A matrix whose stiffness is 1/ε times its mass is
+//! also useless for these motions, since the sums of its rows are rounding errors.
 //!
 //! For each piece (`pieces`) let φ be the motions t + ω × (x − c) of the piece that neither pins nor obstacles prevent. The
 //! motions φ are orthonormal with respect to the masses. The motion φ a that balances the piece follows from

@@ -12,7 +12,7 @@ use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_math::Lane;
 
-/// The largest number of rigid displacements; two are enough unless rotations are large.
+/// The largest number of rigid displacements. Two are enough unless rotations are large.
 const MOST_MOVES: usize = 8;
 
 /// Whether the result of Newton's method is acceptable in the rigid motions. The rigid motions may be wrong if the matrix is

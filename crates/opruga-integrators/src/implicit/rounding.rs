@@ -91,8 +91,8 @@ pub(super) fn visible(displacement: f64, extent: f64) -> f64 {
     if displacement > VISIBLE * extent { displacement } else { 0.0 }
 }
 
-/// Whether the residual of statics is a small fraction of the loads. If not, it may consist of rounding errors, which are as
-/// large as the loads far from the origin. Further iterations average these errors out, or [`settle`] reduces them.
+/// Whether the residual of statics is a small fraction of the loads. If not, the residual may consist of rounding errors, which
+/// far from the origin are as large as the loads. Further iterations average these errors out, or [`settle`] reduces them.
 pub(super) fn carries<const D: usize>(system: &mut System<D>, workspace: &mut Workspace<D>, balance: &Balance) -> bool {
     if balance.sigma != 0.0 {
         return true;
@@ -186,8 +186,8 @@ pub(super) fn roundings_of(contrast: f64, size: f64) -> f64 {
     ROUNDING * contrast * size
 }
 
-/// The forces in the free directions due to rounding of positions, with the last matrix: the root of the sum of their squares
-/// [N]. Inertia forces depend on displacements, whose rounding is smaller.
+/// The size of the forces in the free directions that rounding of positions causes, with the last matrix: the root of the sum
+/// of their squares [N]. Inertia forces depend on displacements, whose rounding is smaller.
 pub(super) fn rounding_of_forces<const D: usize>(workspace: &Workspace<D>, mixture: &Mixture<D>) -> f64 {
     let Workspace { linear, x0, free, projectors, .. } = workspace;
     let size = x0.iter().fold(0.0, |most: f64, x| x.abs().larger(most));

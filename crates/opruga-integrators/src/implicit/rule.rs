@@ -26,7 +26,7 @@ pub(crate) trait Rule<const D: usize>: Copy + core::fmt::Debug + Send + Sync + '
         None
     }
     /// The rule for a step in which other bodies push, or may push. The end of the step is its stage, and the body reaches it
-    /// with the velocity at the end. So bodies that come to rest on one another remain at rest.
+    /// with the velocity at the end. Bodies that come to rest on one another therefore remain at rest.
     fn pushed(self) -> Self {
         self
     }

@@ -10,9 +10,9 @@ use opruga_core::system::System;
 /// The fraction of the residual at which an iteration is good enough, and the fraction that may remain after the last one.
 const ENOUGH: [f64; 2] = [0.2, 0.2];
 
-/// The same fractions for a rule that damps slow motions little. The residual of such a rule acts with a delay, in the next
-/// step, and pushes in the direction of the motion. With a fiftieth as the first fraction, a beam of 10 × 2 quadrilaterals
-/// still gained energy under `bdf2`.
+/// The same fractions, for a rule that damps slow motions only a little. The residual of such a rule acts with a delay, in
+/// the next step, and pushes in the direction of the motion. With a fiftieth as the first fraction, a beam of 10 × 2
+/// quadrilaterals still gained energy under `bdf2`.
 const ENOUGH_UNDAMPED: [f64; 2] = [1e-3, 0.05];
 
 /// How the equations of a step are solved.
@@ -20,7 +20,7 @@ const ENOUGH_UNDAMPED: [f64; 2] = [1e-3, 0.05];
 pub(crate) struct Settings {
     /// The largest number of Newton iterations.
     pub(crate) iterations: u32,
-    /// The largest number of iterations for a step whose end is found together with those of other bodies.
+    /// The largest number of iterations for a step whose end is found together with the ends of other bodies.
     pub(crate) common_iterations: u32,
     /// The correction below which the iteration ends, as a fraction of the extent of the body.
     pub(crate) tolerance: f64,

@@ -1,6 +1,6 @@
 //! A step of an implicit rule, from its start to its entry in the ledger.
 //!
-//! Guards wrap the minimiser. From the outside to the inside, they are:
+//! Guards wrap the minimiser. From the outside to the inside, the guards are:
 //!
 //! | guard | what it refuses, and what it does instead | where |
 //! |---|---|---|
@@ -125,7 +125,7 @@ impl<R: Rule<D>, const D: usize> Integrator<D> for Implicit<R> {
 }
 
 impl<R> Implicit<R> {
-    /// Makes a step, whose stage is found by a given minimiser.
+    /// Makes a step whose stage is found by a given minimiser.
     pub(crate) fn step_by<const D: usize>(
         &self,
         minimiser: &dyn Minimiser<D>,

@@ -25,7 +25,7 @@ const MOST_LIFTS: u32 = 32;
 /// The largest depth of a node in equilibrium, as a fraction of the extent of the body.
 const LEFT: f64 = 1e-6;
 
-/// If a body without pins begins deep in obstacles, moves it out of them as a whole, in `workspace.u`, before the iteration.
+/// If a body without pins begins deep in obstacles, moves the whole body out of them in `workspace.u`, before the iteration.
 /// Moving deep nodes onto the surface one by one would tear the body.
 pub(crate) fn lift_out<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, h: f64) {
     if system.contacts.is_none() || workspace.pin_displacement.iter().any(|displacement| !displacement.is_nan()) {
@@ -80,7 +80,7 @@ fn deepest<const D: usize>(
     deepest
 }
 
-/// The largest fraction of the step in `workspace.step` that may be applied in statics; the largest displacement of the step is
+/// The largest fraction of the step in `workspace.step` that may be applied in statics. The largest displacement of the step is
 /// `longest`. The limited step is not longer than the body and does not lead through obstacles.
 pub(super) fn part_without_inertia<const D: usize>(
     system: &System<D>,

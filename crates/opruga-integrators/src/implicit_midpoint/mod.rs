@@ -6,15 +6,15 @@
 //! oscillation stays constant at any h ω, and linear and angular momentum are conserved to the tolerance of the iteration.
 //! Motion that is too fast for the step is not damped, but slowed down to half a period per step.
 //!
-//! The stage is the midpoint. A step of backward Euler with half the length leads to it, and the second half extrapolates this
-//! motion in a straight line. If forces are linear, energy is conserved exactly. A stiff spring that rotates within a step
-//! exchanges energy with its stretch, which limits the step in practice.
+//! The stage is the midpoint. A step of backward Euler with half the length leads to the midpoint, and the second half
+//! extrapolates this motion in a straight line. If forces are linear, energy is conserved exactly. A stiff spring that rotates
+//! within a step exchanges energy with its stretch, which limits the step in practice.
 //!
-//! In contact the vibration of a stiff body would never end, and friction would act on this vibration. So steps in which
-//! obstacles hold nodes have their stage at θ = 1/(1 + 0.9) instead of ½: in each step, the amplitude of motion much faster
-//! than the step is multiplied by (1 − θ)/θ = 0.9, and that of an oscillation with small hω loses the fraction (θ − ½) h²ω²
-//! (the θ-method; Hughes 1987, 8.2). Such a step may gain energy when stiff parts rotate far. A step that gains energy is then
-//! made by backward Euler instead.
+//! In contact the vibration of a stiff body would never end, and friction would act on this vibration. Steps in which
+//! obstacles hold nodes therefore have their stage at θ = 1/(1 + 0.9) instead of ½. In each step, the amplitude of motion much
+//! faster than the step is multiplied by (1 − θ)/θ = 0.9, and the amplitude of an oscillation with small hω loses the fraction
+//! (θ − ½) h²ω² (the θ-method; Hughes 1987, 8.2). Such a step may gain energy when stiff parts rotate far. A step that gains
+//! energy is then made by backward Euler instead.
 //!
 //! Source: Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1 and IV.2.
 
@@ -48,7 +48,7 @@ than the step decreases by a tenth in each step, so that bodies come to rest. Bo
 #[derive(Debug)]
 pub struct ImplicitMidpointKind;
 
-/// The implicit midpoint rule; in contact, its stage is a little later than the midpoint.
+/// The implicit midpoint rule. In contact, its stage is a little later than the midpoint.
 #[derive(Clone, Copy, Debug)]
 pub struct ImplicitMidpoint(pub(crate) Theta);
 

@@ -32,7 +32,7 @@ fn energy_of_a_nonlinear_spring_stays_bounded() {
     testing::check_bounded_energy(&rule(), 2.0);
 }
 
-/// With converged Newton iterations, angular momentum is conserved to 1e-10 (validation B4), with damping too.
+/// With converged Newton iterations, angular momentum is conserved to 1e-10 (validation B4), even with damping.
 #[test]
 fn momentum_is_kept() {
     for h in [0.01, 0.1] {

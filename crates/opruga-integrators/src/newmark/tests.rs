@@ -59,8 +59,8 @@ fn the_spectral_radius_is_the_one_that_was_asked_for() {
     }
 }
 
-/// The rule that conserves every oscillation has no limit and lets no oscillation grow, damped or not; rounding does not count
-/// as growth.
+/// The rule that conserves every oscillation has no limit and lets no oscillation grow, whether damped or not. Rounding does
+/// not count as growth.
 #[test]
 fn a_radius_of_one_lets_nothing_grow() {
     for rho in [0.0, 0.5, 0.9, 0.99, 0.999, 1.0] {

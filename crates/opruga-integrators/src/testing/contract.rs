@@ -1,5 +1,5 @@
-//! The contract of every integrator: it applies obstacles once per step and with the positions before the step, moves pins,
-//! keeps the ledger and the clock, and gives the same bits with any vector instructions.
+//! The contract of every integrator. It applies obstacles once per step and with the positions before the step, moves pins, keeps
+//! the ledger and the clock, and gives the same bits with any vector instructions.
 
 use super::{oscillator, problems, run, state, two_nodes};
 use crate::explicit_euler::ExplicitEuler;
@@ -126,7 +126,7 @@ fn the_ledger_closes_at_the_order_of_the_rule() {
     }
 }
 
-/// A node that is moved along a straight path: the work of the pin is in the ledger, which closes at the order of the integrator.
+/// A node is moved along a straight path. The work of the pin is in the ledger, which closes at the order of the integrator.
 #[test]
 fn the_work_of_pins_is_in_the_ledger() {
     for (rule, order) in &rules() {

@@ -32,7 +32,7 @@ fn estimated(system: &System<2>, integrator: &dyn Integrator<2>) -> Stability {
     estimate(system, integrator).unwrap()
 }
 
-/// Whether small disturbances of an equilibrium grow. If they do not, they stay within the linear range.
+/// Whether small disturbances of an equilibrium grow. Disturbances that do not grow stay within the linear range.
 fn grows(mut system: System<2>, integrator: &dyn Integrator<2>, h: f64, steps: usize) -> bool {
     system.plan(integrator.work_columns());
     let at_rest = system.state.x.clone();

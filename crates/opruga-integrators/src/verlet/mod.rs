@@ -2,12 +2,12 @@
 //!
 //! x₁ = x₀ + h v₀ + ½h² a₀,  v* = v₀ + h a₀,  a₁ = a(x₁, v*),  v₁ = v₀ + ½h (a₀ + a₁).
 //!
-//! Second order. Forces that depend on the velocity are evaluated at the end with the *predicted* velocity v*, whose error
-//! O(h²) enters v₁ as O(h³), so the order stays 2 with damping. With the more usual half-kick velocity v₀ + ½h a₀, the order
-//! drops to 1.
+//! Second order. Forces that depend on the velocity are evaluated at the end with the *predicted* velocity v*. Its error O(h²)
+//! enters v₁ as O(h³), so the order stays 2 with damping. With the more usual half-kick velocity v₀ + ½h a₀, the order drops to
+//! 1.
 //!
 //! Without damping it is the leapfrog method: it conserves the symplectic form, its energy stays within O(h²) for ever, and it is
-//! stable for h ω < 2. With damping the stable region is smaller; a mode without stiffness is stable for h c < 2. Free fall is
+//! stable for h ω < 2. With damping the stable region is smaller. A mode without stiffness is stable for h c < 2. Free fall is
 //! exact.
 //!
 //! **Two forces per step.** Many programs save one force by reusing a₁ as the a₀ of the next step. Here a₁ is not reused, because

@@ -5,7 +5,8 @@ use crate::vectors::{cross, dot, in_dimension, in_space, inverse, minus, scaled}
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;
 
-/// Nodes a and b are on the edge, c and d are opposite to it; parameters k [N·m], c [N·m·s], cos θ₀, sin θ₀.
+/// Nodes a and b are on the edge, and nodes c and d are opposite to it. The parameters are k [N·m], c [N·m·s], cos θ₀ and sin
+/// θ₀.
 ///
 /// ```text
 ///         c            e = b − a
@@ -16,8 +17,8 @@ use opruga_math::Lane;
 ///        \ /           ∂θ/∂c = −|e| n₁/|n₁|²,  ∂θ/∂d = −|e| n₂/|n₂|²
 ///         d
 /// ```
-/// ∂θ/∂a and ∂θ/∂b follow: moving the edge along a normal is the same as moving c or d the opposite way, in proportion to their
-/// positions along the edge.
+/// ∂θ/∂a and ∂θ/∂b follow, because moving the edge along a normal is the same as moving c or d the opposite way, in proportion
+/// to their positions along the edge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hinge;
 

@@ -11,9 +11,9 @@
 //!
 //! Two closed forms hold for the outline with k = EI/ℓ: a ring buckles under the outer pressure 3EI/R³ (Lévy), and a clamped
 //! strip bends by PL³/3EI. A shell that is rolled into a cylinder has the flexural rigidity E t³/12. On a regular triangular
-//! lattice this holds in every direction, with a Poisson's ratio of −1/3 in bending (Seung and Nelson 1988). Hinges measure
-//! only the angles across edges, so a shell that is free to warp deflects more than a plate: by an eighth on the regular
-//! lattice and by a quarter on grids of right triangles.
+//! lattice, a shell has this rigidity in every direction, with a Poisson's ratio of −1/3 in bending (Seung and Nelson 1988).
+//! Hinges measure only the angles across edges, so a shell that is free to warp deflects more than a plate: by an eighth on
+//! the regular lattice and by a quarter on grids of right triangles.
 //!
 //! Limits: chains in space resist bending but not twist, and their damping does not act on a change of the plane in which they
 //! bend. A hinge of such a chain that is bent at rest exerts no force when it is exactly straight.

@@ -59,7 +59,7 @@ impl Turn {
         }
         [in_dimension(&out[0]), in_dimension(&out[1]), in_dimension(&out[2])]
     }
-    /// The unit normal: the third axis in the plane; zero in space if the edges are collinear.
+    /// The unit normal. In the plane it is the third axis. In space it is zero if the edges are collinear.
     #[inline(always)]
     fn unit_normal<S: Lane, const D: usize>(bent: &Bent<S>) -> [S; 3] {
         if D == 2 {

@@ -37,9 +37,9 @@ pub struct BoundaryElement<const D: usize> {
 #[derive(Debug)]
 struct Body {
     stiffness: Arc<Stiffness>,
-    /// The factor from the forces of the scaled stiffness to those of the body [N/m].
+    /// The factor from the forces of the scaled stiffness to the forces of the body [N/m].
     strength: f64,
-    /// The factor from the scaled stresses to those of the body [Pa/m].
+    /// The factor from the scaled stresses to the stresses of the body [Pa/m].
     stress: f64,
     law: Constants,
 }
@@ -144,7 +144,7 @@ impl<const D: usize> BoundaryElement<D> {
     fn of_body(&self) -> usize {
         STATES * self.of_state()
     }
-    /// The state of a body that was last requested.
+    /// The most recently requested state of a body.
     fn known<'a>(&self, scratch: &'a [f64], body: usize) -> Known<'a, D> {
         let states = &scratch[self.forces_len() + body * self.of_body()..][..self.of_body()];
         let (_, own) = states[last_asked(states, self.of_state()) * self.of_state()..].split_at(self.column);

@@ -10,8 +10,8 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 /// The bits of all data that determine a stiffness.
 type Key = Vec<u64>;
 
-/// The stiffnesses in use, and the one that was last requested. The latter is kept because a program that reads a scene builds
-/// its bodies more than once, one after the other.
+/// The stiffnesses in use, and the one that was last requested. The last stiffness is kept because a program that reads a
+/// scene builds its bodies more than once, one after the other.
 struct Known {
     shared: Vec<(Key, Weak<Stiffness>)>,
     last: Option<Arc<Stiffness>>,
@@ -35,7 +35,7 @@ fn key<const D: usize>(surface: &Surface<D>, poisson: f64, exterior: bool, asked
     key
 }
 
-/// Returns the stiffness of a boundary, and computes it unless it is still stored.
+/// Returns the stiffness of a boundary. Computes the stiffness unless it is still stored.
 pub(super) fn stiffness<const D: usize>(
     surface: &Surface<D>,
     poisson: f64,

@@ -163,7 +163,7 @@ impl<const D: usize> Integrator<D> {
         }
     }
 
-    /// The integrals over the triangle that the source and two arms span; `twice` is double its area.
+    /// The integrals over the triangle that the source and two arms span. `twice` is double the area of the triangle.
     fn of_triangle(
         &self,
         arms: &[[f64; D]; 2],

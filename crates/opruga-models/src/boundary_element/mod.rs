@@ -1,10 +1,10 @@
 //! # Boundary elements
 //!
 //! A linear elastic solid, represented by its boundary alone. With Kelvin's solution U and its tractions T, the equations of
-//! elasticity in the interior become an equation on the boundary (Somigliana). Collocation turns it into G t = H u for linear
-//! displacements u and tractions t. The forces on the vertices follow from the tractions, f = Mᵀ G⁻¹ H u, so the stiffness is the
-//! symmetric part of Mᵀ G⁻¹ H without rigid motion (file `assembly`). A moving body has U = ½ uᵀ K u with u = Rᵀ(x − x̄) − X in
-//! the nearest frame R (file `frame`). The infinite medium around a boundary (`exterior`) does not rotate: u = x − X.
+//! elasticity in the interior become an equation on the boundary (Somigliana). Collocation turns this equation into G t = H u for
+//! linear displacements u and tractions t. The forces on the vertices follow from the tractions, f = Mᵀ G⁻¹ H u, so the stiffness
+//! is the symmetric part of Mᵀ G⁻¹ H without rigid motion (file `assembly`). A moving body has U = ½ uᵀ K u with u = Rᵀ(x − x̄) −
+//! X in the nearest frame R (file `frame`). The infinite medium around a boundary (`exterior`) does not rotate: u = x − X.
 //!
 //! Collocation is used instead of Galerkin's method, because it needs one integral instead of two. The matrix of collocation is
 //! slightly unsymmetric. A reading shows by how much.
@@ -54,8 +54,8 @@ pub const MOST_VERTICES: usize = 2000;
 #[derive(Debug)]
 pub struct BoundaryElementModel;
 
-/// The memory that the matrices need while they are computed [bytes]. There are three matrices with D rows for each traction.
-/// There are about 15 % more tractions than vertices.
+/// The memory that the matrices need while they are computed [bytes]. There are three matrices, each with D rows for each
+/// traction. There are about 15 % more tractions than vertices.
 fn bytes(dimensions: usize, nodes: f64) -> f64 {
     let rows = 1.15 * dimensions as f64 * nodes;
     8.0 * 3.5 * rows * rows

@@ -21,7 +21,7 @@ pub(super) enum Part {
 /// Reports the fraction that is done and checks whether a stop was requested.
 pub(super) struct Progress<'a> {
     break_off: &'a BreakOff,
-    /// The relative costs of the parts; their sum is arbitrary.
+    /// The relative costs of the parts. Their sum is arbitrary.
     costs: [f64; 5],
     part: Part,
     /// The fraction of the present part that is done.

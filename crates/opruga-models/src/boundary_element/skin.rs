@@ -6,7 +6,7 @@
 //!
 //! with ε_bb = 0 in the plane. A traction is the force on a vertex over its share of the boundary. At an edge or a corner the
 //! force belongs to several smooth parts, and the traction of a single part cannot be determined. If a facet has vertices that
-//! belong to only one smooth part, it uses only the tractions of these vertices.
+//! belong to only one smooth part, only the tractions of these vertices are used.
 //!
 //! Source: Brebbia, Telles, Wrobel 1984, section 5.11 (stresses on the boundary).
 
@@ -166,7 +166,7 @@ impl<const D: usize> Facet<D> {
     }
 }
 
-/// The gradient of each shape function along each tangent; the last entry is 0.
+/// The gradient of each shape function along each tangent. The last entry is 0.
 fn slopes<const D: usize>(corners: &[[f64; D]; D], axes: &[[f64; D]; D]) -> [[f64; D]; D] {
     let along = |corner: usize, axis: usize| {
         let arm: [f64; D] = core::array::from_fn(|d| corners[corner][d] - corners[0][d]);

@@ -44,7 +44,7 @@ pub(super) struct Surface<const D: usize> {
 }
 
 impl<const D: usize> Surface<D> {
-    /// Extracts the boundary of a mesh. The solid is inside it or, with `exterior`, all around it.
+    /// Extracts the boundary of a mesh. The solid is inside the boundary or, with `exterior`, all around it.
     pub(super) fn of(mesh: &Mesh<D>, exterior: bool) -> Result<Surface<D>, Refusal> {
         let nodes = mesh.nodes();
         if mesh.facets.is_empty() {

@@ -5,7 +5,7 @@
 //! f_i = −λ m_i v_i, so a_i = −λ v_i and v falls as e^(−λt).
 //!
 //! By design, drag damps rigid motion as well: a falling body tends to the speed g/λ, and a flying body loses momentum. To damp
-//! oscillations alone, use the damping of springs or of bending, which is zero under rigid motion. Drag has no energy; the
+//! oscillations alone, use the damping of springs or of bending, which is zero under rigid motion. Drag has no energy. The
 //! dissipated power is λ Σ m v². Drag is also known as mass-proportional (Rayleigh) damping.
 
 mod spec;

@@ -72,7 +72,7 @@ impl<'a, const D: usize> Builder<'a, D> {
         self.ingredients.values[0].text("locking").unwrap_or("refuse")
     }
 
-    /// Adds a section of one kind of cells, the first of which has the number `first` in the mesh.
+    /// Adds a section of one kind of cells. The first of these cells has the number `first` in the mesh.
     pub(super) fn add<E: Shape<D, N>, const N: usize>(
         &self,
         built: &mut Built<D>,

@@ -10,7 +10,7 @@ use opruga_mesh::{TETRAHEDRON_EDGES, TETRAHEDRON_SHARES, TRIANGLE_SHARES, TRIANG
 pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// The number of integration points for the whole law.
     const POINTS: usize;
-    /// The weights of the points; their sum is the measure of the reference cell.
+    /// The weights of the points. Their sum is the measure of the reference cell.
     const WEIGHTS: &'static [f64];
     /// ∂Nₐ/∂ξ at the points, `[point][node][axis]`.
     const SLOPES: &'static [[[f64; D]; N]];

@@ -35,8 +35,8 @@ impl Group<'_> {
             Layout::Batch => WIDTH,
         }
     }
-    /// The location of the numbers of a pack. If all packs have the same numbers, only those of a full pack and of the last one
-    /// are stored.
+    /// The location of the numbers of a pack. If all packs have the same numbers, only the numbers of a full pack and of the
+    /// last pack are stored.
     #[inline(always)]
     pub(super) fn one_or(&self, one: bool, pack: usize) -> usize {
         if one { usize::from(self.present(pack) < WIDTH) } else { pack }

@@ -18,7 +18,7 @@
 //!
 //! **Materials** are functions of F, one file each: see [`crate::materials`].
 //!
-//! **Damping** is of the Kelvin–Voigt type: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ; zero under rigid motion.
+//! **Damping** is of the Kelvin–Voigt type: P = F S, S = τ (2μ Ė + λ tr Ė 1), Ė = sym FᵀḞ. It is zero under rigid motion.
 //!
 //! **Heat**: a point that has expanded by the factor g = 1 + α ΔT has the energy g³ ψ(F/g), or ψ(ε − αΔT 1) under the law of
 //! small strain (file `materials/heat`). Without expansion none of these terms is computed.

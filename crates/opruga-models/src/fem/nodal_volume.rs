@@ -6,8 +6,8 @@
 //!
 //! U = Σₐ ½ κₐ Vₐ (Jₐ − 1)²,  Jₐ = Σ share · det F / Vₐ,  Vₐ = Σ share,  κₐ = Σ share · (λ − λ′) / Vₐ.
 //!
-//! In every cell this is an isotropic stress p, the mean of κₐ (Jₐ − 1) over its corners, with P = p cof F. Under `linear` det F
-//! is 1 + tr (F − 1).
+//! In every cell, this energy causes an isotropic stress p, the mean of κₐ (Jₐ − 1) over the corners of the cell, with P = p cof
+//! F. Under `linear` det F is 1 + tr (F − 1).
 //!
 //! First, J is computed for all cells. Second, every node sums over the cells around it. Third, the cells are evaluated as
 //! usual, with p cof F added to the stress of their law ([`super::pressures`]).
@@ -76,7 +76,7 @@ struct Simplex {
     number: u32,
     /// The nodes, D + 1 of them.
     nodes: [u32; 4],
-    /// The measure of the cell over D + 1, the share of each of its corners [m³].
+    /// The share of each corner in the measure of the cell [m³]: the measure divided by D + 1.
     share: f64,
 }
 

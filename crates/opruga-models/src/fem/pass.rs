@@ -1,7 +1,7 @@
 //! Passes over the elements of a section: forces, matrices, stresses.
 //!
-//! All of them process a few packs of elements at a time: they write deformation gradients to a buffer, apply a law to the
-//! buffer, and compute their results from it.
+//! All passes process a few packs of elements at a time: they write deformation gradients to a buffer, apply a law to the buffer,
+//! and compute their results from it.
 
 use super::boxes::{self, Deform, DeformRates, KEPT, Of, Push, Rates};
 use super::contraction::{Contract, ContractInvariants, ContractPrincipal};
@@ -29,7 +29,7 @@ const TANGENTS: usize = 4;
 /// fit into the first-level cache, so every step works on two packs before the next one begins.
 const MOST_BOXES: usize = 2;
 
-/// The largest number of packs of points of which a pass keeps data.
+/// The largest number of packs of points whose data a pass keeps.
 const MOST_POINTS: usize = MOST_BOXES * MOST_PACKS;
 
 /// A pass, with the buffers that it needs.

@@ -8,9 +8,9 @@
 //! Every element is evaluated once. A pack consists of eight neighbouring elements of one body, or of the same element of eight
 //! bodies.
 //!
-//! The elements of a body are divided into *shares* for threads. A share has its own rows for the nodes that it touches; forces
-//! are summed there in the order of its elements, and then at each node in the order of the shares. Neither the shares nor the
-//! bits of the results depend on the number of threads or on the layout.
+//! The elements of a body are divided into *shares* for threads. A share has its own rows for the nodes that it touches. Forces
+//! are summed in these rows in the order of the elements of the share, and then at each node in the order of the shares.
+//! Neither the shares nor the bits of the results depend on the number of threads or on the layout.
 
 use super::boxes::{self, Boxes};
 use super::elements::{Cell, Shape, rest_gradient};
@@ -97,7 +97,7 @@ const fn stored<E: Shape<D, N>, const D: usize, const N: usize>() -> usize {
 }
 
 impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
-    /// Lays out elements; `numbers` gives the parameters of a cell of a body.
+    /// Lays out elements. `numbers` gives the parameters of a cell of a body.
     pub(super) fn new(
         plan: Plan<'_, D>,
         mut cells: Vec<Cell<N>>,
@@ -293,8 +293,8 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Section<E, D, N> {
         }
     }
 
-    /// Whether the energy of the law may be undefined. Laws in space and in plane strain have an energy everywhere; if it
-    /// overflows, the motion has diverged, which is detected elsewhere.
+    /// Whether the energy of the law may be undefined. Laws in space and in plane strain have an energy everywhere. If that
+    /// energy overflows, the motion has diverged, which is detected elsewhere.
     pub(super) fn may_refuse(&self) -> bool {
         self.law_in_space.is_none() && D < 3
     }

@@ -59,8 +59,8 @@ struct Task {
 enum Sums {
     /// The forces of all nodes are consecutive from this index.
     Whole(usize),
-    /// The forces of a node are rows of several shares: the start of the list of every node, and the lists of row indices in
-    /// units of [`ROW`].
+    /// The rows of the shares that add up to the force of each node: the start of the list of every node, and the lists of row
+    /// indices in units of [`ROW`].
     Listed { start: Vec<u32>, rows: Vec<u32> },
 }
 

@@ -86,7 +86,7 @@ pub(super) fn gather<R: Register, const D: usize, const N: usize>(
     x
 }
 
-/// Adds the forces of a pack of elements to those of their nodes.
+/// Adds the forces of a pack of elements to the forces of their nodes.
 #[inline(always)]
 pub(super) fn scatter<P: Pack, const D: usize, const N: usize>(
     group: &Group<'_>,

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Every node is computed once, eight nodes at a time. The neighbours of a node are in the registers, so no index is needed.
-//! The edge that closes a ring is computed separately. The forces equal those of the stencils in [`super::curve`] up to
-//! rounding; energy and Hessian come from the stencils.
+//! The edge that closes a ring is computed separately. The forces equal those of the stencils in [`super::curve`] up to rounding.
+//! Energy and Hessian come from the stencils.
 
 use crate::vectors::{cross, dot, in_space, inverse};
 use opruga_core::state::{Layout, Parameter, View};
@@ -239,8 +239,8 @@ impl<const D: usize, const BATCH: bool, const DAMPED: bool> Work for Force<'_, '
 /// The results of the previous nodes that the next nodes need: g of their edges, its rate, 1/L, the known part of N, and N of the
 /// edges before them.
 ///
-/// For bodies side by side, each result is a pack with the numbers of the previous node of each body. For one body, it is the
-/// previous register, stored in the first part of each pack.
+/// For bodies side by side, each result is a pack with the numbers of the previous node of each body. For one body, each result
+/// is the previous register, stored in the first part of each pack.
 struct Walker<'a, P, const D: usize> {
     x: Strip<'a, D>,
     v: Strip<'a, D>,

@@ -4,7 +4,7 @@ use crate::vectors::{cross, dot, in_dimension, in_space, inverse, minus, scaled}
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;
 
-/// The metric of an edge between two nodes; parameters EA L [N·m], 1/L² [1/m²] and the retardation time τ [s].
+/// The metric of an edge between two nodes. The parameters are EA L [N·m], 1/L² [1/m²] and the retardation time τ [s].
 ///
 /// U = ½ EA L ε² with ε = ½ (|x₁ − x₀|²/L² − 1).
 #[derive(Clone, Copy, Debug)]
@@ -36,8 +36,8 @@ impl<const D: usize> Kernel<D, 2, 3> for Stretch {
     }
 }
 
-/// The curvature at a node between two edges; parameters EI ℓ [N·m³], 1/L₋, 1/L₊ [1/m], the share of the first edge in the
-/// tangent, 1/ℓ [1/m], the curvature at rest B₀ [1/m] and the retardation time τ [s].
+/// The curvature at a node between two edges. The parameters are EI ℓ [N·m³], 1/L₋, 1/L₊ [1/m], the share of the first edge
+/// in the tangent, 1/ℓ [1/m], the curvature at rest B₀ [1/m] and the retardation time τ [s].
 ///
 /// ```text
 ///   0 ──a──▶ 1 ──b──▶ 2      a = (x₁ − x₀)/L₋, b = (x₂ − x₁)/L₊, ℓ = ½ (L₋ + L₊)

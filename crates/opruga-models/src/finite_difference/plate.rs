@@ -75,8 +75,8 @@ fn raised<S: Lane, const D: usize, const N: usize>(x: &[[S; D]; N]) -> [[S; 3]; 
     nodes
 }
 
-/// Both curvatures at an inner node: nodes x, u₋, u₊, v₋, v₊; parameters D A [N·m³], ν, 1/h₁, 1/h₂ [1/m], both curvatures at
-/// rest [1/m] and the retardation time τ [s].
+/// Both curvatures at an inner node. The nodes are x, u₋, u₊, v₋, v₊. The parameters are D A [N·m³], ν, 1/h₁, 1/h₂ [1/m],
+/// both curvatures at rest [1/m] and the retardation time τ [s].
 ///
 /// U = ½ D A [β₁² + β₂² + 2ν β₁ β₂] with β = B − B₀.
 #[derive(Clone, Copy, Debug)]
@@ -162,8 +162,8 @@ impl<const D: usize> Kernel<D, 5, 7> for Inner {
     }
 }
 
-/// The curvature along the edge of a surface. Nodes: x, the nodes before and after it on the edge, and the one inside.
-/// Parameters: D (1 − ν²) A [N·m³], 1/h along the edge, 1/h across it [1/m], the curvature at rest [1/m] and τ [s].
+/// The curvature along the edge of a surface. The nodes are x, the nodes before and after x on the edge, and the node inside.
+/// The parameters are D (1 − ν²) A [N·m³], 1/h along the edge, 1/h across it [1/m], the curvature at rest [1/m] and τ [s].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge;
 
@@ -222,8 +222,8 @@ impl<const D: usize> Kernel<D, 4, 5> for Edge {
     }
 }
 
-/// The twist of a cell: corners as in [`super::solid::Quadrilateral`]; parameters 2 (1 − ν) D A [N·m³], 1/h₁, 1/h₂ [1/m], the
-/// twist at rest [1/m] and τ [s]. U = ½ 2 (1 − ν) D A (B₁₂ − B₀)².
+/// The twist of a cell. The corners are as in [`super::solid::Quadrilateral`]. The parameters are 2 (1 − ν) D A [N·m³], 1/h₁,
+/// 1/h₂ [1/m], the twist at rest [1/m] and τ [s]. U = ½ 2 (1 − ν) D A (B₁₂ − B₀)².
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Twist;
 

@@ -164,10 +164,10 @@ impl<const D: usize> Kernel<D, 4, 7> for Quadrilateral {
     }
 }
 
-/// A hexahedral cell; parameters c₁ V, c₂ V, c₃ V [N·m], 1/h² of the three axes [1/m²] and the retardation time τ [s].
+/// A hexahedral cell. Its parameters are c₁ V, c₂ V, c₃ V [N·m], 1/h² of the three axes [1/m²] and the retardation time τ [s].
 ///
-/// The strains of an axis are defined on its four edges, the shear of two axes on two opposite faces. U = ½ V [c₁ Σ mean εᵢᵢ² + 2
-/// c₂ Σ (mean εᵢᵢ)(mean εⱼⱼ) + c₃ Σ mean εᵢⱼ²], sums over i and over i < j.
+/// The strains of an axis are defined on its four edges, and the shear of two axes is defined on two opposite faces. U = ½ V [c₁
+/// Σ mean εᵢᵢ² + 2 c₂ Σ (mean εᵢᵢ)(mean εⱼⱼ) + c₃ Σ mean εᵢⱼ²], sums over i and over i < j.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hexahedron;
 

@@ -1,8 +1,9 @@
 //! Dual faces of cells: their location and their area vectors.
 //!
-//! Every edge (i, j) of a cell has one dual face between the parts of the cell that belong to i and to j. In the plane it is the
-//! segment from the midpoint of the edge to the centre of the cell. In space it is the quadrilateral through the midpoint of the
-//! edge, the centres of the two adjacent sides, and the centre of the cell. The area vector of the dual face points from i to j.
+//! Every edge (i, j) of a cell has one dual face between the parts of the cell that belong to i and to j. In the plane the dual
+//! face is the segment from the midpoint of the edge to the centre of the cell. In space the dual face is the quadrilateral
+//! through the midpoint of the edge, the centres of the two adjacent sides, and the centre of the cell. The area vector of the
+//! dual face points from i to j.
 //!
 //! ```text
 //!  3 ──── 2      3           quadrilaterals counter-clockwise; hexahedra 0123 below
@@ -22,7 +23,7 @@ pub(super) trait Cell<const D: usize, const N: usize>: Copy + core::fmt::Debug +
     const EDGES: &'static [[usize; 2]];
     /// For cells in space, the other corners of the two sides that meet at each edge: two lists for each edge.
     const SIDES: &'static [[&'static [usize]; 2]];
-    /// ∂Nₐ/∂ξ at the centre of every dual face; only one entry if F is constant.
+    /// ∂Nₐ/∂ξ at the centre of every dual face, or a single entry if F is constant.
     const SLOPES: &'static [[[f64; D]; N]];
     /// The number of points at which F is evaluated.
     const POINTS: usize = Self::SLOPES.len();
@@ -152,8 +153,8 @@ pub(super) fn inverse<const D: usize>(side: &Matrix<f64, D>) -> (Matrix<f64, D>,
     (out, determinant)
 }
 
-/// The area vectors of the dual faces of all edges [m²; lengths in the plane, m]. Each points from the first node of its edge
-/// to the second.
+/// The area vectors of the dual faces of all edges [m²]; in the plane, they are lengths [m]. Each points from the first node of
+/// its edge to the second.
 pub(super) fn dual_faces<C: Cell<D, N>, const D: usize, const N: usize>(x: &[[f64; D]; N]) -> Vec<[f64; D]> {
     let center = mean(x, 0..N);
     let face = |(number, &[i, j]): (usize, &[usize; 2])| {

@@ -20,7 +20,7 @@ pub(super) struct Cells<C, const D: usize, const N: usize> {
     pub(super) list: Vec<[u32; N]>,
     /// The nodes of every pack, `[corner][lane]`.
     pub(super) nodes: Vec<u32>,
-    /// ∂ξ/∂X [1/m] at every point, row by row; for a simplex, ∇Nₐ of all corners except the first. The last pack is filled up
+    /// ∂ξ/∂X [1/m] at every point, row by row. For a simplex, ∇Nₐ of all corners except the first. The last pack is filled up
     /// with copies of the last cell.
     pub(super) inverse: Column,
     /// The area vectors of the dual faces [m²; in 2D, length times thickness]. Empty for simplices, where Wₐ = −V ∇Nₐ. Copies

@@ -165,8 +165,8 @@ impl<C: Cell<D, N>, const D: usize, const N: usize> Work for Tractions<'_, C, D,
     }
 }
 
-/// Adds the forces on corners of a pack to those on nodes, cell by cell, so that the order of additions is the same for one body
-/// and for eight.
+/// Adds the forces on the corners of a pack to the forces on nodes, cell by cell, so that the order of additions is the same for
+/// one body and for eight.
 #[inline(always)]
 fn scatter<P: Pack, C: Cell<D, N>, const D: usize, const N: usize>(
     cells: &Cells<C, D, N>,

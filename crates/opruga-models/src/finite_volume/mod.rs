@@ -21,7 +21,7 @@
 //! A constant F is exact on cells of any shape, because the dual faces around an inner node form a closed surface.
 //!
 //! Limits: triangles and tetrahedra lock as linear finite elements do. Boxes that bend conserve angular momentum only
-//! approximately, because F differs between the faces of a cell, and so does P Fᵀ.
+//! approximately, because F, and with it P Fᵀ, differs between the faces of a cell.
 
 mod cell;
 mod cells;

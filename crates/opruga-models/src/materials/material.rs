@@ -12,7 +12,7 @@ pub struct Parameters<S> {
     pub mu: S,
     /// Lamé's first parameter λ = Eν/((1 + ν)(1 − 2ν)) [Pa].
     pub lambda: S,
-    /// An additional parameter of the material; for Mooney–Rivlin, the share of the second constant.
+    /// An additional parameter of the material. For Mooney–Rivlin, it is the share of the second constant.
     pub own: S,
 }
 
@@ -326,8 +326,8 @@ pub(crate) fn add_strain_tangent<S: Lane, const D: usize>(to: &mut Tangent<S, D>
 /// The volume ratio below which the logarithm is continued as a parabola: 1 % of the volume at rest.
 pub(crate) const LEAST_VOLUME: f64 = 0.01;
 
-/// ln J with its first two derivatives. Below [`LEAST_VOLUME`] it is continued as a parabola, so that a degenerate or inverted
-/// point has an energy and is pushed back.
+/// ln J with its first two derivatives. Below [`LEAST_VOLUME`] the logarithm is continued as a parabola, so that a degenerate or
+/// inverted point has an energy and is pushed back.
 #[inline(always)]
 pub(crate) fn logarithm_of_volume<S: Lane>(j: S) -> [S; 3] {
     let least = S::splat(LEAST_VOLUME);

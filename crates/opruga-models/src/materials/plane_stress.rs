@@ -13,10 +13,10 @@ use opruga_math::{Lane, Pack, Register, Simd, WIDTH, Work, symmetric};
 #[derive(Debug)]
 pub(crate) struct PlaneStress(pub(crate) Box<dyn Law<3>>);
 
-/// The largest number of Newton iterations for the thickness; five are usual.
+/// The largest number of Newton iterations for the thickness. Five are usual.
 const MOST_ITERATIONS: usize = 60;
 
-/// The relative change of the thickness below which it has converged.
+/// The thickness has converged if its relative change is below this number.
 const FOUND: f64 = 1e-12;
 
 /// Buffers for packs of points in space.

@@ -41,8 +41,8 @@ impl<'a> Points<'a> {
 pub(crate) const INVARIANTS: usize = 4;
 
 /// The number of matrices of a tangent in the frame of the singular vectors: U, V, the second derivatives by stretches, and for
-/// pairs of axes a < b the components of the tangent times u_a v_bᵀ. The component along u_a v_bᵀ is at [a][b], and the one
-/// along u_b v_aᵀ at [b][a].
+/// pairs of axes a < b the components of the tangent times u_a v_bᵀ. The component along u_a v_bᵀ is at [a][b], and the
+/// component along u_b v_aᵀ is at [b][a].
 pub(crate) const PRINCIPAL: usize = 4;
 
 /// Reads the parameters and F of a part of a pack of points.

@@ -64,8 +64,8 @@ fn twin<R: Lane, const D: usize>(one: &Matrix<R, D>, other: &Matrix<R, D>) -> Ma
 /// Computes singular vectors and values of F.
 pub(crate) struct Frames<'a, const D: usize> {
     pub(crate) points: Points<'a>,
-    /// Whether the law accounts for rotations. If it does not, its tangent is the same in every frame, and the axes are the unit
-    /// vectors.
+    /// Whether the law accounts for rotations. If a law does not account for rotations, its tangent is the same in every frame,
+    /// and the axes are the unit vectors.
     pub(crate) turns: bool,
     pub(crate) out: &'a mut [f64],
 }

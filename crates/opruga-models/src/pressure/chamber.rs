@@ -23,9 +23,9 @@ pub(super) enum Boundary {
 #[derive(Debug)]
 pub(super) struct NodeRings {
     pub(super) width: usize,
-    /// The length of the longest ring of each pack of nodes; the slots after it are not used.
+    /// The length of the longest ring of each pack of nodes. The slots after it are not used.
     pub(super) widths: Vec<u32>,
-    /// `[node / 8][slot][node % 8]`; a shorter ring repeats its first neighbour, which contributes nothing to the sums.
+    /// `[node / 8][slot][node % 8]`. A shorter ring repeats its first neighbour, which then contributes nothing to the sums.
     pub(super) neighbour: Vec<u32>,
     /// `[node / 8][slot]`: whether the eight neighbours are consecutive, so that they can be read at once.
     pub(super) together: Vec<bool>,
@@ -278,7 +278,7 @@ impl Boundary {
 }
 
 impl NodeRings {
-    /// Lays out the rings of neighbours; nodes that are not on the boundary have an empty ring.
+    /// Lays out the rings of neighbours. Nodes that are not on the boundary have an empty ring.
     pub(super) fn new(rings: &Adjacency, facets: Vec<[u32; 3]>) -> NodeRings {
         let nodes = rings.nodes();
         let width = (0..nodes as u32).map(|n| rings.of(n).len()).max().unwrap_or(0);

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// The volume as a sum over groups of nodes: ½ Σ w xₐ × x_b in the plane, ⅙ Σ w xₐ·(x_b × x_c) in space.
 #[derive(Debug)]
 pub(super) struct CurvedSides {
-    /// The nodes of each group and its weight w; a group of two nodes contains the last one twice.
+    /// The nodes of each group and its weight w. A group of two nodes contains the last node twice.
     pub(super) terms: Vec<([u32; 3], f64)>,
     /// The nodes of the boundary, ascending.
     pub(super) nodes: Vec<u32>,
@@ -110,7 +110,7 @@ impl CurvedSides {
         Some(CurvedSides { terms, nodes })
     }
 
-    /// The volume (area in the plane) at positions; `slope` receives ∂V/∂x, node by node.
+    /// The volume (area in the plane) at positions. Writes ∂V/∂x to `slope`, node by node.
     pub(super) fn volume<const D: usize>(
         &self,
         at: impl Fn(u32) -> [f64; D],
@@ -147,7 +147,7 @@ impl CurvedSides {
         sum
     }
 
-    /// The volume of one of the bodies; ∂V/∂x is added to `area`, column by column.
+    /// The volume of one of the bodies. Adds ∂V/∂x to `area`, column by column.
     pub(super) fn volume_of<const D: usize>(&self, view: &View<D>, body: usize, area: &mut [f64]) -> f64 {
         let index_count = area.len() / D;
         let index = |node: u32| view.layout.index(node as usize, body);

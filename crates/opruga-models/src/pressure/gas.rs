@@ -4,7 +4,7 @@ use opruga_core::spec::Values;
 use opruga_math::Lane;
 
 /// The default of `smallest_volume`. Below this fraction of the rest volume the pressure no longer rises. At this volume, the
-/// pressure is fifty times that at rest. With a thousandth instead, a ball that was thrown or shaken hard enough to be
+/// pressure is fifty times the pressure at rest. With a thousandth instead, a ball that was thrown or shaken hard enough to be
 /// flattened gained energy without bound, even with steps far below the stable step, because the steps jumped across the narrow
 /// range of high pressure.
 pub(super) const SMALLEST_VOLUME: f64 = 0.02;
@@ -132,7 +132,7 @@ impl Gas {
             }
         }
     }
-    /// The state at a volume V for this nRT (at the rest volume).
+    /// The state at the volume V, if nRT has this value at the rest volume.
     ///
     /// Below the volume V_s (a fraction of the rest volume, or the volume at which the largest pressure is reached) the
     /// pressure stays P(V_s), and the energy continues along its tangent. The same rule holds at zero volume and for inverted

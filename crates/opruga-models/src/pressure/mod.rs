@@ -6,7 +6,7 @@
 //!
 //! f_i = (P − P_a) ∂V/∂x_i,  ∇²U = (γP/V) ∇V ∇Vᵀ − (P − P_a) ∇²V.
 //!
-//! The first term of the Hessian has rank one and is delivered as such; the clamped Hessian keeps only this term. Net force and
+//! The first term of the Hessian has rank one and is delivered as such. The clamped Hessian keeps only this term. Net force and
 //! net torque of a closed boundary are zero. `Gas::at` describes the behaviour at and below zero volume.
 //!
 //! The documentation of `as_published` lists the differences from the published program (errors E1 to E11).

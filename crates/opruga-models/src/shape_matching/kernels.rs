@@ -80,7 +80,8 @@ fn positions<P: Pack, const D: usize>(clusters: &Clusters<D>, view: &View<D>, sl
     }
 }
 
-/// Computes Σ m p and cₖ = Σ m p φₖ of the clusters, with p relative to the position of their first node; and the centre x̄.
+/// Computes Σ m p, cₖ = Σ m p φₖ and the centre x̄ of the clusters. Here p is relative to the position of the first node of the
+/// cluster.
 pub(super) struct Moments<'a, const D: usize, const K: usize> {
     pub(super) clusters: &'a Clusters<D>,
     pub(super) stored: Stored,
@@ -182,7 +183,7 @@ pub(super) struct Fit<'a, const D: usize> {
     pub(super) scratch: &'a mut [f64],
 }
 
-/// Below this fraction of the rest volume the fitted map counts as having no volume.
+/// The fitted map counts as having no volume below this fraction of the rest volume.
 pub(super) const VOLUME: f64 = 1e-9;
 
 impl<const D: usize> Work for Fit<'_, D> {

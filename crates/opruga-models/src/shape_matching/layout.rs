@@ -1,7 +1,7 @@
 //! The memory layout of the clusters of a body, or of eight bodies side by side. The symbols φₖ and L are those of the file
 //! `shape`.
 //!
-//! A *slot* is a node in a cluster. The slots of a cluster are consecutive and fill whole packs; slots without a node have no
+//! A *slot* is a node in a cluster. The slots of a cluster are consecutive and fill whole packs. Slots without a node have no
 //! mass. The data of slots and clusters have the layout of the columns of nodes ([`Layout::index`]), so that one body and eight
 //! bodies run the same code and have the same bits.
 

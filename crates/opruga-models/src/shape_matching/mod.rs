@@ -27,7 +27,7 @@
 //! T. The columns of the paper's quadratic fit are not centred. Here these columns are centred, so that no momentum arises.
 //!
 //! Limits: κ is not the stiffness of a material, and refining a body does not change its stiffness. R is not unique if the two
-//! smallest σ are opposite; the singular vectors then determine the choice.
+//! smallest σ are opposite. The singular vectors then determine the choice.
 
 mod hessian;
 mod kernels;

@@ -2,8 +2,8 @@
 //!
 //! The displacement of a cell with N corners is affine except for N − 1 − D *hourglass* modes. The amplitudes of these modes, gₐ
 //! = Σ xₐ γₐ, belong to vectors γ orthogonal to all affine fields (Flanagan and Belytschko 1981). At small strain, the strain ε
-//! of these modes is that of an assumed stress. It follows from stress fields s that bend and twist a box exactly (Pian and
-//! Sumihara 1984 in the plane, Pian and Tong 1986 in space; here without their mean) and from the compliance of Hooke's law,
+//! of these modes is that of an assumed stress. The strain follows from stress fields s that bend and twist a box exactly (Pian
+//! and Sumihara 1984 in the plane, Pian and Tong 1986 in space; here without their mean) and from the compliance of Hooke's law,
 //!
 //! ε = C⁻¹ Σ s β,  β = H⁻¹ L g,  L = ∫ s : ∇h,  H = ∫ s : C⁻¹ s,
 //!
@@ -26,14 +26,15 @@ pub(super) const FIELDS: usize = 6;
 /// The number of pairs of axes of a hexahedron.
 pub(super) const PAIRS: usize = 6;
 
-/// The pairs of axes of a cell. The assumed stresses are symmetric products of these; in the plane none of them is a shear.
+/// The pairs of axes of a cell. The assumed stresses are symmetric products of such pairs of axes. In the plane none of these
+/// stresses is a shear.
 pub(super) const PAIR: [(usize, usize); PAIRS] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
 
 /// The axes whose coordinates a function of an assumed stress multiplies.
 const FIELD: [&[usize]; FIELDS] = [&[0], &[1], &[2], &[1, 2], &[2, 0], &[0, 1]];
 
 /// The pair of axes and the function of an assumed stress. The stresses of one function are consecutive. A function multiplies
-/// stresses along those axes whose coordinates it does not contain.
+/// stresses along the axes whose coordinates the function does not contain.
 pub(super) const fn term<const D: usize>(stress: usize) -> (usize, usize) {
     let of_space = [(1, 0), (2, 0), (4, 0), (2, 1), (0, 1), (5, 1), (0, 2), (1, 2), (3, 2), (0, 3), (1, 4), (2, 5)];
     if D == 2 { (1 - stress, stress) } else { of_space[stress] }
@@ -348,8 +349,8 @@ mod tests {
         }
     }
 
-    /// In space, a box that bends along x alone has the stiffness E/(1 − ν²); if it may also curve in the other direction, it
-    /// has E.
+    /// In space, a box that bends along x alone has the stiffness E/(1 − ν²). If it may also curve in the other direction, its
+    /// stiffness is E.
     #[test]
     fn a_block_bends_as_a_plate_and_as_a_beam() {
         let (sides, mu, ratio) = ([0.7, 0.4, 0.2], 3.0, 0.4999);

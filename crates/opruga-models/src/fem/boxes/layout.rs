@@ -20,7 +20,7 @@ pub(in super::super) struct Boxes {
     /// Whether the data of one pack serve for all packs.
     pub(in super::super) one_geometry: bool,
     pub(super) one_stiffness: bool,
-    /// The pattern of the nonzero shares of the functions in F and g; rows are functions.
+    /// The pattern of the nonzero shares of the functions in F and g. Rows are functions.
     pub(super) shares: Pattern,
     /// Which entries of the matrix X = H⁻¹ L (see [`super::hourglass`]) are not zero.
     pub(super) response: Pattern,
@@ -40,7 +40,7 @@ pub(in super::super) struct Plan<'a, const D: usize, const N: usize> {
 }
 
 impl Boxes {
-    /// Lays out the boxes; `numbers` gives the material data of a cell of a body.
+    /// Lays out the boxes. `numbers` gives the material data of a cell of a body.
     pub(in super::super) fn new<E: Shape<D, N>, const D: usize, const N: usize>(
         plan: &Plan<'_, D, N>,
         numbers: &dyn Fn(u32, usize) -> [f64; NUMBERS],
