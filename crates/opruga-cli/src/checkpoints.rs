@@ -27,7 +27,7 @@ const TABLE: &str = "diagnostics.csv";
 /// The files that a run writes at its end.
 const LAST: [&str; 6] = ["summary.json", "final.csv", "strip.png", "plots.svg", "video.mp4", "video.gif"];
 
-/// The format of the payload; another format belongs to another version of the program.
+/// The format of the payload. Another format belongs to another version of the program.
 const FORM: &str = "run 3";
 
 /// The arguments of a run on which its continuation depends.
@@ -228,7 +228,7 @@ impl<'a> Keeper<'a> {
     }
 
     /// Writes the table so far and a checkpoint. The previous checkpoint is kept under its second name. Returns the names of the files that then
-    /// exist. At the first call, the files of an earlier run are removed, because they would look like files of this one. If the call fails, no file
+    /// exist. At the first call, the files of an earlier run are removed, because they would look like files of this run. If the call fails, no file
     /// is changed.
     pub(crate) fn write(&mut self, world: &dyn AnyWorld, table: &NumberTable) -> Result<Vec<String>, WriteError> {
         let saved = SavedRun {

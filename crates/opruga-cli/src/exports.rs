@@ -48,7 +48,7 @@ struct Stresses {
 }
 
 impl Stresses {
-    /// The present stresses of a body; NaN for cells without finite elements.
+    /// The present stresses of a body, which are NaN for cells without finite elements.
     fn of(world: &dyn AnyWorld, body: usize) -> Stresses {
         let states = world.cell_states(body);
         if states.is_empty() {

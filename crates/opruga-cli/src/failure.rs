@@ -162,7 +162,7 @@ pub(crate) fn print_warning(warning: &Warning) {
     eprintln!("{}", warning_text(warning, translation()));
 }
 
-/// Prints data on stdout; a closed pipe is not an error.
+/// Prints data on stdout. A closed pipe is not an error.
 pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
     use std::io::Write as _;
     let mut out = std::io::stdout().lock();

@@ -61,8 +61,8 @@ fn look_for_equilibrium(call: &Modes, registries: &Registries, blueprint: &mut A
     }
 }
 
-/// If no frame is run, replaces statics by an implicit integrator. Modes belong to a state, independently of the integrator, and a body that can
-/// move freely, which statics refuses, has modes like any other. The replacement supports all bodies and all steps.
+/// If no frame is run, replaces statics by an implicit integrator. Modes belong to a state, independently of the integrator. A body that can
+/// move freely, which statics refuses, has modes like any other body. The replacement supports all bodies and all steps.
 fn leave_statics(call: &Modes, registries: &Registries, blueprint: &mut AnyBlueprint) {
     let dimension = blueprint.scene().dimension();
     let runs = call.equilibrium || call.after > 0.0;

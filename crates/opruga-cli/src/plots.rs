@@ -85,7 +85,7 @@ impl Run<'_> {
         self.table.columns().iter().position(|column| column == name)
     }
 
-    /// The lines of columns that are not zero everywhere; the others contain no information.
+    /// The lines of columns that are not zero everywhere. The other columns contain no information.
     fn named(&self, names: &[&str]) -> Vec<Line> {
         let indices = names.iter().filter_map(|name| Some((self.index_of(name)?, name)));
         indices
@@ -129,7 +129,7 @@ impl Run<'_> {
         lines
     }
 
-    /// The readings of the models of bodies; in the plane, a volume is drawn as the area of its base.
+    /// The readings of the models of bodies. In the plane, a volume is drawn as the area of its base.
     fn readings(&self, what: &str, published: bool) -> Vec<Line> {
         let mut lines = Vec::new();
         for (name, thickness, _) in self.columns.bodies.iter().filter(|body| body.2 == published) {

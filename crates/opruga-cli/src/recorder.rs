@@ -12,7 +12,7 @@ use opruga::{AnyBody, AnyWorld, Warning, draw};
 use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
-/// The memory limit for pictures that wait to be drawn [bytes]; longer or larger runs keep fewer of them.
+/// The memory limit for pictures that wait to be drawn [bytes]. Longer or larger runs keep fewer pictures.
 const PICTURE_BYTES: u64 = 1 << 30;
 
 /// The largest number of bodies whose volume and pressure get their own columns.

@@ -15,7 +15,7 @@ use std::path::Path;
 /// The name of this program in recordings.
 pub(crate) const PROGRAM: &str = concat!("opruga ", env!("CARGO_PKG_VERSION"));
 
-/// Begins the recording of a run: the file exists, with its header and its first frame, before the run begins.
+/// Begins the recording of a run. The file exists, with its header and its first frame, before the run begins.
 pub(crate) fn begin(
     path: &Path,
     force: bool,

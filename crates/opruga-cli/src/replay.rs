@@ -1,4 +1,4 @@
-//! `opruga replay`: shows a recorded run again, exports it, or computes it again and compares.
+//! `opruga replay`: shows a recorded run again, exports it, or computes it again and compares the results.
 
 use crate::arguments::Replay;
 use crate::errors::{CallFault, CallRange, CallWarning, ResumeHint};

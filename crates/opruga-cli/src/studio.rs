@@ -17,7 +17,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// The exit code of a studio that found no screen.
 const NO_WINDOW: i32 = 5;
 
-/// `opruga` without a command: opens the window if there is a screen, otherwise runs a scene without one.
+/// `opruga` without a command: opens the window if there is a screen, and otherwise runs a scene without a window.
 pub(crate) fn first(registries: &Registries) -> Result<u8, Failure> {
     let headless = |why: &str| {
         eprintln!("{why}: running the scene `ball` without a window (`opruga --help` lists the other commands)");

@@ -237,7 +237,7 @@ struct Shared {
 }
 
 impl Work<'_> {
-    /// Measures every point that has no row yet. Each row is on the disk before the next point of its thread begins; at the end the table is sorted.
+    /// Measures every point that has no row yet. Each row is on the disk before the next point of its thread begins. At the end the table is sorted.
     fn all(&self, known: Vec<Row>) -> Result<Vec<Row>, Failure> {
         self.write_table(&known)?;
         let path = self.folder.path(TABLE);

@@ -19,7 +19,7 @@ const SETTLED: u32 = 2;
 /// A missing file counts as removed after this many checks. Until then, a program may just be replacing it.
 const GONE: u32 = 5;
 
-/// Runs a scene, and with `--watch` again whenever it changes.
+/// Runs a scene. With `--watch`, runs it again whenever it changes.
 pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     if !call.watch {
         return crate::run::run(call, registries);
@@ -37,7 +37,7 @@ pub(crate) fn run(call: &Run, registries: &Registries) -> Result<u8, Failure> {
     })
 }
 
-/// Checks a scene, and with `--watch` again whenever it changes.
+/// Checks a scene. With `--watch`, checks it again whenever it changes.
 pub(crate) fn check(call: &Check, registries: &Registries) -> Result<u8, Failure> {
     if !call.watch {
         return reports::check(call, registries);
@@ -45,7 +45,7 @@ pub(crate) fn check(call: &Check, registries: &Registries) -> Result<u8, Failure
     again_and_again(&call.scene, registries, call.allow_outside, call.json, || reports::check(call, registries))
 }
 
-/// Does the work now and after every change of the scene or of a file that it names; work that is still running at a change is stopped. After an
+/// Does the work now and after every change of the scene or of a file that it names. Work that is still running at a change is stopped. After an
 /// error, reports the error and waits for the next change.
 fn again_and_again(
     scene: &str,

@@ -6,7 +6,7 @@ use crate::{Pack, Simd, WIDTH, Work};
 const ROUNDS: usize = 4096;
 const CHAINS: usize = 12;
 
-/// Computes products and sums in registers, not fused, in twelve independent chains; returns the number of operations.
+/// Computes products and sums in registers, not fused, in twelve independent chains. Returns the number of operations.
 #[inline(never)]
 pub fn products_and_sums(simd: Simd, out: &mut [f64; WIDTH]) -> usize {
     struct Chains<'a>(&'a mut [f64]);

@@ -8,7 +8,7 @@ use core::ops::Range;
 const LINE: usize = 64;
 
 /// Asks the processor to bring a part of a list into its first-level cache, for lists that are read too seldom for the processor
-/// to predict the reads. The part beyond the end of the list is ignored; on processors without such an instruction nothing
+/// to predict the reads. The part beyond the end of the list is ignored. On processors without such an instruction nothing
 /// happens.
 #[inline(always)]
 pub fn fetch_early<T>(list: &[T], part: Range<usize>) {

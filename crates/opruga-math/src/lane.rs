@@ -54,7 +54,7 @@ pub trait Lane:
     fn smaller(self, other: Self) -> Self {
         Self::select(self.less(other), self, other)
     }
-    /// The larger of the two; `other` if `self` is NaN.
+    /// The larger of the two, or `other` if `self` is NaN.
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
         Self::select(other.less(self), self, other)

@@ -20,7 +20,8 @@ use crate::singular::{direction, singular};
 /// degenerate matrix with two equal stretches it is ½. Rounding errors grow as its inverse.
 const WELL_DETERMINED: f64 = 0.02;
 
-/// The relative change of f below which it has converged, because the next change would be the square of this one.
+/// The formula has converged if the relative change of f is below this number, because the next change would be the square of
+/// this one.
 const FOUND: f64 = 1e-9;
 
 /// The largest number of iterations. If the rotation is well determined, ten iterations are enough. For strains of a few per

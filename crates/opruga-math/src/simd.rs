@@ -1,7 +1,7 @@
 //! The vector instructions of the wide lane, chosen once at run time.
 //!
 //! The same code is compiled three times, in functions that may use SSE2, AVX2 or AVX-512. Rust never contracts `a * b + c` into
-//! a fused operation, so the three give the same bits.
+//! a fused operation, so the three versions give the same bits.
 
 use crate::lane::Pack;
 use crate::registers::Registers;

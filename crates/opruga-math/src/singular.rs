@@ -32,7 +32,7 @@ impl<S: Lane, const D: usize> Singular<S, D> {
 /// The largest number of sweeps over all pairs of columns. Six make any 3×3 matrix as accurate as rounding permits.
 const MOST_SWEEPS: usize = 12;
 
-/// Columns whose cosine is less than this count as orthogonal.
+/// Columns count as orthogonal if their cosine is less than this.
 const ORTHOGONAL: f64 = 1e-16;
 
 /// Vectors shorter than this have no direction.

@@ -54,7 +54,7 @@ impl<'a, const N: usize> Strip<'a, N> {
 }
 
 impl<'a, const N: usize> StripMut<'a, N> {
-    /// The numbers from `start` on, `length` in each column.
+    /// `length` numbers of each column, from index `start` on.
     #[inline(always)]
     pub fn new(columns: [&'a mut [f64]; N], start: usize, length: usize) -> Self {
         let mut pointers = [core::ptr::null_mut(); N];

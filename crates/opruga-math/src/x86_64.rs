@@ -269,7 +269,7 @@ unsafe fn split_avx512(x: __m512d) -> (__m512d, __m512d) {
     (_mm512_castsi512_pd(mantissa), _mm512_sub_pd(_mm512_castsi512_pd(exponent), _mm512_set1_pd(BIAS)))
 }
 
-/// Reads four numbers at each of four addresses; the k-th register has the k-th numbers.
+/// Reads four numbers at each of four addresses. The k-th register has the k-th numbers.
 ///
 /// # Safety
 /// The processor must have AVX2, and four numbers must lie at every address.
@@ -290,7 +290,7 @@ unsafe fn rows_avx2(at: [*const f64; 4]) -> [__m256d; ROW] {
     ]
 }
 
-/// Reads four numbers at each of eight addresses; the k-th register has the k-th numbers.
+/// Reads four numbers at each of eight addresses. The k-th register has the k-th numbers.
 ///
 /// # Safety
 /// The processor must have AVX-512, and four numbers must lie at every address.

@@ -9,7 +9,7 @@ pub(crate) fn inverse<S: Lane>(a: S) -> S {
     S::select(real, S::one() / S::select(real, a, S::one()), S::zero())
 }
 
-/// A vector as a vector in space; if it is in the plane, its third coordinate is zero.
+/// A vector as a vector in space. If it is in the plane, its third coordinate is zero.
 #[inline(always)]
 pub(crate) fn in_space<S: Lane, const D: usize>(a: &[S; D]) -> [S; 3] {
     [a[0], a[1], if D == 3 { a[D - 1] } else { S::zero() }]

@@ -9,10 +9,10 @@
 //! (hω)⁴/4 per step, compared with (hω)²/2 for backward Euler.
 //!
 //! **Memory.** The integrator remembers the displacement of the previous step and the velocity at its start. The displacement
-//! and the velocity are part of the state, and so of checkpoints, hashes and replays. The first step, and the first one after a
-//! program has moved a node, is a step of backward Euler. After an impact, the memory of a node is reset as if the node had
-//! always moved with its velocity after the impact, because a difference across an impact does not describe the motion after
-//! it.
+//! and the velocity are part of the state, and so of checkpoints, hashes and replays. The first step is a step of backward
+//! Euler, and so is the first step after a program has moved a node. After an impact, the memory of a node is reset as if the
+//! node had always moved with its velocity after the impact, because a difference across an impact does not describe the motion
+//! after it.
 //!
 //! Source: Curtiss and Hirschfelder 1952; Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, III.5 (5.9).
 

@@ -24,7 +24,7 @@ fn there_is_no_limit() {
     testing::check_no_limit(&rule());
 }
 
-/// The first step is one of backward Euler, −g h²; the velocity is exact from the first step on. The error of the first step
+/// The first step is one of backward Euler, −g h². The velocity is exact from the first step on. The error of the first step
 /// decays as (1/3)ⁿ, so the position ends up at a constant distance from −½ g t²: it is −g h² (n²/2 + 3/4 (1 − 3⁻ⁿ)).
 #[test]
 fn free_fall_is_that_of_its_recurrence() {

@@ -25,8 +25,8 @@
 //!
 //! A body that nothing holds has either no equilibrium or many. Such a body is refused, and the error names its free motions. The
 //! same applies to a body of several pieces, such as a map with islands, if one piece is free. Without `arc_length`, obstacles
-//! may hold the body too. Within the iteration, a direction without stiffness then gets a billionth of the stiffness of the
-//! others. If the iteration still fails, the error names the motions that contact leaves free.
+//! may hold the body too. Within the iteration, a direction without stiffness then gets a billionth of the stiffness of the other
+//! directions. If the iteration still fails, the error names the motions that contact leaves free.
 //!
 //! Other bodies may hold a body too, but it is not known in advance how they hold it. The caller therefore finds the common
 //! equilibrium of touching bodies, with the forces and the matrix of each body ([`OpenStep`]).

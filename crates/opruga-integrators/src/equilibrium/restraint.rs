@@ -7,9 +7,9 @@
 //! P_pq = Σ φ_p·(ω_q × F + K φ_q)
 //!
 //! P is zero for a pressure of any strength, because pressure follows the body. For a spring to a pointer, P is φ_p·K φ_q. For a
-//! dead load or the weight, it is zero for a rotation about the axis along which they act. P is also zero if the resultant of
-//! these forces passes through the support of the body. A dead load may do second-order work in most poses but not in some, such
-//! as that of a horizontal pendulum. Several poses of the body are therefore examined.
+//! dead load or the weight, P is zero for a rotation about the axis along which these forces act. P is also zero if the
+//! resultant of these forces passes through the support of the body. A dead load may do second-order work in most poses but not
+//! in some, such as that of a horizontal pendulum. Several poses of the body are therefore examined.
 
 use super::motion::{Motion, Projection, all_motions, center, displacement, of_weights, shape_at, unpinned_motions};
 use super::pieces::whole;

@@ -4,7 +4,8 @@ use super::contact::{Contact, Contacting, SMALL, dot};
 use super::contact_query::ContactQuery;
 use opruga_solve::blocks::{Block, isotropic};
 
-/// If a direction of friction turns by less than this in an iteration, the next iteration uses its derivative.
+/// If a direction of friction turns by less than this in an iteration, the next iteration uses the derivative of the
+/// direction.
 const FOLLOWED: f64 = 0.1;
 
 /// The direction of a slide is always used if the slide is longer than this fraction of the extent.

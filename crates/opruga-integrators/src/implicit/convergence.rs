@@ -54,7 +54,7 @@ pub(super) fn accept_or_refuse<const D: usize>(
     Err(refusal(integrator, settings, workspace, solved, (system.time, degenerate_cells(system)), settings.hint()))
 }
 
-/// The number of degenerate or inverted cells in the state, and the number of cells.
+/// The number of degenerate or inverted cells in the state, and the number of all cells.
 fn degenerate_cells<const D: usize>(system: &System<D>) -> [u32; 2] {
     let view = system.view(Stage::Current, system.time);
     let cells = system.members.iter().flat_map(|member| member.potential.cell_states(&view, 0));

@@ -69,9 +69,9 @@ pub(crate) fn wanted_forces<const D: usize>(
     });
 }
 
-/// Solves for `workspace.step`, including prescribed displacements; `workspace.reaction` is then the force of the constraints,
-/// from which friction follows. Returns the number of products. Also returns the slope, along the step, of the incremental
-/// potential minus the work of friction and constraints.
+/// Solves for `workspace.step`, including prescribed displacements. Afterwards `workspace.reaction` is the force of the
+/// constraints, from which friction follows. Returns the number of products. Also returns the slope, along the step, of the
+/// incremental potential minus the work of friction and constraints.
 pub(super) fn find_direction<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,

@@ -125,7 +125,7 @@ pub(super) fn enter_stage<R: Rule<D>, const D: usize>(
     }
 }
 
-/// For rules that use the mean of start and end, records the share of the end in the work.
+/// If a rule uses the mean of start and end, records the part of the work that belongs to the end.
 pub(super) fn enter_end<R: Rule<D>, const D: usize>(
     system: &mut System<D>,
     workspace: &mut Workspace<D>,

@@ -18,10 +18,10 @@ const MOST_ITERATIONS: u32 = 50;
 ///
 /// The result of few iterations is accepted only if it creates no energy. Otherwise the step is solved by Newton's method with
 /// its line search. If that search does not converge, the step is made in two halves. The incremental potential must not be
-/// above that of a body that does not move. The potential is checked for bodies in the air. The potential is also checked for
-/// other bodies if their matrix was rebuilt during the step, if they moved far, or if their residual is larger than promised.
-/// The residual of a body on an obstacle counts as an impulse of the obstacle, which the potential does not contain. The end of
-/// such a step is doubtful ([`Solved::doubtful`]), so the energy of the body decides whether it is accepted.
+/// above the potential of a body that does not move. The potential is checked for bodies in the air. The potential is also
+/// checked for other bodies if their matrix was rebuilt during the step, if they moved far, or if their residual is larger than
+/// promised. The residual of a body on an obstacle counts as an impulse of the obstacle, which the potential does not contain.
+/// The end of such a step is doubtful ([`Solved::doubtful`]), so the energy of the body decides whether it is accepted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RealTime(pub(crate) Settings);
 

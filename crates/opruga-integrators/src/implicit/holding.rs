@@ -1,9 +1,9 @@
 //! The effect of pins on nodes that a consistent mass matrix couples to pinned nodes.
 //!
-//! From the moment at which it is pinned, a node has the velocity of its pin. In a step, this is the mean velocity w over the
-//! step. If the node had another velocity (because a body is caught in flight, or because a table of motion has corners), the
-//! pin gives an impulse at the start of the step. The impulse acts only on the pinned node, but consistent masses couple nodes,
-//! so its neighbours recoil, as a bat does beyond the grip:
+//! From the moment at which it is pinned, a node has the velocity of its pin. In a step, the velocity of the pin is the mean
+//! velocity w over the step. If the node had another velocity (because a body is caught in flight, or because a table of motion
+//! has corners), the pin gives an impulse at the start of the step. The impulse acts only on the pinned node, but consistent
+//! masses couple nodes, so its neighbours recoil, as a bat does beyond the grip:
 //!
 //! M_ff Δv_f + M_fp (w − v_p) = 0.
 //!
@@ -12,7 +12,7 @@
 //! the rule is. At the end of the step they still have the velocity w. Otherwise each rule would treat a jump of velocity
 //! within a step differently, and the motion would depend on the rule.
 //!
-//! With lumped masses no impulse reaches a neighbour, so none of this is needed.
+//! With lumped masses no impulse reaches a neighbour, so these computations are not needed.
 
 use opruga_core::state::Columns;
 use opruga_core::system::System;

@@ -45,7 +45,7 @@ impl<const D: usize> Contacting<D> {
     }
 
     /// Ends a step: records the work of the forces that held nodes (`ending.reaction`), and corrects velocities. Rules discard
-    /// their memory in the directions in which a surface has stopped nodes; `struck` lists these nodes.
+    /// their memory in the directions in which a surface has stopped nodes. `struck` lists these nodes.
     pub(crate) fn end(
         &self,
         system: &mut System<D>,

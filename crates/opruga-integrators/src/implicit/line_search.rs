@@ -16,7 +16,7 @@ const SLOPE_LEFT: f64 = 0.8;
 const STEEP: f64 = 0.3;
 pub(super) const LONGEST_STRETCH: f64 = 16.0;
 
-/// Energies that differ by less than this fraction of their terms count as equal.
+/// Energies count as equal if they differ by less than this fraction of their terms.
 const ROUNDING: f64 = 1e-12;
 
 /// Whether a step is extended if the slope at its end is still steep.

@@ -72,7 +72,7 @@ pub(crate) struct Mixture<'a, const D: usize> {
     pub(crate) matrix_free: bool,
 }
 
-/// The free directions of each node: all of them, or those of its projector.
+/// The free directions of each node: all directions, or the directions of its projector.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Filter<'a, const D: usize> {
     pub(crate) free: &'a [bool],

@@ -81,7 +81,7 @@ impl Mixing {
         refill(&mut self.change, change);
     }
 
-    /// Removes from a change, which was just recorded, the part that previous iterations make unnecessary.
+    /// Removes from a change that was just recorded the part that previous iterations make unnecessary.
     pub(crate) fn mix(&mut self, change: &mut [f64]) {
         let Mixing { changes, displacements, known, across, combined, rest, .. } = self;
         refill(rest, change);

@@ -52,8 +52,8 @@
 //! meets, because nothing else would keep a falling body from passing through. This treatment of contact is the primal–dual
 //! active set method, a semi-smooth Newton method (Hintermüller, Ito, Kunisch 2003; Hüeber and Wohlmuth 2005), so contact costs
 //! few additional iterations. The friction in a direction uses the normal force that the same direction causes. Velocities are
-//! corrected at the end of the step: the incoming normal velocity is lost or returned according to the restitution, and
-//! friction reduces the tangential velocity by µ times the normal change.
+//! corrected at the end of the step. The incoming normal velocity is lost or returned according to the restitution. Friction
+//! reduces the tangential velocity by µ times the change of the normal velocity.
 
 mod answer;
 mod answer_matrix;

@@ -10,8 +10,8 @@
 //!
 //! L = W + U₀ − U₁ − v̄·J.
 //!
-//! The loss L may be negative, and it is exact for any U. If only forces with the potential U act, it has the following form,
-//! with g = ∇U.
+//! The loss L may be negative, and it is exact for any U. If only forces with the potential U act, the loss L has the following
+//! form, with g = ∇U.
 //!
 //! | rule | L |
 //! |---|---|

@@ -2,8 +2,8 @@
 //!
 //! Every iteration balances the exact forces. The matrix only determines the correction. If the matrix belongs to another shape
 //! of the body, or if its equations are solved only approximately, a part of the residual remains, and the next step begins
-//! with it. At rest no residual remains. The iteration begins with the positions to which the acceleration of the previous step
-//! would lead, and with the contact forces of that step (`contact_forces`).
+//! with this part. At rest no residual remains. The iteration begins with the positions to which the acceleration of the
+//! previous step would lead, and with the contact forces of that step (`contact_forces`).
 //!
 //! The residual of a step shows whether the matrix is still good enough. Near obstacles the residual comes mostly from changes
 //! of contacts. Near obstacles, the measure is therefore the difference between the forces after an iteration and the forces

@@ -3,7 +3,7 @@
 //! Positions have sixteen digits. Rounding the positions causes forces of about ε |x| times the stiffness of a node. Such a
 //! force may be a multiple of the weight of the node: E ε |x|/(ρ g ℓ²) times this weight in a body with cells of size ℓ. The
 //! residual of a single node is then meaningless. But at all positions, the forces between nodes and their moments sum to zero
-//! over a piece of a body. The rounding of that sum is smaller by another ε. The sum of the residuals, which consists of
+//! over a piece of a body. The rounding of that sum is smaller by another factor ε. The sum of the residuals, which consists of
 //! weight, loads and inertia, is therefore known even if its terms are not. A matrix whose stiffness is 1/ε times its mass is
 //! also useless for these motions, since the sums of its rows are rounding errors.
 //!
@@ -136,7 +136,7 @@ impl<const D: usize> Rigid<D> {
     }
 
     /// The residual in the free directions without the forces between nodes: inertia, the weight, friction and all external
-    /// models. Forces between nodes are left out, because the rest may be lost in their rounding.
+    /// models. Forces between nodes are left out, because the other forces may be lost in the rounding of these.
     pub(super) fn residual(&self, stage: &Stage<'_, D>) -> Vec<f64> {
         let Stage { mixture, u, y, filter, contacting, .. } = stage;
         if !self.any_is_free() {

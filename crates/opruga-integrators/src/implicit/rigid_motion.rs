@@ -6,7 +6,7 @@ use opruga_solve::blocks::times;
 /// Two held directions count as the same if they differ by less than this.
 const SAME: f64 = 1e-8;
 
-/// x moves by t + ω × (x − c); in the plane ω is along the third axis.
+/// x moves by t + ω × (x − c). In the plane ω is along the third axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion<const D: usize> {
     pub(super) translation: [f64; D],

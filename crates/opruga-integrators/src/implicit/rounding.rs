@@ -162,7 +162,7 @@ pub(super) fn most_rounding<const D: usize>(
     [f64::EPSILON * size, force, if balance.sigma == 0.0 { 0.0 } else { displacement }]
 }
 
-/// How far rounding errors of the forces, of random signs, may move a node with the matrix of the result [m].
+/// How far rounding errors of the forces, which have random signs, may move a node [m], computed with the matrix of the result.
 pub(super) fn random_error<const D: usize>(
     system: &System<D>,
     workspace: &mut Workspace<D>,

@@ -204,8 +204,8 @@ impl<R: Rule<D>, const D: usize> Method<'_, R, D> {
     }
 
     /// Finds the stage and the end of a step. The guards are applied in this order: contact, convergence, obstacles at the end
-    /// of the step, energy of a minimiser that is not exact, energy of the rule. If a guard refuses the step, it determines
-    /// what replaces the step.
+    /// of the step, energy of a minimiser that is not exact, energy of the rule. A guard that refuses the step determines what
+    /// replaces the step.
     fn find_end(&self, system: &mut System<D>, workspace: &mut Workspace<D>, h: f64) -> Result<Found<R>, StepError> {
         let own = if system.pushes.is_some() { self.rule.pushed() } else { self.rule };
         let in_contact = own.in_contact();

@@ -1,7 +1,8 @@
 //! The θ-method: M (v₁ − v₀) = h F at the fraction θ between x₀ and x₁ = x₀ + h w, with w = (1 − θ) v₀ + θ v₁.
 //!
 //! θ = ½ is the implicit midpoint rule, θ = 1 is backward Euler. In a step, the amplitude of motion much faster than the step
-//! is multiplied by (1 − θ)/θ, and that of an oscillation with small hω loses the fraction (θ − ½) h²ω² (Hughes 1987, 8.2).
+//! is multiplied by (1 − θ)/θ, and the amplitude of an oscillation with small hω loses the fraction (θ − ½) h²ω² (Hughes
+//! 1987, 8.2).
 
 use super::balance::Balance;
 use super::workspace::Workspace;
@@ -17,8 +18,8 @@ const RADIUS_IN_CONTACT: f64 = 0.9;
 impl Theta {
     /// The implicit midpoint rule.
     pub(crate) const MIDDLE: Theta = Theta(0.5);
-    /// The rule for steps in which obstacles hold nodes. Without it, the vibration of a stiff body in contact would never end,
-    /// and friction would act on this vibration.
+    /// The rule for steps in which obstacles hold nodes. Without this rule, the vibration of a stiff body in contact would
+    /// never end, and friction would act on this vibration.
     pub(crate) const IN_CONTACT: Theta = Theta(1.0 / (1.0 + RADIUS_IN_CONTACT));
     /// Backward Euler, which dissipates energy from all motion.
     pub(crate) const END: Theta = Theta(1.0);

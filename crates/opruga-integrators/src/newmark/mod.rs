@@ -3,17 +3,17 @@
 //! x₁ = x₀ + h v₀ + h² ((½ − β) a₀ + β a₁),  v₁ = v₀ + h ((1 − γ) a₀ + γ a₁),
 //! M ((1 − α_m) a₁ + α_m a₀) = F(x_s, v_s, t_s),  x_s = (1 − α_f) x₁ + α_f x₀, v_s and t_s likewise.
 //!
-//! Without `spectral_radius` it is the average acceleration method: α_m = α_f = 0, γ = ½, β = ¼. The method has second order,
-//! is stable for every step size on linear systems, and damps no frequency. With `spectral_radius` ρ from 0 to 1 it is the
-//! generalised-α method. At hω → ∞, the amplitude is multiplied by ρ in each step, and slow motion is damped as little as this
-//! factor permits: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². The generalised-α method
-//! also has second order.
+//! Without `spectral_radius` the rule is the average acceleration method: α_m = α_f = 0, γ = ½, β = ¼. The method has second
+//! order, is stable for every step size on linear systems, and damps no frequency. With `spectral_radius` ρ from 0 to 1 the
+//! rule is the generalised-α method. At hω → ∞, the amplitude is multiplied by ρ in each step, and slow motion is damped as
+//! little as this factor permits: α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)². The
+//! generalised-α method also has second order.
 //!
 //! **Memory.** The integrator remembers the acceleration. The first value is F/M, and so is the first value after a program has
 //! moved a node. When a node meets an obstacle, the component of its acceleration normal to the surface is discarded, because
 //! it belongs to the time before the impact. Free fall is exact. The average acceleration method damps nothing and would
-//! sustain an oscillation of the contact forces (Hughes et al. 1976). So steps in which obstacles hold nodes use a related
-//! rule, the implicit midpoint rule in its form for contact.
+//! sustain an oscillation of the contact forces (Hughes et al. 1976). Steps in which obstacles hold nodes therefore use a
+//! related rule, the implicit midpoint rule in its form for contact.
 //!
 //! Source: Newmark 1959; Chung and Hulbert, *A time integration algorithm for structural dynamics with improved numerical
 //! dissipation: the generalized-α method*, 1993 (the force in the averaged state: Erlicher, Bonaventura, Bursi 2002).

@@ -43,7 +43,7 @@ fn free_fall_is_exact() {
     }
 }
 
-/// The largest eigenvalue at hω → ∞ is the specified one (Chung and Hulbert 1993); for average acceleration it is 1 everywhere.
+/// The largest eigenvalue at hω → ∞ is the specified one (Chung and Hulbert 1993). For average acceleration it is 1 everywhere.
 #[test]
 fn the_spectral_radius_is_the_one_that_was_asked_for() {
     for rho in [0.0, 0.3, 0.8, 1.0] {

@@ -10,14 +10,14 @@
 //! y  = y₀ + h/6 (k₀ + 2 k₁ + 2 k₂ + k₃)        | ⅙  ⅓  ⅓  ⅙
 //! ```
 //!
-//! Fourth order (also with damping), four forces per step. The stability function is R(z) = 1 + z + z²/2 + z³/6 + z⁴/24; on the
+//! Fourth order (also with damping), four forces per step. The stability function is R(z) = 1 + z + z²/2 + z³/6 + z⁴/24. On the
 //! imaginary axis |R|² = 1 − (hω)⁶/72 + (hω)⁸/576. Without damping, the method is therefore stable for h ω ≤ 2√2 = 2.828, and it
 //! dissipates the fraction (hω)⁶/72 of the energy per step. A mode without stiffness is stable for h c ≤ 2.785. Free fall is
 //! exact.
 //!
 //! **Slopes are not stored**: h a₀ = 2 (v₁ − v₀), h a₁ = 2 (v₂ − v₀), h a₂ = v₃ − v₀, and the slopes of x are the velocities of
-//! the stages. So the end of the step is known as soon as y₃ is, except for the term h a₃/6; this end replaces y₂ in memory. Two
-//! pairs of work columns are enough for four stages:
+//! the stages. So the end of the step is known as soon as y₃ is, except for the term h a₃/6; this end replaces y₂ in memory.
+//! Two pairs of work columns are enough for four stages:
 //!
 //! ```text
 //! stage   forces in   reads           writes

@@ -2,8 +2,8 @@
 //!
 //! v₁ = v₀ + h a(x₀, v₀), x₁ = x₀ + h v₁ (the method of the thesis, section 2.4). First order. The method conserves the
 //! symplectic form, so the error of the energy of an undamped system stays within O(h) for ever. The method is stable for
-//! h ω < 2 without damping. With damping, which is evaluated at the old velocity, it is stable for h < (2/ω)(√(1 + ζ²) −
-//! ζ).
+//! h ω < 2 without damping. With damping, which is evaluated at the old velocity, the method is stable for h < (2/ω)(√(1
+//! + ζ²) − ζ).
 
 #[cfg(test)]
 mod tests;

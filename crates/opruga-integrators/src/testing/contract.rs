@@ -107,7 +107,8 @@ fn held_axes_follow_their_path() {
     }
 }
 
-/// The damping account plus the energy is constant except for the error of the integrator, which falls at its order.
+/// The sum of the damping account and the energy is constant except for the error of the integrator, which falls at the order of
+/// the integrator.
 #[test]
 fn the_ledger_closes_at_the_order_of_the_rule() {
     for (rule, order) in &rules() {

@@ -105,7 +105,7 @@ fn gradient_at(system: &mut System<2>, x: &Vectors) -> Vectors {
     of(&forces).map(|f| f.map(|f| -f))
 }
 
-/// The dissipation according to the formula of an integrator; `before` is the state at the start of the previous step.
+/// The dissipation according to the formula of an integrator. `before` is the state at the start of the previous step.
 fn dissipated(formula: Formula, system: &mut System<2>, [before, start, end]: [Option<Moment>; 3], h: f64) -> f64 {
     let (start, end) = (start.unwrap(), end.unwrap());
     let (dx, dv) = (less(&end.x, &start.x), less(&end.v, &start.v));

@@ -51,7 +51,7 @@ fn diagonal<const D: usize>(value: f64) -> [[f64; D]; D] {
     core::array::from_fn(|i| core::array::from_fn(|j| if i == j { value } else { 0.0 }))
 }
 
-/// One node on a spring and damper to the origin; coordinate d starts with d + 1 times the amplitude.
+/// One node on a spring and damper to the origin. Coordinate d starts with d + 1 times the amplitude.
 pub(crate) fn oscillator<const D: usize>(mass: f64, stiffness: f64, damping: f64, x: f64, v: f64) -> System<D> {
     let (mut columns, mut velocities) = (Columns::zeros(8), Columns::zeros(8));
     columns.set(0, core::array::from_fn(|d| x * (d + 1) as f64));

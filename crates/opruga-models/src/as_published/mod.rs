@@ -14,8 +14,8 @@
 //! For the engine, this is an ordinary model. `prepare` computes the forces. The memory of the model is the state of the ramp
 //! and the vertex that the mouse holds. F_y is multiplied by the mass of its node, so that the integrator's division gives the
 //! published v_y (E9). The published floor (y = 500, v_y = −½ v_y on crossing) is the engine's collider with restitution ½ and
-//! no friction. Edges run with the interior to their left. With y downwards, this is the direction of the thesis. Node i of a spring is the second
-//! node of its edge.
+//! no friction. Edges run with the interior to their left. With y downwards, this is the direction of the thesis. Node i of a spring is the
+//! second node of its edge.
 //!
 //! ## Where it is not the physics
 //!
@@ -195,8 +195,8 @@ impl AsPublished {
         volume
     }
 
-    /// 2. The mouse: pulls the vertex that it holds. Returns the number of the press, counted from 1, and the vertex that the mouse holds. Returns
-    /// zeros if no press is active.
+    /// 2. The mouse: pulls the vertex that it holds. Returns the number of the press, counted from 1, and the vertex that the mouse holds.
+    /// Returns zeros if no press is active.
     fn mouse<const D: usize>(&self, view: &View<D>, body: usize, memory: &[f64], forces: &mut [f64]) -> (usize, usize) {
         let c = self.constants(body);
         let press = c.press(view.time);

@@ -5,7 +5,7 @@
 //!
 //! U = Σ ½ k (θ − θ₀)²,  f = −k (θ − θ₀) ∇θ − c θ̇ ∇θ.
 //!
-//! θ comes from atan2 of its sine and cosine, so that it is accurate at every angle; ∇θ is exact and the Hessian is its exact
+//! θ comes from atan2 of its sine and cosine, so that it is accurate at every angle. ∇θ is exact, and the Hessian is its exact
 //! derivative by dual numbers. [`SPEC`] describes how k follows from a modulus and a thickness, and what happens to degenerate
 //! hinges.
 //!

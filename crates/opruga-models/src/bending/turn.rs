@@ -5,7 +5,7 @@ use crate::vectors::{cross, dot, in_dimension, in_space, inverse, minus};
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;
 
-/// The nodes are before, at and after the hinge; parameters k [N·m], c [N·m·s], cos θ₀, sin θ₀.
+/// The nodes are before, at and after the hinge. The parameters are k [N·m], c [N·m·s], cos θ₀ and sin θ₀.
 ///
 /// ```text
 ///             w   2        θ from u to w: signed in the plane (left is positive), 0 … π in space
@@ -21,7 +21,7 @@ struct Bent<S> {
     u: [S; 3],
     w: [S; 3],
     normal: [S; 3],
-    /// sin and cos of the angle, times the lengths of both edges; the sine is signed in the plane.
+    /// sin and cos of the angle, times the lengths of both edges. The sine is signed in the plane.
     sine: S,
     cosine: S,
 }

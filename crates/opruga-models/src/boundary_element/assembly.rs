@@ -30,7 +30,7 @@ pub(super) struct Changes {
     /// The relative size |QQᵀK|/|K| of the part of K that exerted forces under rigid motion. This size is measured after rigid
     /// motion was removed from the columns of K.
     pub(super) rigid: f64,
-    /// The largest traction of a rotation by 1 rad, over μ; it measures the error of the integrals.
+    /// The largest traction of a rotation by 1 rad, over μ. It measures the error of the integrals.
     pub(super) rotation: f64,
     /// The norm of the removed part with negative eigenvalues, divided by the norm of K.
     pub(super) negative: f64,

@@ -2,10 +2,10 @@
 //!
 //! If the source lies on the side, the side is divided into parts with their apex at the source, r = s ρ(t). Then neither U dS
 //! nor T (u(y) − u(ξ)) dS depends on s, and the integral over s is computed analytically. The remaining integrand is smooth in
-//! the variable τ with dt/ρ = dτ/ℓ; each piece of length 1 gets 12 points. If the source does not lie on the side, Gauss's
-//! rules have as many points as the distance requires. Sides that are nearer than 1.6 times their size (in the plane, their
-//! length) are halved in each direction. The total error is below 1e-9 of the integrals. The error is measured by the tractions
-//! of a rotation, which should be zero (docs/boundary-elements.md).
+//! the variable τ with dt/ρ = dτ/ℓ. Each piece of length 1 gets 12 points. If the source does not lie on the side, Gauss's rules
+//! have as many points as the distance requires. Sides that are nearer than 1.6 times their size (in the plane, their length) are
+//! halved in each direction. The total error is below 1e-9 of the integrals. The error is measured by the tractions of a
+//! rotation, which should be zero (docs/boundary-elements.md).
 
 use super::kernels::{Block, Kelvin};
 use super::quadrature::{Rule, SimplexRule};
@@ -122,7 +122,7 @@ impl<const D: usize> Integrator<D> {
         }
     }
 
-    /// Computes the integrals over the side that contains the source; `shape` contains the shape functions of the side at the
+    /// Computes the integrals over the side that contains the source. `shape` contains the shape functions of the side at the
     /// source. The integrals of T contain N_k(y) − N_k(ξ) instead of N_k(y).
     pub(super) fn singular(&self, source: &[f64; D], shape: &[f64; D], side: &Side<D>) -> Sums<D> {
         let mut sums = Sums::NONE;

@@ -48,8 +48,8 @@ pub(super) struct SimplexRule<const D: usize> {
 }
 
 impl<const D: usize> SimplexRule<D> {
-    /// The rule with n points along each direction. In the plane this is the rule of an interval. In space it is the rule of a
-    /// square, one side of which is collapsed to a corner of the triangle.
+    /// The rule with n points along each direction. In the plane, the result is the rule of an interval. In space, it is the
+    /// rule of a square of which one side is collapsed to a corner of the triangle.
     pub(super) fn of(n: usize) -> SimplexRule<D> {
         let rule = Rule::of(n);
         let mut points = Vec::new();

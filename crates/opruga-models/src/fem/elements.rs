@@ -1,7 +1,7 @@
 //! The elements: shape functions on reference cells, and their integration points.
 //!
 //! Nodes are numbered as in [`opruga_mesh::Cells`]. Reference simplices have the corner 0 at the origin and the others at the
-//! unit vectors; reference boxes are [−1, 1]ᴰ.
+//! unit vectors. Reference boxes are [−1, 1]ᴰ.
 
 use core::fmt::Debug;
 use opruga_mesh::{TETRAHEDRON_EDGES, TETRAHEDRON_SHARES, TRIANGLE_SHARES, TRIANGLE_SIDES};

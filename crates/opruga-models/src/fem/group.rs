@@ -27,7 +27,7 @@ pub(super) struct Group<'a> {
 }
 
 impl Group<'_> {
-    /// The number of elements in a pack of one body; the last pack may not be full.
+    /// The number of elements in a pack of one body. The last pack may not be full.
     #[inline(always)]
     pub(super) fn present(&self, pack: usize) -> usize {
         match self.layout {

@@ -21,7 +21,8 @@ pub(super) trait Part<const D: usize>: Send + Sync + Debug {
     /// Visits the nodes of every element.
     fn stencils(&self, visit: &mut dyn FnMut(&[u32]));
     /// The length of the scratch of a share: energies [J] and powers [W] of the bodies, forces [N] (−∂U/∂x and damping), and
-    /// copies of the data read. For one body the forces of a node are a row; for eight, a pack for every axis.
+    /// copies of the data read. For one body the forces of a node are a row. For eight bodies they are a pack for every
+    /// axis.
     fn scratch_len(&self, share: &Share) -> usize;
     /// Evaluates the elements of a share.
     fn evaluate(

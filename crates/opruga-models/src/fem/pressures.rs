@@ -12,7 +12,7 @@ use opruga_core::state::Layout;
 use opruga_math::matrix;
 use opruga_math::{Lane, Pack, ROW, Register, WIDTH, Work};
 
-/// J − 1 of linear simplices; under a law that does not account for rotations, tr (F − 1).
+/// J − 1 of linear simplices, or tr (F − 1) under a law that does not account for rotations.
 pub(super) struct Growth<'a, E, const D: usize, const N: usize> {
     pub(super) shape: PhantomData<E>,
     pub(super) group: Group<'a>,

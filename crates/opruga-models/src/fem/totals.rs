@@ -6,7 +6,8 @@ use opruga_math::{WIDTH, sum_in_fixed_order};
 /// Sums over elements whose bits do not depend on the layout.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Totals {
-    /// Energy [J]: for one body, eight partial sums in the first row; for eight bodies, a column each.
+    /// Energy [J]: for one body, eight partial sums in the first row; for eight bodies, a column for
+    /// each.
     pub(super) energy: [[f64; WIDTH]; WIDTH],
     /// Power of damping [W].
     pub(super) power: [[f64; WIDTH]; WIDTH],

@@ -45,8 +45,8 @@ impl<const D: usize> Kernel<D, 2, 3> for Stretch {
 ///   x′ = (L₊ a + L₋ b)/(L₋ + L₊),  x″ = (b − a)/ℓ,  x′ × x″ = a × b/ℓ
 ///   B = n·x″ = |a × b|/(ℓ |x′|), signed in the plane
 /// ```
-/// U = ½ EI ℓ (B − B₀)². In space the force is −EI ℓ (1 − B₀/B) ½∇B². If the curve is straight at rest, this is smooth in the
-/// straight state; if it is curved at rest, the force has no direction in the straight state and is set to zero.
+/// U = ½ EI ℓ (B − B₀)². In space the force is −EI ℓ (1 − B₀/B) ½∇B². If the curve is straight at rest, this force is smooth
+/// in the straight state. If the curve is bent at rest, the force has no direction in the straight state and is set to zero.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bend;
 

@@ -28,8 +28,8 @@ fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-/// The spacings of a cell that is a rectangle or box: each corner is corner 0 plus the steps of `steps` along perpendicular axes,
-/// and `neighbours` gives the corner one step along each axis. Other cells are refused.
+/// The spacings of a cell that is a rectangle or box. Each corner is corner 0 plus the steps of `steps` along perpendicular axes.
+/// `neighbours` gives the corner one step along each axis. Other cells are refused.
 pub(super) fn spacings<const D: usize, const N: usize, const A: usize>(
     mesh: &Mesh<D>,
     number: usize,

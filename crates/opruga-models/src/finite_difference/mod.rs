@@ -68,7 +68,7 @@ opruga_math::messages! {
         #[error("the body is not a regular grid")]
         #[allowed("line, ring, polyline, sheet, and a grid of quadrilaterals or hexahedra")]
         NotAGrid {},
-        /// A cell is not a rectangle or box; the deviation is a fraction of its smallest spacing.
+        /// A cell that is not a rectangle or box. The deviation is a fraction of the smallest spacing of the cell.
         "model.not_rectangular"
         #[error("cell {cell} deviates from a rectangle by {} of its spacing", number(*deviation))]
         #[allowed("at most 1e-6")]

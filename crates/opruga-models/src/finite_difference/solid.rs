@@ -1,8 +1,8 @@
 //! Differences in the cells of a grid: Green's strain of its edges and faces.
 //!
-//! Strains along an axis are defined on edges, shear strains at the centres of faces. Where the law multiplies the strains of
-//! two axes, the means of these strains over the cell are used. Every edge and every face has its own energy, so no
-//! checkerboard of displacements has zero energy.
+//! Strains along an axis are defined on edges, and shear strains are defined at the centres of faces. Where the law multiplies
+//! the strains of two axes, the means of these strains over the cell are used. Every edge and every face has its own energy, so
+//! no checkerboard of displacements has zero energy.
 
 use opruga_core::stencil::Kernel;
 use opruga_math::Lane;
@@ -171,7 +171,7 @@ impl<const D: usize> Kernel<D, 4, 7> for Quadrilateral {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hexahedron;
 
-/// The edges of a hexahedron, four along each axis; corner numbers as in [`opruga_mesh::Cells`].
+/// The edges of a hexahedron, four along each axis. Corners are numbered as in [`opruga_mesh::Cells`].
 const EDGES: [[[usize; 2]; 4]; 3] =
     [[[0, 1], [3, 2], [4, 5], [7, 6]], [[0, 3], [1, 2], [4, 7], [5, 6]], [[0, 4], [1, 5], [3, 7], [2, 6]]];
 

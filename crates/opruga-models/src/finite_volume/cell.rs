@@ -153,8 +153,8 @@ pub(super) fn inverse<const D: usize>(side: &Matrix<f64, D>) -> (Matrix<f64, D>,
     (out, determinant)
 }
 
-/// The area vectors of the dual faces of all edges [m²]; in the plane, they are lengths [m]. Each points from the first node of
-/// its edge to the second.
+/// The area vectors of the dual faces of all edges [m²]; in the plane, they are lengths [m]. Each vector points from the first
+/// node of its edge to the second.
 pub(super) fn dual_faces<C: Cell<D, N>, const D: usize, const N: usize>(x: &[[f64; D]; N]) -> Vec<[f64; D]> {
     let center = mean(x, 0..N);
     let face = |(number, &[i, j]): (usize, &[usize; 2])| {

@@ -244,7 +244,7 @@ impl Boundary {
         }
     }
 
-    /// The nodes of the boundary; a node on several facets may be repeated.
+    /// The nodes of the boundary. A node on several facets may be repeated.
     pub(super) fn nodes(&self) -> &[u32] {
         match self {
             Boundary::Plane(edges) => edges.pairs().as_flattened(),

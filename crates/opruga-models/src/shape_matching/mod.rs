@@ -16,7 +16,7 @@
 //! and their directions stay free.
 //!
 //! **Hessian** (file `hessian`): κ m on the diagonal, minus terms of rank one: translations, rotations with 1/(σᵢ + σⱼ) of A, and
-//! the D columns cₖ with κβ. A compressed cluster has negative eigenvalues along rotations (σᵢ + σⱼ less than at rest); the
+//! the D columns cₖ with κβ. A compressed cluster has negative eigenvalues along rotations (σᵢ + σⱼ less than at rest). The
 //! clamped Hessian has none.
 //!
 //! **Frequencies** at rest, if the masses in U are those of the nodes: 0 for rigid motion, √((1 − β)κ) for strains that T

@@ -56,7 +56,7 @@ pub(super) struct Pieces<const D: usize> {
     pub(super) center: [Column; D],
 }
 
-/// C with φ = C q, from the lower triangular L of q = L φ; the row of an omitted column is zero.
+/// C with φ = C q, from the lower triangular L of q = L φ. The row of an omitted column is zero.
 fn inverse<const D: usize>(frame: &[[f64; D]; D]) -> [[f64; D]; D] {
     let mut out = [[0.0; D]; D];
     for k in 0..D {

@@ -46,7 +46,7 @@ fn groups<const D: usize>(mesh: &Mesh<D>, names: &str) -> Result<Vec<Vec<u32>>, 
     }
 }
 
-/// Boxes that overlap by half along every axis and cover the body evenly; empty boxes are left out.
+/// Boxes that overlap by half along every axis and cover the body evenly. Empty boxes are left out.
 ///
 /// ```text
 /// |----- box 0 -----|

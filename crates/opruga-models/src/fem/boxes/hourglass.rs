@@ -2,14 +2,15 @@
 //!
 //! The displacement of a cell with N corners is affine except for N − 1 − D *hourglass* modes. The amplitudes of these modes, gₐ
 //! = Σ xₐ γₐ, belong to vectors γ orthogonal to all affine fields (Flanagan and Belytschko 1981). At small strain, the strain ε
-//! of these modes is that of an assumed stress. The strain follows from stress fields s that bend and twist a box exactly (Pian
-//! and Sumihara 1984 in the plane, Pian and Tong 1986 in space; here without their mean) and from the compliance of Hooke's law,
+//! of these modes is the strain of an assumed stress. The strain follows from stress fields s that bend and twist a box exactly
+//! (Pian and Sumihara 1984 in the plane, Pian and Tong 1986 in space; here without their mean) and from the compliance of
+//! Hooke's law,
 //!
 //! ε = C⁻¹ Σ s β,  β = H⁻¹ L g,  L = ∫ s : ∇h,  H = ∫ s : C⁻¹ s,
 //!
 //! whose energy is ½ g·Lᵀ H⁻¹ L g. No combination of the fields is a pure pressure, so the energy stays finite as ν → 0.5. H⁻¹
-//! contains the effect of free sides. A box bends with E in plane stress and with E/(1 − ν²) in plane strain, and ε is the
-//! strain of such bending.
+//! contains the effect of free sides. The modulus of a box in bending is E in plane stress and E/(1 − ν²) in plane strain. The
+//! strain ε is the strain of such bending.
 
 use super::super::elements::{CORNERS, Shape, rest_gradient};
 use super::corners::sums;
@@ -76,8 +77,8 @@ pub(super) const fn measures_at<const N: usize>() -> usize {
     (N - 1) * (N - 1)
 }
 
-/// Values below this fraction of the largest value of their kind count as rounding errors, such as those between equal cells of
-/// a grid.
+/// Values below this fraction of the largest value of their kind count as rounding errors, such as differences between equal
+/// cells of a grid.
 pub(super) const ROUNDING: f64 = 1.0 / (1u64 << 42) as f64;
 
 /// How many numbers describe the material of a cell: X = H⁻¹ L row by row, c, λ − λ′, and kₐ.
@@ -221,7 +222,7 @@ impl<const D: usize, const N: usize> Rest<D, N> {
         rest
     }
 
-    /// X = H⁻¹ L, row by row, for a law whose strain is (s − c tr s 1)/2μ; β is divided by 2μ.
+    /// X = H⁻¹ L, row by row, for a law whose strain is (s − c tr s 1)/2μ. Each β is divided by 2μ.
     pub(super) fn response(&self, c: f64) -> Vec<f64> {
         let size = modes::<D, N>() * D;
         // H = A Aᵀ.

@@ -21,7 +21,7 @@ use opruga_math::{Lane, Pack, Register, WIDTH, Work};
 /// The quantity whose matrix is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in super::super) enum Of {
-    /// Elastic energy; if clamped, without terms that could be negative.
+    /// The elastic energy. If it is clamped, terms that could be negative are left out.
     Energy(Definiteness),
     /// Damping.
     Damping,
@@ -159,7 +159,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Contract<'_, E, D, N> {
         sums
     }
 
-    /// Adds the contribution of the law at the mean of the cell, whose point follows the others.
+    /// Adds the contribution of the law at the mean of the cell. The point of the mean follows the other points.
     #[inline(always)]
     fn add_middle<R: Register>(&self, part: usize, rest: &Rest<'_, R, D, N>, sums: &mut Sums<R, D>) {
         let tangent = self.tangent_at::<R>(self.pack * self.group.points + N, part);
