@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 /// The interval at which a request to stop is passed on and the bar is drawn.
 const TURN: Duration = Duration::from_millis(50);
-/// Shorter work shows no bar.
+/// Work that takes less time shows no bar.
 const SHORT: Duration = Duration::from_secs(1);
 
 /// Does work that can be interrupted. Another thread passes on a request to stop, and shows the progress of a preparation.

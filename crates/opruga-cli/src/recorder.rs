@@ -115,8 +115,8 @@ pub(crate) struct Columns {
     pub(crate) credit: String,
     /// Whether y points downwards in pictures.
     pub(crate) y_down: bool,
-    /// The bodies with columns of their own. For each: its thickness [m], and whether it is a body of the thesis, whose volume and pressure have
-    /// other meanings.
+    /// The bodies with columns of their own. For each body: the thickness [m], and whether it is a body of the thesis, whose volume and pressure
+    /// have other meanings.
     pub(crate) bodies: Vec<(String, f64, bool)>,
 }
 
@@ -266,7 +266,7 @@ fn other_rate(asked: f64, every: u64, frame: f64) -> Option<CallNote> {
     (rounded(rate, 4) != rounded(asked, 4)).then_some(CallNote::OtherRate { rate, asked, every, frame })
 }
 
-/// The number of substeps between two samples within a frame, which make small runs show every oscillation; 0 if there are no such samples.
+/// The number of substeps between two samples within a frame, which make small runs show every oscillation. It is 0 if there are no such samples.
 fn look_every(frames: u64, substeps: u32, nodes: u64) -> u32 {
     let steps = frames * u64::from(substeps);
     let rows = (LOOKED_AT / nodes.max(1)).min(MOST_ROWS);

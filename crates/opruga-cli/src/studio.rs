@@ -1,4 +1,4 @@
-//! The window. It is a separate program, so that it need not be built if it is not used.
+//! The window is a separate program, so that it need not be built if it is not used.
 
 use crate::arguments::Run;
 use crate::errors::CallFault;

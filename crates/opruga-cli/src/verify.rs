@@ -15,7 +15,7 @@ use serde_json::json;
 use std::fmt::Write as _;
 use std::io::IsTerminal;
 
-/// Runs the cases; the exit code is 1 if one fails.
+/// Runs the cases. The exit code is 1 if one of them fails.
 pub(crate) fn verify(call: &Verify, registries: &Registries) -> Result<u8, Failure> {
     let cases = chosen(&call.filter)?;
     if !(0.5..=2.0).contains(&call.stiffer) {

@@ -59,12 +59,12 @@ pub trait Lane:
     fn larger(self, other: Self) -> Self {
         Self::select(other.less(self), self, other)
     }
-    /// Zero in every lane.
+    /// The number zero in every lane.
     #[inline(always)]
     fn zero() -> Self {
         Self::splat(0.0)
     }
-    /// One in every lane.
+    /// The number one in every lane.
     #[inline(always)]
     fn one() -> Self {
         Self::splat(1.0)

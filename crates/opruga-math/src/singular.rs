@@ -13,11 +13,11 @@ use crate::matrix::{self, Matrix};
 /// Rotations U, V and singular values σ of a matrix.
 #[derive(Clone, Copy, Debug)]
 pub struct Singular<S, const D: usize> {
-    /// The left rotation.
+    /// The rotation U on the left.
     pub u: Matrix<S, D>,
     /// The singular values, in decreasing size. The last one has the sign of the determinant.
     pub sigma: [S; D],
-    /// The right rotation.
+    /// The rotation V on the right.
     pub v: Matrix<S, D>,
 }
 

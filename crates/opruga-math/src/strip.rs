@@ -108,7 +108,7 @@ impl<'a> RepeatStrip<'a> {
     pub fn new(column: &'a [f64], start: usize, length: usize) -> Self {
         RepeatStrip { start: column[start..start + length].as_ptr(), step: 1, length, borrow: PhantomData }
     }
-    /// The same eight numbers throughout.
+    /// Eight numbers that repeat along the whole column.
     #[inline(always)]
     pub fn repeated(numbers: &'a [f64; WIDTH], length: usize) -> Self {
         RepeatStrip { start: numbers.as_ptr(), step: 0, length, borrow: PhantomData }

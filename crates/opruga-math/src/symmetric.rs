@@ -5,7 +5,8 @@ use crate::lane::Lane;
 /// The largest number of sweeps. Seven make a 4×4 matrix as accurate as rounding permits.
 const MOST_SWEEPS: usize = 12;
 
-/// An off-diagonal entry counts as zero below this fraction of the diagonal entries of its row and column.
+/// An off-diagonal entry counts as zero if it is below this fraction of the diagonal entries of its row and
+/// column.
 const ZERO: f64 = 1e-17;
 
 /// Eigenvalues, and eigenvectors in columns, of a symmetric matrix (cyclic Jacobi rotations).

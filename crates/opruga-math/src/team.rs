@@ -35,7 +35,7 @@ pub struct Team {
 /// The remaining pieces of a member: the first in the lower sixteen bits, the end in the next.
 type Member = Apart<AtomicU64>;
 
-/// A value on its own cache lines.
+/// A value that has cache lines of its own.
 #[derive(Debug, Default)]
 #[repr(align(128))]
 struct Apart<T>(T);

@@ -107,7 +107,7 @@ pub(crate) fn rings(
     Ok(scene)
 }
 
-/// Measures one row; `draw` is called once per frame.
+/// Measures one row. `draw` is called once per frame.
 pub(crate) fn time(
     (bodies, vertices): (usize, usize),
     registries: &Registries,

@@ -1,4 +1,4 @@
-//! Tests that the order is 1 and that stability has no limit; also tests the amplitude of an oscillation, and free fall.
+//! Tests that the order is 1 and that stability has no limit. Also tests the amplitude of an oscillation, and free fall.
 
 use super::{BackwardEuler, SPEC};
 use crate::implicit::step::Implicit;

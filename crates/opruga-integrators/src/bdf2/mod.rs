@@ -44,8 +44,8 @@ Euler. Bodies are not stepped in batches.",
     roles: &[],
 };
 
-/// The displacement of the previous step [m], the velocity at its start [m/s], and its length [s]. All are zero before the
-/// first step.
+/// The displacement of the previous step [m], the velocity at its start [m/s], and its length [s]. All three are zero before
+/// the first step.
 const DISPLACEMENT: PerNode = PerNode::new("bdf2.displacement");
 const VELOCITY: PerNode = PerNode::new("bdf2.velocity");
 const STEP: PerBody<f64> = PerBody::new("bdf2.step");

@@ -1,4 +1,4 @@
-//! Tests that the order is 2 and that stability has no limit; also tests steps of varying length, and free fall.
+//! Tests that the order is 2 and that stability has no limit. Also tests steps of varying length, and free fall.
 
 use super::{Bdf2, SPEC};
 use crate::implicit::step::Implicit;

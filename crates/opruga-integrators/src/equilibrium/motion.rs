@@ -121,8 +121,8 @@ pub(super) fn unpinned_motions<const D: usize>(
     loose_motions(system, x, piece, touched, None)
 }
 
-/// All rigid motions of a piece: first translations, then rotations about the centre of the piece. Each is scaled to a mean
-/// displacement of one.
+/// All rigid motions of a piece: first translations, then rotations about the centre of the piece. Each motion is scaled to a
+/// mean displacement of one.
 pub(super) fn all_motions<const D: usize>(x: &Columns<D>, piece: &[usize]) -> Vec<Motion<D>> {
     let center = center(x, piece);
     let turns = if D == 2 { 1 } else { 3 };

@@ -10,7 +10,7 @@ use opruga_core::state::{Columns, View};
 use opruga_core::system::{Member, Stage, System};
 use opruga_math::Column;
 
-/// Forces count as rounding below this fraction of the forces due to a stretch of the same length.
+/// Forces count as rounding if they are below this fraction of the forces due to a stretch of the same length.
 const NOTHING: f64 = 1e-6;
 
 /// The rotations of a piece that neither pins nor loads with a stiffness prevent. The forces of the body itself must not

@@ -78,8 +78,8 @@ pub(crate) fn pinned_coordinates<const D: usize>(system: &System<D>) -> Vec<bool
 }
 
 /// Computes the accelerations of the free coordinates from the forces on them and from the accelerations of the pinned
-/// coordinates: M_ff a_f = F_f − M_fp a_p. At the start, `a` holds those of the pinned coordinates; at the end, it also holds
-/// those of the free ones. Changes of velocity by impulses follow from the same equation.
+/// coordinates: M_ff a_f = F_f − M_fp a_p. At the start, `a` holds the accelerations of the pinned coordinates; at the end, it
+/// holds all accelerations. Changes of velocity by impulses follow from the same equation.
 pub fn accelerations<const D: usize>(system: &System<D>, pinned: &[bool], force: &[f64], a: &mut [f64]) {
     let Some(inertia) = &system.inertia else {
         for (k, a) in a.iter_mut().enumerate().filter(|(k, _)| !pinned[*k]) {

@@ -10,7 +10,7 @@ use opruga_math::Lane;
 const VECTORS: f64 = 38.0;
 const VECTORS_WITHOUT_MATRIX: f64 = 30.0;
 
-/// The number of copies of the matrix, in units of its blocks; the packed form and the preconditioners are included. The first
+/// The number of copies of the matrix, in units of its blocks. The packed form and the preconditioners are included. The first
 /// number is for exact minimisers, the second for real time.
 const COPIES: f64 = 1.9;
 const COPIES_IN_REAL_TIME: f64 = 1.6;

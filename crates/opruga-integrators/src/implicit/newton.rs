@@ -253,7 +253,7 @@ impl<'a> Iteration<'a> {
         Ok(self.solved.converged)
     }
 
-    /// Chooses the derivatives of the next direction. Returns whether there are any.
+    /// Chooses the derivatives of the next direction. Returns whether there are any such derivatives.
     fn choose_derivatives<const D: usize>(
         &mut self,
         workspace: &Workspace<D>,

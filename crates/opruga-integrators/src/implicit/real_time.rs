@@ -198,8 +198,8 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Computes the residual in the free directions, including friction and prescribed displacements. It becomes the right-hand
-    /// side; its size is returned.
+    /// Computes the residual in the free directions, including friction and prescribed displacements. Stores the residual as
+    /// the right-hand side, and returns its size.
     fn out_of_balance<const D: usize>(
         &self,
         system: &System<D>,

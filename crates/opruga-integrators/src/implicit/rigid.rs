@@ -43,7 +43,8 @@ struct Piece<const D: usize> {
 /// The rigid motions that are free in an iteration.
 #[derive(Debug, Default)]
 pub(crate) struct Rigid<const D: usize> {
-    /// The nodes of each piece; empty until they are determined. The pieces stay the same as long as the models do.
+    /// The nodes of each piece. The lists are empty until they are determined. The pieces stay the same as long as the models
+    /// do.
     nodes: Vec<Vec<usize>>,
     /// The models that exert forces only between nodes, or `None` if they have not been determined in this step.
     inner: Option<Vec<usize>>,

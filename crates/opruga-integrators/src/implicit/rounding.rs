@@ -144,7 +144,7 @@ pub(super) fn in_doubt<const D: usize>(
 }
 
 /// Three effects of rounding in a body at this distance from the origin: the rounding of positions [m], the largest rounding of
-/// the force of a node [N], and the displacement of a node due to such a force and against its inertia [m].
+/// the force of a node [N], and the displacement [m] that such a force would cause against the inertia of the node.
 pub(super) fn most_rounding<const D: usize>(
     system: &System<D>,
     workspace: &Workspace<D>,

@@ -132,8 +132,8 @@ counts it in a warning. With `arc_length`, the step along the curve is halved re
     ..OTHERWISE
 };
 
-/// The fields of an integrator or of statics. They include the fields of its own, and the fields that determine how equations
-/// are solved.
+/// The fields of an integrator or of statics. The list contains the integrator's own fields, and the fields that determine
+/// how its equations are solved.
 macro_rules! fields {
     (of_time $(, $own:expr)*) => {{
         use $crate::implicit::settings::{ACCURACY, ITERATIONS, LINEAR_SOLVER, OTHERWISE, TOLERANCE};

@@ -43,7 +43,7 @@ struct Piece<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Integrator<const D: usize> {
     pub(super) kelvin: Kelvin,
-    /// The rules in the order of descending distance. Each comes with the smallest distance at which it is accurate enough,
+    /// The rules in the order of descending distance. Each rule comes with the smallest distance at which it is accurate enough,
     /// relative to the size of a piece.
     rules: Vec<(f64, SimplexRule<D>)>,
     along: Rule,

@@ -14,7 +14,7 @@ pub(super) trait Shape<const D: usize, const N: usize>: Copy + Debug + Send + Sy
     const WEIGHTS: &'static [f64];
     /// ∂Nₐ/∂ξ at the points, `[point][node][axis]`.
     const SLOPES: &'static [[[f64; D]; N]];
-    /// The number of corners; D + 1 in a simplex.
+    /// The number of corners, which is D + 1 in a simplex.
     const CORNERS: usize;
     /// The shape functions and ∂Nₐ/∂ξ at a point of the reference cell.
     fn at(xi: [f64; 3]) -> ([f64; N], [[f64; D]; N]);

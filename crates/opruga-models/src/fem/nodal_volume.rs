@@ -178,7 +178,7 @@ impl<const D: usize> NodalVolumes<D> {
         core::array::from_fn(|i| (0..D).map(|j| cofactors[i][j] * own[j]).sum())
     }
 
-    /// Sets where the values J − 1 of the packs of cells are in the scratch of the cells of a solid.
+    /// Records where the scratch of the cells of a solid contains the values J − 1 of the packs of cells.
     pub(super) fn locate(&mut self, grown_at: impl Fn(usize) -> Option<usize>) {
         let offset = |cell: u32| {
             let (pack, lane) = match self.layout {

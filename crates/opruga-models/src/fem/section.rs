@@ -46,7 +46,7 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     pub(super) points: usize,
     pub(super) shares: Vec<Share>,
     /// The location of the nodes of the elements: for one body, N packs of rows of the share for every pack of elements; for
-    /// eight, N indices for every element.
+    /// eight bodies, N indices for every element.
     pub(super) node_indices: Vec<u32>,
     /// For eight bodies, the N rows of the share for every element.
     pub(super) targets: Vec<u32>,
@@ -60,7 +60,7 @@ pub(super) struct Section<E, const D: usize, const N: usize> {
     pub(super) damped: bool,
     /// Whether the nodes carry the volumetric stiffness beyond λ′ (see [`super::nodal_volume`]).
     pub(super) nodal: bool,
-    /// Depth out of the plane [m]; 1 in space.
+    /// The depth out of the plane [m]. It is 1 in space.
     pub(super) thickness: f64,
 }
 
@@ -82,7 +82,7 @@ pub(super) struct Plan<'a, const D: usize> {
     pub(super) law: Box<dyn Law<D>>,
     pub(super) law_in_space: Option<Box<dyn Law<3>>>,
     pub(super) positions: &'a [[f64; D]],
-    /// Depth out of the plane [m]; 1 in space.
+    /// The depth out of the plane [m]. It is 1 in space.
     pub(super) thickness: f64,
     /// Whether the out-of-plane stress is zero.
     pub(super) plane_stress: bool,

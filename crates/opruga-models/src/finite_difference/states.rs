@@ -13,7 +13,7 @@ pub(super) struct Cells<const D: usize> {
     /// The corners, four or eight per cell.
     nodes: Vec<u32>,
     spacings: Vec<[f64; D]>,
-    /// Depth out of the plane [m]; 1 in space.
+    /// The depth out of the plane [m]. It is 1 in space.
     depth: f64,
 }
 

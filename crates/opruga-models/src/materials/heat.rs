@@ -30,7 +30,7 @@ pub(crate) struct HeatedSlice {
     pub(crate) space: Box<dyn Law<3>>,
 }
 
-/// g of the points of a pack.
+/// The growth g of the points of a pack.
 fn growths<'a>(points: &Points<'a>, point: usize) -> &'a [f64] {
     &points.parameters[(point * PARAMETERS + PARAMETERS - 1) * WIDTH..][..WIDTH]
 }

@@ -43,7 +43,7 @@ pub struct PressureModel;
 #[derive(Debug)]
 pub struct Pressure {
     layout: Layout,
-    /// The depth in the plane [m]; 1 in space.
+    /// The depth in the plane [m]. It is 1 in space.
     depth: f64,
     chambers: Vec<Chamber>,
     scratch_len: usize,
@@ -56,8 +56,8 @@ struct Chamber {
     boundary: Boundary,
     /// One gas per body.
     gases: Vec<Gas>,
-    /// The offset of the data of the chamber in the scratch: for each body the volume, the force per ∂V/∂x and nRT; then the area
-    /// vectors.
+    /// The offset of the data of the chamber in the scratch. The data are the volume, the force per ∂V/∂x and nRT of each body,
+    /// followed by the area vectors.
     scratch: usize,
     area_len: usize,
 }
@@ -162,7 +162,7 @@ impl Chamber {
         &self.gases[body.min(self.gases.len() - 1)]
     }
     /// The results of `prepare`. For each body: volume (area), gauge pressure times depth, nRT, and 1 if its pressure was
-    /// limited; then the area vectors.
+    /// limited. The area vectors follow.
     fn known<'a>(&self, scratch: &'a [f64]) -> Known<'a> {
         let (numbers, area) = scratch[self.scratch..self.scratch + NUMBERS + self.area_len].split_at(NUMBERS);
         let (volume, rest) = numbers.split_at(WIDTH);

@@ -183,7 +183,7 @@ pub(super) struct Fit<'a, const D: usize> {
     pub(super) scratch: &'a mut [f64],
 }
 
-/// The fitted map counts as having no volume below this fraction of the rest volume.
+/// The fitted map counts as having no volume if its volume is below this fraction of the rest volume.
 pub(super) const VOLUME: f64 = 1e-9;
 
 impl<const D: usize> Work for Fit<'_, D> {
