@@ -26,7 +26,7 @@ pub(crate) enum Failure {
     Check(CheckFault),
     /// The call is invalid.
     Call(AnyMessage),
-    /// Ctrl-C or a termination signal ended the program after its files were closed.
+    /// Ctrl-C or a termination signal stopped the work, and the files are closed.
     Interrupted,
     /// The reader of the output has closed the pipe.
     ClosedPipe,

@@ -17,7 +17,7 @@ use crate::matrix::{self, Matrix};
 use crate::singular::{direction, singular};
 
 /// The smallest denominator, in units of f³, for which the formula is used. At rest the denominator is 16/27, and for a
-/// degenerate matrix with two equal stretches it is ½. Rounding errors grow as its inverse.
+/// degenerate matrix with two equal stretches it is ½. Rounding errors grow as the inverse of this denominator.
 const WELL_DETERMINED: f64 = 0.02;
 
 /// The formula has converged if the relative change of f is below this number, because the next change would be the square of

@@ -28,7 +28,7 @@ pub(crate) enum SlipRule {
 
 /// k as a fraction of the diagonal of the block of a node. Since neighbours move too, the stiffness of a node is less than its
 /// block, and k has to stay below twice that stiffness. With 2 instead of 0.5, 20 of 720 steps in the test `real_time_contact`
-/// leave a larger residual than promised. With 0.5, one step does.
+/// leave a larger residual than promised. With 0.5, only one step does so.
 const PART_OF_DIAGONAL: f64 = 0.5;
 
 /// The effect of friction on a slipping node.

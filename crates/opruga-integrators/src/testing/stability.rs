@@ -161,7 +161,7 @@ fn a_weak_drag_beside_damped_springs_gives_a_stable_step() {
 }
 
 /// Stiffness-proportional damping, c = γ k: explicit Euler is stable up to γ, where |1 + hμ|² = 1 − hc + h²ω² reaches 1 in every
-/// mode, and up to 2/|μ| of the most strongly damped mode. Rounding must not hide that.
+/// mode, and up to 2/|μ| of the most strongly damped mode. Rounding must not hide these limits.
 #[test]
 fn damping_in_proportion_to_stiffness_gives_explicit_euler_a_stable_step() {
     for (nodes, damping) in [(6, 1.0), (36, 1.0), (36, 8.0), (300, 4.0)] {

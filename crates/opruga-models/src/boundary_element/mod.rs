@@ -7,7 +7,7 @@
 //! X in the nearest frame R (file `frame`). The infinite medium around a boundary (`exterior`) does not rotate: u = x − X.
 //!
 //! Collocation is used instead of Galerkin's method, because it needs one integral instead of two. The matrix of collocation is
-//! slightly unsymmetric. A reading shows by how much.
+//! slightly unsymmetric. A reading shows how unsymmetric it is.
 //!
 //! Limits: strain must be small in the frame R. A body has only one frame, so a slender body that bends by large angles is too
 //! stiff and grows. The mass is on the boundary. There are at most 2000 vertices, since all matrices are dense.

@@ -79,7 +79,7 @@ impl<E: Shape<D, N>, const D: usize, const N: usize> Work for Deform<'_, E, D, N
     }
 }
 
-/// Rates of the same quantities.
+/// The rates of the quantities that `Deform` computes.
 pub(in super::super) struct DeformRates<'a, E, const D: usize, const N: usize> {
     pub(in super::super) shape: PhantomData<E>,
     pub(in super::super) group: Group<'a>,
