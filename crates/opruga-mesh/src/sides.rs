@@ -187,7 +187,7 @@ impl<const D: usize> Mesh<D> {
     /// shape functions of the cells.
     ///
     /// A uniform traction multiplied by the shares does the same work as the traction on the sides, for every displacement of the cells, if sides are
-    /// flat. Nodes without a share are omitted. Numbers beyond the last node are ignored.
+    /// flat. Nodes without a share are omitted. Node numbers beyond the last node are ignored.
     pub fn boundary_shares(&self, selected: &[u32]) -> BTreeMap<u32, f64> {
         let mut shares = BTreeMap::new();
         for side in self.boundary_sides(selected) {

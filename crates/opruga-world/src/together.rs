@@ -40,7 +40,8 @@ struct Hands<'a, const D: usize> {
 /// If bodies of different groups come close to one another, both groups return to the start of the frame and are stepped through it together.
 ///
 /// # Errors
-/// [`Trouble`], with its time [s], if more pairs may touch than the scene allows, or if pins and obstacles move bodies through one another.
+/// [`Trouble`] and its time [s], if the number of pairs that may touch exceeds the limit of the scene, or if pins and obstacles move bodies through
+/// one another.
 pub(crate) fn frame<const D: usize>(
     clusters: &mut Clusters<D>,
     (blueprint, memory, reported): (&Blueprint<D>, &ContactMemory<D>, bool),
