@@ -95,7 +95,7 @@ impl<const D: usize> System<D> {
         sum
     }
 
-    /// Whether every model accounts for its forces: it has an energy, or its power is recorded as that of damping or of loads.
+    /// Whether every model accounts for its forces, either because it has an energy or because its power is recorded as damping or loads.
     pub fn has_energy(&self) -> bool {
         self.members.iter().all(|member| {
             let views = member.potential.properties().views;

@@ -16,7 +16,7 @@ terms! {
         Pixels = "pixels",
         Elements = "elements of a drawing",
         Text = "bytes of repeated text",
-        Rules = "comparisons of rules with elements",
+        Rules = "comparisons of style rules with elements",
         Vertices = "repeated vertices",
         Numbers = "numbers in arrays",
         Values = "values or memberships in groups",

@@ -69,7 +69,7 @@ fn table(out: &mut String, level: &str, section: &Section, tag: Option<&str>) {
     rows(out, section, tag);
 }
 
-/// A section for each kind, under a heading that no other chapter has. A field that differs between the dimensions has one row for each.
+/// Writes a section for each kind. The headings of these sections occur in no other chapter. A field that differs between the dimensions has one row for each.
 fn kinds(out: &mut String, title: &str, path: &str, specs: &[&'static Spec]) {
     let _ = writeln!(out, "## {title}: `{path}`\n");
     for kind in catalogue::by_kind(specs) {

@@ -1,4 +1,4 @@
-//! Errors in the text of a scene, in overrides and in files, before their contents are interpreted.
+//! Errors that are found in the text of a scene, in overrides and in files before the contents are interpreted.
 
 use crate::scene::errors::ValueKind;
 use opruga_math::{messages, terms};

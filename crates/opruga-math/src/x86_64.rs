@@ -1,6 +1,6 @@
 //! The registers of x86-64: two numbers with SSE2, four with AVX2, eight with AVX-512.
 //!
-//! The operations of these registers are the basic ones of IEEE 754, so all of them give the same bits.
+//! Registers of all widths use only the basic operations of IEEE 754, so they give the same bits.
 //!
 //! # Safety
 //! The instructions of AVX2 and AVX-512 exist only on processors that have them. The types are private to this crate, and their

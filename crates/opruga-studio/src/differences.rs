@@ -1,4 +1,4 @@
-//! The differences of the right scene from the left one, and the right scene itself.
+//! How the scene on the right differs from the scene on the left, and the scene on the right itself.
 
 use crate::document::read;
 use crate::document::{Document, kind_table, toml};

@@ -41,7 +41,7 @@ pub fn build(
 struct Pair {
     left: Box<dyn Engine>,
     right: Box<dyn Engine>,
-    /// The differences of the right scene.
+    /// How the scene on the right differs from the scene on the left.
     differences: Vec<Difference>,
     /// The correspondence of nodes, for bodies with different nodes.
     twins: Twins,

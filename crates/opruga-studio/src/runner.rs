@@ -30,7 +30,7 @@ pub struct Copied {
     pub files: Files,
     /// The models and integrators that the scene can name.
     pub registries: Registries,
-    /// The differences of the right scene, if there is one.
+    /// How the scene on the right differs from the scene on the left; `None` if only one scene is shown.
     pub differences: Option<Vec<Difference>>,
     /// The number of frames up to the last frame of this run.
     pub frames: u64,

@@ -256,7 +256,7 @@ words! {
     pins_let_go: "The scene was restarted; pins set with the pointer were removed", "Prizor počinje iznova: točke pribodene pokazivačem oslobođene su";
     goes_on: "continues to move: it keeps its positions and velocities, and models that it already had keep their state", "nastavlja u pokretu: položaji i brzine ostaju, a modeli koje je već imalo pamte svoje";
     all_go_on: "Every body continues from its present state with", "Svako tijelo nastavlja odande gdje jest s";
-    set_down: "The body is put back at rest, in its new shape", "Tijelo je postavljeno iznova, u mirovanju, u novom obliku";
+    set_down: "The body starts again at rest, in its new shape", "Tijelo je postavljeno iznova, u mirovanju, u novom obliku";
     recorded: "recorded commands", "snimljene naredbe";
     drawn_by: "The graphics interface and its device", "Čime se crta, i na kojem uređaju";
     in_the_scene: "This can be set only in the scene file", "Zadaje se samo u datoteci prizora";

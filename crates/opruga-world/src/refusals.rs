@@ -100,7 +100,7 @@ messages! {
         #[hint("move the scene to the origin")]
         FarBody { farthest: f64, range: f64 },
         "scene.range"
-        #[error("`velocity` and `angular_velocity` give the body {} m/s along an axis at the start, which is {} m in a step of {} s", rounded(*fastest, 3), rounded(*fastest * *h, 3), number(*h))] #[parameters("velocity", "angular_velocity")]
+        #[error("`velocity` and `angular_velocity` give the body an initial speed of {} m/s along an axis; it would move {} m in a step of {} s", rounded(*fastest, 3), rounded(*fastest * *h, 3), number(*h))] #[parameters("velocity", "angular_velocity")]
         #[allowed("at most {} m/s, so that after a step the positions of the nodes still have enough digits to differ", rounded(*range / *h, 3))]
         #[hint("are the units mixed (metres, seconds, radians)?")]
         FastBody { fastest: f64, h: f64, range: f64 },

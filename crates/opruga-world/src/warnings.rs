@@ -167,7 +167,7 @@ messages! {
         #[error("the implicit integrators themselves added {} J, more than a twentieth of the energy in motion (`loss_numerical`). Motion that is fast compared with the step decays or grows because of the integrator, not because of physics. More substeps reduce this, and `backward_euler` damps motion that would grow", number(*energy))]
         MadeByRules { energy: f64 },
         "ledger.closure"
-        #[error("at the end of a frame, more than a tenth of the energy in motion was unexplained (`closure`): {} J {difference} so far, because of the error of the integrator; {help}", number(*energy))]
+        #[error("a frame ended with more than a tenth of the energy in motion unexplained (`closure`): {} J {difference} so far by the error of the integrator; {help}", number(*energy))]
         Unexplained { energy: f64, difference: Difference, help: ErrorHint },
         "step.not_converged" #[error("a step was accepted although Newton's method had not converged (`when_not_converged = \"accept\"`)")]
         Accepted {},
@@ -183,7 +183,7 @@ messages! {
         #[hint("use cells that are shorter relative to their thickness, or move the scene to the origin")]
         Estimated { error_estimate: f64 },
         "conditioning"
-        #[error("a body is so stiff for its mass that the rounding of its positions to sixteen digits causes forces of up to {} times the largest load on a node in a step. Its motion as a whole is balanced separately and is correct. The positions of its nodes are correct except for the last digit, but its stresses are meaningless", number(*times))]
+        #[error("a body is so stiff for its mass that rounding its positions to sixteen digits causes forces up to {} times as large as the largest load on any node during a step. The motion of the body as a whole is balanced separately and is correct. The positions of its nodes are correct except for the last digit, but its stresses are meaningless", number(*times))]
         #[hint("use larger cells or a less stiff body, or move the scene closer to the origin")]
         Conditioning { times: f64 },
         "step.disturbed"

@@ -176,7 +176,7 @@ messages! {
     /// Errors in a PLY file.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum PlyError {
-        "ply.size" #[error("the header declares {count} of `{element}`, but only {rest} bytes follow")] #[value("{count}")]
+        "ply.size" #[error("the header declares {count} elements `{element}`, but only {rest} bytes follow")] #[value("{count}")]
         #[allowed("at most {most}")] #[hint("the file is cut off")]
         Promised { count: u64, element: String, rest: usize, most: usize },
         "ply.syntax" #[error("`vertex` has no properties x, y, z")] #[value("vertex")]

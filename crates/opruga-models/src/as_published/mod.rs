@@ -196,7 +196,7 @@ impl AsPublished {
     }
 
     /// 2. The mouse: pulls the vertex that it holds. Returns the number of the press, counted from 1, and the vertex that the mouse holds.
-    /// Returns zeros if no press is active.
+    ///    Returns zeros if no press is active.
     fn mouse<const D: usize>(&self, view: &View<D>, body: usize, memory: &[f64], forces: &mut [f64]) -> (usize, usize) {
         let c = self.constants(body);
         let press = c.press(view.time);

@@ -146,7 +146,7 @@ pub struct Session {
     files: Files,
     setting: Setting,
     engine: Box<dyn Engine>,
-    /// The differences of the right scene, if there is one.
+    /// How the scene on the right differs from the scene on the left; `None` if only one scene is shown.
     differences: Option<Vec<Difference>>,
     /// Bodies that were renamed when they were replaced: old and new names.
     renamed: Vec<(String, String)>,

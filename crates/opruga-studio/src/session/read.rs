@@ -13,7 +13,7 @@ impl Session {
         document.text()
     }
 
-    /// The differences of the right scene, if there is one.
+    /// How the scene on the right differs from the scene on the left; `None` if only one scene is shown.
     pub fn differences(&self) -> Option<&[Difference]> {
         self.differences.as_deref()
     }

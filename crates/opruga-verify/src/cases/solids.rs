@@ -132,7 +132,7 @@ pub(super) const CASES: &[Case] = &[
         name: "hole-in-a-sheet",
         quantity: "largest stress at a round hole in a stretched sheet, relative to the stress far from it, quadrilaterals, ν = 0.3",
         unit: "",
-        source: "G. Kirsch 1898: 3, with his displacements at four radii from the hole",
+        source: "G. Kirsch 1898: 3; his displacements are prescribed at four hole radii from the centre",
         over: Over::Cells("cells along each side"),
         levels: &[8.0, 16.0, 32.0],
         expected: &[3.0],
