@@ -99,7 +99,7 @@ fn grains_of_silicon_fall_by_the_closed_form_of_every_rule() {
         let (worst, world) = falls_short(body(square(1e-5), rule, &of_rule, 1.7e11, 2330.0), rule);
         assert!(worst < 2e-14, "{rule} {of_rule:?}: {worst} m");
         let told = world.warnings().into_iter().find(|warning| warning.code == "conditioning").expect("a warning");
-        assert!(told.message.contains("forces of up to "), "{told:?}");
+        assert!(told.message.contains("forces up to "), "{told:?}");
     }
     let cube = Mesh::<3>::grid([0.0; 3], [1e-5; 3], [2, 2, 2]).expect("a cube");
     let (worst, _) = falls_short(body(cube, "backward_euler", &[], 1.7e11, 2330.0), "backward_euler");

@@ -98,7 +98,7 @@ fn parameters_that_make_no_sense() {
         // so fast that it leaves that region within a step
         (
             ring(64, BALL, "velocity = [1e300, 0]"),
-            "scene.range: body `b`: velocity: `velocity` and `angular_velocity` give the body 1e300 m/s along an axis at the start, ",
+            "scene.range: body `b`: velocity: `velocity` and `angular_velocity` give the body an initial speed of 1e300 m/s along an axis; ",
         ),
         (ring(64, BALL, "angular_velocity = 1e200"), "hint: are the units mixed (metres, seconds, radians)?"),
         (
