@@ -375,7 +375,7 @@ run-not_converged-NotConverged = tijelo `{ $body }`: { $cause }; svijet je na za
     .hint = { HINT($cause) }
 run-overflow-Overflow = energija ili količina gibanja svih tijela zajedno prerasla je konačne brojeve u sličici od t = { $last } s; svijet je na zadnjoj dobroj sličici
     .hint = jesu li mase, krutosti i brzine u jedinicama koje idu zajedno (metri, kilogrami, sekunde)?
-limit-contacts-TooManyContacts = u jednom koraku moglo bi se dodirnuti više od { $most } parova vrhova, bridova i ploha (nađeno ih je { $found }), u sličici od t = { $last } s; svijet je na zadnjoj dobroj sličici
+limit-contacts-TooManyContacts = u jednom koraku moglo bi se dodirnuti više od { $most } parova vrhova, bridova i ploha, u sličici od t = { $last } s; svijet je na zadnjoj dobroj sličici
     .allowed = { $most }
     .hint = veći `most_pairs` u `[contact]` ili grublje plohe
 contact-surfaces_meet-Meet = plohe `{ $first }` i `{ $second }` dodiruju se u t = { $time } s, a barijera treba razmak; svijet je na zadnjoj dobroj sličici

@@ -102,7 +102,7 @@ messages! {
         Overflow { last: f64 },
         /// More pairs may touch in a step than the scene allows. Contains the time of the last good frame \[s\].
         "limit.contacts"
-        #[error("in the frame from t = {} s, more than {most} pairs of vertices, edges and facets could touch in one step ({found} were found); the world is at its last good frame", number(*last))]
+        #[error("in the frame from t = {} s, more than {most} pairs of vertices, edges and facets could touch in one step; the world is at its last good frame", number(*last))]
         #[allowed("{most}")] #[hint("use a larger `most_pairs` in `[contact]`, or coarser surfaces")]
         TooManyContacts { found: usize, most: usize, last: f64 },
         /// Surfaces that a barrier should keep apart meet. The second surface belongs to another body, the same body, or an obstacle. Contains the
