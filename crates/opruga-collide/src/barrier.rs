@@ -235,7 +235,7 @@ impl<const D: usize> Barrier<D> {
             }
         }
         self.forget();
-        Err(Trouble::TooMany { found: most + 1 })
+        Err(Trouble::TooMany)
     }
 
     /// Whether the boxes of a pair come within reach on the paths examined last. A pair that was found only because of the margin does not come

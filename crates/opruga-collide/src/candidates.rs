@@ -2,6 +2,7 @@
 
 use crate::comparison::{Comparison, Comparisons, key};
 use crate::grid::Grid;
+use crate::least_parts;
 use crate::surface::Surface;
 use crate::vector::{Bounds, wider};
 use core::sync::atomic::AtomicUsize;
@@ -47,10 +48,6 @@ fn merge(pairs: &mut Vec<[u32; 2]>, fresh: &[[u32; 2]], merged: &mut Vec<[u32; 2
     std::mem::swap(pairs, merged);
 }
 
-/// The least number of pairs of bodies whose features are compared as one part. The comparison of this many pairs takes some
-/// tens of microseconds.
-const LEAST_PART: usize = 16;
-
 impl<const D: usize> Candidates<D> {
     /// Finds all pairs of features with boxes closer than a distance [m] along every axis, given the boxes of the points [m]. The
     /// first distance is for pairs of bodies, the second for pairs with obstacles.
@@ -92,7 +89,9 @@ impl<const D: usize> Candidates<D> {
         });
         self.find_close_bodies(surface, boxes, distances, |a, b| meet(a, b) && stale(a, b));
         self.parts.resize_with(1, Comparison::default);
-        for (k, range) in threads::parts(self.close_bodies.len(), self.threads, LEAST_PART).enumerate() {
+        for (k, range) in
+            threads::parts(self.close_bodies.len(), self.threads, least_parts::PAIRS_OF_BODIES).enumerate()
+        {
             if self.parts.len() <= k {
                 self.parts.push(Comparison::default());
             }

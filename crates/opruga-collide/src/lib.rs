@@ -89,6 +89,7 @@ mod impulses;
 mod inside;
 mod kept;
 mod law;
+mod least_parts;
 mod motion;
 mod newton;
 mod obstacle_rows;

@@ -1,15 +1,12 @@
 //! Contacts of points with obstacles, in addition to contacts between bodies.
 
+use crate::least_parts;
 use crate::row::{OBSTACLE_BIT, Row};
 use crate::rows::append;
 use crate::touching::{Obstacles, Touching};
 use crate::vector::{length, subtract};
 use opruga_core::contacts::Touch;
 use opruga_core::threads;
-
-/// The least number of points whose contacts with obstacles a thread finds in one piece. This many points take some tens of
-/// microseconds.
-const LEAST_POINTS: usize = 256;
 
 impl<const D: usize> Touching<D> {
     /// Adds the contacts of obstacles with the points of all present contacts from the index `first` on. These contacts prevent bodies from pushing
@@ -30,7 +27,7 @@ impl<const D: usize> Touching<D> {
                 self.asked.push(p as u32);
             }
         }
-        let parts = threads::parts(self.asked.len(), self.threads, LEAST_POINTS);
+        let parts = threads::parts(self.asked.len(), self.threads, least_parts::CONTACTS);
         let mut lists = std::mem::take(&mut self.obstacle_rows);
         let of_parts = threads::empty_lists(&mut lists, parts.len());
         of_parts[0] = std::mem::take(&mut self.rows);

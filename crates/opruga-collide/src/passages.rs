@@ -3,15 +3,13 @@
 
 use crate::gap::Gap;
 use crate::impact::{impact, key, meeting_time};
+use crate::least_parts;
 use crate::row::Row;
 use crate::touching::{Touching, Trouble};
 use crate::vector::{dot, subtract};
 use crate::zones::{Led, PointsOfPair, ROUNDING, Zone};
 use opruga_core::threads;
 use opruga_math::Lane;
-
-/// The least number of pairs that a thread checks in one piece. The check of this many pairs takes some tens of microseconds.
-const LEAST_PART: usize = 1024;
 
 impl<const D: usize> Touching<D> {
     /// Checks the motion to the end of the step of h [s]. Adds the pairs that pass through one another to those found before;
@@ -23,7 +21,7 @@ impl<const D: usize> Touching<D> {
         let mut found = false;
         for with_facet in [true, false] {
             let close = &self.close[usize::from(!with_facet)];
-            let parts = threads::parts(close.len(), self.threads, LEAST_PART);
+            let parts = threads::parts(close.len(), self.threads, least_parts::CANDIDATES);
             let mut lists = std::mem::take(&mut self.meeting);
             let of_parts = threads::empty_lists(&mut lists, parts.len());
             threads::each_in_pool(parts.zip(of_parts.iter_mut()), |(range, meeting)| {

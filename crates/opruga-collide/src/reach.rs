@@ -1,5 +1,6 @@
 //! How far points may move within a step, and whether the present candidates include all pairs that meet in it.
 
+use crate::least_parts;
 use crate::vector::{Bounds, dot, subtract};
 use opruga_core::threads;
 use opruga_math::Lane;
@@ -49,9 +50,6 @@ struct Began {
     due: bool,
 }
 
-/// The least number of points that a thread processes in one piece. This many points take some tens of microseconds.
-const LEAST_PART: usize = 4096;
-
 /// An empty box.
 const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
@@ -80,7 +78,7 @@ impl<const D: usize> Reach<D> {
         self.due.fill(false);
         self.body_push.fill(0.0);
         let spare = 0.25 * margin;
-        let size = threads::part_size(from.len(), threads, LEAST_PART);
+        let size = threads::part_size(from.len(), threads, least_parts::POINTS);
         let boxes = self.push.chunks_mut(size).zip(self.swept.chunks_mut(size)).zip(self.found_in.chunks(size));
         let points = from.chunks(size).zip(to.chunks(size)).zip(body.chunks(size));
         let began = threads::empty_lists(&mut self.began, from.len().div_ceil(size));
@@ -220,6 +218,11 @@ impl<const D: usize> Reach<D> {
 
     pub(crate) fn points(&self) -> usize {
         self.swept.capacity()
+    }
+
+    /// Bytes on the heap, apart from those of points.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        size_of::<Began>() * self.began.iter().map(Vec::capacity).sum::<usize>()
     }
 }
 

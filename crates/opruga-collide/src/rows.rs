@@ -7,6 +7,7 @@ use crate::found::Found;
 use crate::gap::Gap;
 use crate::impact::key;
 use crate::law::PairLaw;
+use crate::least_parts;
 use crate::spread::Spread;
 use crate::touching::Touching;
 use opruga_core::threads;
@@ -35,12 +36,13 @@ impl<const D: usize> Touching<D> {
     fn divide(&self, all: &mut Vec<Found<D>>) {
         let pairs = &self.candidates.vertex_facet;
         let lists = [pairs.len(), self.candidates.edge_edge.len()];
-        if self.threads < 2 || lists[0] + lists[1] < 2 * LEAST_PART {
+        let length = lists[0] + lists[1];
+        let size = threads::part_size(length, self.threads, least_parts::CANDIDATES);
+        if size >= length {
             all.resize_with(1, Found::default);
             all[0].part = lists.map(|length| 0..length);
             return;
         }
-        let size = ((lists[0] + lists[1]) / (4 * self.threads)).max(LEAST_PART);
         let mut number = 0;
         for (list, length) in lists.into_iter().enumerate() {
             let mut first = 0;
@@ -108,9 +110,6 @@ impl<const D: usize> Touching<D> {
         ClosePair { id: key(pair, with_facet), points, weights, normal, gap: own, thickness, friction, target }
     }
 }
-
-/// The least number of candidates in a part. This many candidates take about ten microseconds.
-const LEAST_PART: usize = 1024;
 
 /// Moves all entries of a list to the end of another one.
 pub(crate) fn append<T>(to: &mut Vec<T>, from: &mut Vec<T>) {

@@ -55,7 +55,7 @@ impl<const D: usize> Touching<D> {
             clearance.forget_own();
         }
         reach.forget();
-        Err(Trouble::TooMany { found: self.most + 1 })
+        Err(Trouble::TooMany)
     }
 
     /// Extends the boxes of points to their end positions; returns whether any box had to be extended.

@@ -1,6 +1,7 @@
 //! The result of the impulses of a substep: the motion of points, and the energies that contact took and gave.
 
 use crate::impulses::part;
+use crate::least_parts;
 use crate::touching::{Touching, acting};
 use crate::vector::{dot, subtract};
 use opruga_core::threads;
@@ -9,9 +10,6 @@ use opruga_math::Lane;
 /// The fraction of the thickness by which pairs may be too close before they are separated. Pairs that are too close by no more than this fraction do
 /// not overlap with their surfaces themselves. The errors that sweeps leave are smaller, so they do not move points.
 pub(crate) const OVERLAP: f64 = 0.01;
-
-/// The least number of points that a thread moves in one piece. This many points take about ten microseconds.
-const LEAST_PART: usize = 4096;
 
 impl<const D: usize> Touching<D> {
     /// Moves the points with their new velocities, and separates overlapping ones.
@@ -26,7 +24,7 @@ impl<const D: usize> Touching<D> {
         let Touching { before: [before, _], after: [free, _], end, moved, v, touched, inverse_mass, coupled, .. } =
             self;
         end.resize(free.len(), [0.0; D]);
-        let size = threads::part_size(end.len(), self.threads, LEAST_PART);
+        let size = threads::part_size(end.len(), self.threads, least_parts::POINTS);
         let parts = end.chunks_mut(size).zip(moved.chunks_mut(size)).enumerate();
         threads::each_in_pool(parts, |(part, (end, moved))| {
             let first = part * size;

@@ -166,10 +166,7 @@ impl Counts {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trouble {
     /// There are more pairs than the limit.
-    TooMany {
-        /// The number at which the search ended.
-        found: usize,
-    },
+    TooMany,
     /// Surfaces that a barrier has to keep apart already meet.
     Meet {
         /// The bodies.
@@ -551,6 +548,9 @@ impl<const D: usize> Touching<D> {
             + size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity() + self.inactive.capacity())
             + self.found.iter().map(Found::heap_bytes).sum::<usize>()
             + self.turns.heap_bytes()
+            + self.reach.heap_bytes()
+            + size_of::<([u32; 2], f64)>() * self.meeting.iter().chain(&self.close).map(Vec::capacity).sum::<usize>()
+            + size_of::<Row<D>>() * self.obstacle_rows.iter().map(Vec::capacity).sum::<usize>()
     }
 }
 

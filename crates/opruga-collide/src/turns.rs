@@ -1,6 +1,7 @@
 //! Sets of contacts that points connect, and sweeps over one set.
 
 use crate::coupled::Coupled;
+use crate::least_parts;
 use crate::row::Row;
 use crate::spread::Spread;
 use crate::vector::{dot, length, subtract};
@@ -101,15 +102,20 @@ fn moves<const D: usize>(row: &Row<D>, k: usize, inverse_mass: &[[f64; D]]) -> b
     any & (row.weights[k] != 0.0)
 }
 
-/// The points of a row that can move.
-fn movable<'a, const D: usize>(
-    spread: &'a Spread,
-    row: &'a Row<D>,
-    inverse_mass: &'a [[f64; D]],
-) -> impl Iterator<Item = u32> + 'a {
-    let (points, weights) = row.on(spread);
-    let moves = |(p, w): &(&u32, &f64)| **w != 0.0 && inverse_mass[**p as usize] != [0.0; D];
-    points.iter().zip(weights).filter(moves).map(|(p, _)| *p)
+/// The points of a row that can move. A row with fewer points repeats its first one.
+fn moving_head<const D: usize>(row: &Row<D>, inverse_mass: &[[f64; D]]) -> [u32; 4] {
+    if row.spread[1] > 0 {
+        return row.head();
+    }
+    // Without branches, because the processor cannot predict which points have a weight.
+    let (mut head, mut count) = ([0; 4], 0);
+    for k in 0..=D {
+        head[count] = row.points[k];
+        count += usize::from(moves(row, k, inverse_mass));
+    }
+    let first = head[0];
+    head.iter_mut().enumerate().for_each(|(k, p)| *p = if k < count { *p } else { first });
+    if count == 0 { Spread::NOBODY } else { head }
 }
 
 /// The points of a head in the list of points that can move. A point may occur more than once.
@@ -168,7 +174,8 @@ impl<const D: usize> Turns<D> {
         body: &[u32],
         exact: bool,
     ) -> f64 {
-        let first = movable(spread, row, inverse_mass).next();
+        let head = moving_head(row, inverse_mass);
+        let first = movers_of(&head, spread, inverse_mass).next();
         let tolerance = if exact { COUPLED_TOLERANCE } else { TOLERANCE };
         first.map_or(0.0, |p| tolerance * self.approach.of(body[p as usize]))
     }
@@ -176,20 +183,7 @@ impl<const D: usize> Turns<D> {
     /// Lists the points of every row that can move. A row with fewer points repeats its first one.
     fn find_movers(&mut self, rows: &[Row<D>], inverse_mass: &[[f64; D]]) {
         self.movers.clear();
-        self.movers.extend(rows.iter().map(|row| {
-            if row.spread[1] > 0 {
-                return row.head();
-            }
-            // Without branches, because the processor cannot predict which points have a weight.
-            let (mut head, mut count) = ([0; 4], 0);
-            for k in 0..=D {
-                head[count] = row.points[k];
-                count += usize::from(moves(row, k, inverse_mass));
-            }
-            let first = head[0];
-            head.iter_mut().enumerate().for_each(|(k, p)| *p = if k < count { *p } else { first });
-            if count == 0 { Spread::NOBODY } else { head }
-        }));
+        self.movers.extend(rows.iter().map(|row| moving_head(row, inverse_mass)));
     }
 
     /// Computes the mean approach velocities of rows, given the body of every point, the number of bodies, and the velocities
@@ -372,7 +366,7 @@ impl<const D: usize> Turns<D> {
         let Alone { points, v: own, inverse_mass, stamps } = alone;
         own.clear();
         own.extend(points.iter().map(|(p, _)| v[*p as usize]));
-        let least = threads::part_size(rows.len(), threads, LEAST_PART);
+        let least = threads::part_size(rows.len(), threads, least_parts::CONTACTS);
         let (mut rows, mut heads) = (rows, &mut heads[..]);
         let (mut copies, mut stamps) = (&mut own[..], &mut stamps[..]);
         let mut first = 0;
@@ -442,9 +436,6 @@ impl<const D: usize> Turns<D> {
             + size_of::<Row<D>>() * self.sorted.capacity()
     }
 }
-
-/// The least number of rows that a thread solves for in one piece. This many rows take some tens of microseconds.
-const LEAST_PART: usize = 256;
 
 /// Some sets whose points respond independently.
 struct Part<'a, const D: usize> {

@@ -144,7 +144,7 @@ impl<const D: usize> Search<'_, '_, D> {
             match self.barrier.look(surface, laws, [&self.x, &end], *most) {
                 Ok(()) => return Ok(part * self.barrier.free_part(surface, laws, [&self.x, &end])),
                 // Paths across many bodies have more pairs than the limit allows. Paths of half the length may have few enough.
-                Err(Trouble::TooMany { .. }) => part *= 0.5,
+                Err(Trouble::TooMany) => part *= 0.5,
                 Err(trouble) => return Err(trouble.into()),
             }
             for (end, (x, far)) in end.iter_mut().zip(self.x.iter().zip(far)) {

@@ -165,8 +165,9 @@ impl<const D: usize> World<D> {
         let scene = self.clusters.as_ref().map(|clusters| &clusters.scene);
         let name = |number: u32| scene.map_or(String::new(), |scene| scene.name_of(number, &self.blueprint));
         match trouble {
-            Trouble::TooMany { found } => {
-                WorldError::TooManyContacts { found, most: scene.map_or(0, |scene| scene.most), last: self.time() }
+            Trouble::TooMany => {
+                let most = scene.map_or(0, |scene| scene.most);
+                WorldError::TooManyContacts { found: most + 1, most, last: self.time() }
             }
             Trouble::Meet { mut bodies } => {
                 bodies.sort_unstable();
