@@ -83,6 +83,7 @@ mod finder;
 mod found;
 mod gap;
 mod grid;
+mod growth;
 mod hull;
 mod impact;
 mod impulses;

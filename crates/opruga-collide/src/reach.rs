@@ -25,6 +25,8 @@ pub(crate) struct Reach<const D: usize> {
     stale: Vec<bool>,
     /// For every body, whether it will soon be stale. The next search covers all such bodies at once.
     due: Vec<bool>,
+    /// The points whose boxes have grown last, ascending, and for each of them the displacement and the box before.
+    grown: Vec<(u32, f64, Bounds<D>)>,
     /// The results for the points of bodies in this step, one list for each part of the points.
     began: Vec<Vec<Began>>,
 }
@@ -169,13 +171,15 @@ impl<const D: usize> Reach<D> {
 
     /// Widens the boxes of touched points that contact pushes beyond them; returns whether there are any.
     pub(crate) fn grow(&mut self, body: &[u32], touched: &[bool], [free, end]: [&[[f64; D]]; 2], margin: f64) -> bool {
-        let (mut any, spare) = (false, 0.25 * margin);
+        let spare = 0.25 * margin;
+        self.grown.clear();
         for p in (0..touched.len()).filter(|p| touched[*p]) {
             let displacement = subtract(&end[p], &free[p]);
             let pushed = dot(&displacement, &displacement).sqrt();
             if pushed > self.push[p] {
-                let more = 2.0 * pushed - self.push[p];
-                self.push[p] = 2.0 * pushed;
+                let more = pushed - self.push[p];
+                self.grown.push((p as u32, self.push[p], self.swept[p]));
+                self.push[p] = pushed;
                 let most = &mut self.body_push[body[p] as usize];
                 *most = self.push[p].larger(*most);
                 let ([low, high], found) = (&mut self.swept[p], &self.found_in[p]);
@@ -186,10 +190,9 @@ impl<const D: usize> Reach<D> {
                         self.stale[body[p] as usize] = true;
                     }
                 }
-                any = true;
             }
         }
-        any
+        !self.grown.is_empty()
     }
 
     /// The largest displacement that contact may add to the motion of any point of every body [m].
@@ -208,12 +211,29 @@ impl<const D: usize> Reach<D> {
     #[inline]
     pub(crate) fn apart<const M: usize, const N: usize>(&self, a: &[u32; M], b: &[u32; N]) -> f64 {
         let of = |p: u32| self.swept[p as usize];
-        let ([low_a, high_a], [low_b, high_b]) = (around(of, a), around(of, b));
-        let mut most = f64::NEG_INFINITY;
-        for d in 0..D {
-            most = (low_a[d] - high_b[d]).larger(low_b[d] - high_a[d]).larger(most);
-        }
-        most
+        between(around(of, a), around(of, b))
+    }
+
+    /// Whether the box of a point has grown last.
+    pub(crate) fn has_grown(&self, point: u32) -> bool {
+        self.grown.binary_search_by_key(&point, |(grown, ..)| *grown).is_ok()
+    }
+
+    /// The points whose boxes have grown last, ascending.
+    pub(crate) fn grown(&self) -> impl Iterator<Item = u32> + '_ {
+        self.grown.iter().map(|(point, ..)| *point)
+    }
+
+    /// Whether two features at a given distance may come closer than another distance within the step [m]. With `before` set, this is what held
+    /// before boxes have grown last.
+    pub(crate) fn may_meet(&self, distance: f64, other: f64, [a, b]: [&[u32]; 2], before: bool) -> bool {
+        let of = |p: u32| match self.grown.binary_search_by_key(&p, |(grown, ..)| *grown) {
+            Ok(k) if before => (self.grown[k].1, self.grown[k].2),
+            _ => (self.push[p as usize], self.swept[p as usize]),
+        };
+        let push = |points: &[u32]| points.iter().fold(0.0, |most: f64, p| of(*p).0.larger(most));
+        let whole = |points: &[u32]| points.iter().fold(NOWHERE.map(|c| [c; D]), |whole, p| joined(whole, of(*p).1));
+        distance <= other + 2.0 * (push(a) + push(b)) && between(whole(a), whole(b)) <= other
     }
 
     pub(crate) fn points(&self) -> usize {
@@ -226,16 +246,28 @@ impl<const D: usize> Reach<D> {
     }
 }
 
+/// The distance between two boxes along the axis where it is largest [m]; negative if they overlap.
+#[inline]
+fn between<const D: usize>([low_a, high_a]: Bounds<D>, [low_b, high_b]: Bounds<D>) -> f64 {
+    let mut most = f64::NEG_INFINITY;
+    for d in 0..D {
+        most = (low_a[d] - high_b[d]).larger(low_b[d] - high_a[d]).larger(most);
+    }
+    most
+}
+
+/// The box around two boxes.
+#[inline]
+fn joined<const D: usize>(mut a: Bounds<D>, [low, high]: Bounds<D>) -> Bounds<D> {
+    for d in 0..D {
+        a[0][d] = low[d].smaller(a[0][d]);
+        a[1][d] = high[d].larger(a[1][d]);
+    }
+    a
+}
+
 /// The box around the boxes of some points.
 #[inline]
 pub(crate) fn around<const D: usize, const N: usize>(of: impl Fn(u32) -> Bounds<D>, points: &[u32; N]) -> Bounds<D> {
-    let mut out = of(points[0]);
-    for p in &points[1..] {
-        let [low, high] = &of(*p);
-        for d in 0..D {
-            out[0][d] = low[d].smaller(out[0][d]);
-            out[1][d] = high[d].larger(out[1][d]);
-        }
-    }
-    out
+    points[1..].iter().fold(of(points[0]), |whole, p| joined(whole, of(*p)))
 }

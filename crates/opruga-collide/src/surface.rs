@@ -166,6 +166,12 @@ impl<const D: usize> Surface<D> {
         }
     }
 
+    /// The points of both features of a pair: a vertex and a facet, or two edges.
+    pub(crate) fn points_of_features<'a>(&'a self, pair: &'a [u32; 2], with_facet: bool) -> [&'a [u32]; 2] {
+        let [a, b] = pair.map(|feature| feature as usize);
+        if with_facet { [&pair[..1], &self.facets[b]] } else { [&self.edges[a], &self.edges[b]] }
+    }
+
     /// The facets that have a point as a corner, ascending.
     pub fn facets_around(&self, point: u32) -> &[u32] {
         &self.around[self.ring[point as usize] as usize..self.ring[point as usize + 1] as usize]

@@ -302,7 +302,7 @@ impl<const D: usize> Touching<D> {
             } else {
                 self.rest();
             }
-            if self.grow() {
+            if self.is_pushed_into_others()? {
                 // The next round starts from the result of this one.
                 if !self.at_once {
                     self.keep_impulses();
