@@ -1,6 +1,7 @@
 //! Lower bounds on the distances of candidates. Because of these bounds, most candidates need not be examined in a step.
 
 use crate::candidates::Candidates;
+use crate::known_pairs::KnownPairs;
 use crate::reach::{MOST_WIDTHS, beyond};
 use crate::surface::Surface;
 use crate::vector::{add, length, scaled, subtract};
@@ -34,8 +35,7 @@ pub(crate) struct Clearance<const D: usize> {
     /// For every body, whether the present search includes its own pairs.
     due: Vec<bool>,
     /// Pairs of a vertex and a facet, and of two edges, in the order of the candidates.
-    pairs: [Vec<Known>; 2],
-    merged: Vec<Known>,
+    pairs: [KnownPairs; 2],
 }
 
 /// The motion of a body in a step. The fields are the sum of the displacements of its points, the number of these points, the mean displacement of
@@ -47,15 +47,6 @@ struct Motion<const D: usize> {
     mean: [f64; D],
     square: f64,
     largest: f64,
-}
-
-/// The known bound of a pair.
-#[derive(Clone, Copy, Debug)]
-struct Known {
-    features: [u32; 2],
-    bodies: [u32; 2],
-    /// The latest known distance of the pair, plus the paths of both bodies at that time [m].
-    until: f64,
 }
 
 /// The sum of the paths of both bodies relative to all points. If both features belong to one body, the paths are relative to
@@ -73,25 +64,6 @@ const NEVER: [f64; 2] = [0.0, f64::NEG_INFINITY];
 /// margin.
 const LONG: f64 = 1e4;
 
-/// Replaces the known pairs by new ones, both in ascending order. The bounds of pairs in both lists are kept.
-fn take_list(
-    known: &mut Vec<Known>,
-    merged: &mut Vec<Known>,
-    pairs: &[[u32; 2]],
-    bodies: impl Fn([u32; 2]) -> [u32; 2],
-) {
-    merged.clear();
-    let mut before = known.iter().peekable();
-    for features in pairs {
-        while before.next_if(|one| one.features < *features).is_some() {}
-        merged.push(match before.next_if(|one| one.features == *features) {
-            Some(one) => *one,
-            None => Known { features: *features, bodies: bodies(*features), until: f64::NEG_INFINITY },
-        });
-    }
-    std::mem::swap(known, merged);
-}
-
 /// Stored distances are reduced by this fraction to allow for rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -106,7 +78,7 @@ impl<const D: usize> Clearance<D> {
             self.paths = vec![[0.0; 2]; bodies];
             self.push = vec![0.0; bodies];
             self.own = vec![NEVER; bodies];
-            self.pairs.iter_mut().for_each(Vec::clear);
+            self.pairs.iter_mut().for_each(KnownPairs::forget);
             return;
         }
         // Displacements are measured relative to the means of the previous step. The choice of these means affects how tight
@@ -196,10 +168,10 @@ impl<const D: usize> Clearance<D> {
         if self.paths.iter().flatten().any(|path| *path > LONG * margin) {
             self.own.iter_mut().zip(&self.paths).for_each(|([path, _], [_, own])| *path -= own);
             self.paths.fill([0.0; 2]);
-            self.pairs.iter_mut().for_each(Vec::clear);
+            self.pairs.iter_mut().for_each(KnownPairs::forget);
         }
-        take_list(&mut self.pairs[0], &mut self.merged, &candidates.vertex_facet, of_facet);
-        take_list(&mut self.pairs[1], &mut self.merged, &candidates.edge_edge, of_edges);
+        self.pairs[0].take(&candidates.vertex_facet, of_facet);
+        self.pairs[1].take(&candidates.edge_edge, of_edges);
     }
 
     /// Sets, for every body, the largest distance by which contact may push one of its points [m].
@@ -209,28 +181,42 @@ impl<const D: usize> Clearance<D> {
         self.ends.extend(self.paths.iter().zip(push).map(|(paths, push)| paths.map(|path| path + 2.0 * push)));
     }
 
-    /// The bodies of a pair.
-    pub(crate) fn bodies(&self, list: usize, pair: usize) -> [u32; 2] {
-        self.pairs[list][pair].bodies
+    /// Sets the limits of the bounds for this step, given the largest distance that surfaces keep in contact [m]: between bodies, and with
+    /// obstacles. All pairs without a body that `counts` are clear.
+    pub(crate) fn set_limits(&mut self, surface: &Surface<D>, thickest: [f64; 2], counts: impl Fn(u32) -> bool) {
+        let of_obstacle = |bodies: &[u32; 2]| bodies.iter().any(|body| surface.is_obstacle(*body));
+        let ends = &self.ends;
+        let limit = |bodies: &[u32; 2]| {
+            if !bodies.iter().any(|body| counts(*body)) {
+                return f64::NEG_INFINITY;
+            }
+            of_both(ends, bodies) + thickest[usize::from(of_obstacle(bodies))]
+        };
+        self.pairs.iter_mut().for_each(|pairs| pairs.set_limits(&limit));
     }
 
-    /// Whether a pair stays farther apart than a distance [m] within the step, whatever contact does.
+    /// The bodies of a pair.
+    pub(crate) fn bodies(&self, list: usize, pair: usize) -> [u32; 2] {
+        self.pairs[list].bodies(pair)
+    }
+
+    /// Whether a pair stays farther apart within the step than any contact of its bodies, by more than a distance [m], whatever contact
+    /// does.
     #[inline(always)]
     pub(crate) fn is_clear(&self, list: usize, pair: usize, distance: f64) -> bool {
-        let Known { bodies, until, .. } = &self.pairs[list][pair];
-        *until > of_both(&self.ends, bodies) + distance
+        self.pairs[list].exceeds(pair, distance)
     }
 
     /// Records a lower bound on the distance of a pair at the start of the step [m].
     #[inline]
     pub(crate) fn note(&mut self, list: usize, pair: usize, distance: f64) {
-        let known = &mut self.pairs[list][pair];
-        known.until = of_both(&self.paths, &known.bodies) + (1.0 - ROUNDING) * distance;
+        let paths = of_both(&self.paths, &self.pairs[list].bodies(pair));
+        self.pairs[list].set(pair, paths + (1.0 - ROUNDING) * distance);
     }
 
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
-        let pairs = self.pairs.iter().map(Vec::capacity).sum::<usize>() + self.merged.capacity();
-        8 * D * self.x.capacity() + (16 * D + 88) * self.paths.capacity() + core::mem::size_of::<Known>() * pairs
+        let pairs = self.pairs.iter().map(KnownPairs::heap_bytes).sum::<usize>();
+        8 * D * self.x.capacity() + (16 * D + 88) * self.paths.capacity() + pairs
     }
 }

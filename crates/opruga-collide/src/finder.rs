@@ -46,24 +46,20 @@ impl<const D: usize> Finder<'_, D> {
     /// Lists the candidates that may touch according to the bounds on their distances, and computes the distances of these candidates. The
     /// list includes all candidates of points that began inside other bodies, and all candidates of bodies at rest.
     fn find_unclear(&mut self) {
-        let Touching { surface, before: [x, _], candidates, clearance, thickest, began_inside, at_once, .. } =
-            self.touching;
+        let Touching { surface, before: [x, _], candidates, clearance, began_inside, at_once, .. } = self.touching;
         let Found { part, unclear, .. } = &mut *self.found;
-        let of_obstacle = |point: u32| usize::from(surface.is_of_obstacle(point));
         unclear.iter_mut().for_each(Vec::clear);
         let mut inside = began_inside.iter().peekable();
         for k in part[0].clone() {
-            let features @ [vertex, facet] = candidates.vertex_facet[k];
+            let features @ [vertex, _] = candidates.vertex_facet[k];
             while inside.next_if(|other| **other < vertex).is_some() {}
             let all = *at_once || inside.peek() == Some(&&vertex);
-            let farthest = thickest[of_obstacle(vertex) | of_obstacle(surface.facets[facet as usize][0])];
-            if all || !clearance.is_clear(0, k, farthest) {
+            if all || !clearance.is_clear(0, k, 0.0) {
                 unclear[0].push(Unclear { candidate: k, features, distance: 0.0 });
             }
         }
-        let farthest = thickest[0].larger(thickest[1]);
         for k in part[1].clone() {
-            if !clearance.is_clear(1, k, farthest) {
+            if !clearance.is_clear(1, k, 0.0) {
                 unclear[1].push(Unclear { candidate: k, features: candidates.edge_edge[k], distance: 0.0 });
             }
         }
@@ -193,11 +189,7 @@ impl<const D: usize> Finder<'_, D> {
     fn take_gaps_of(&mut self, candidates: Range<usize>, distance: f64, all: bool) -> bool {
         let mut inside = false;
         for k in candidates {
-            let [vertex, facet] = self.touching.candidates.vertex_facet[k];
-            let farthest =
-                self.thickest_at(vertex).larger(self.thickest_at(self.touching.surface.facets[facet as usize][0]))
-                    + distance;
-            if !all && self.touching.clearance.is_clear(0, k, farthest) {
+            if !all && self.touching.clearance.is_clear(0, k, distance) {
                 continue;
             }
             let known = self.take_gap_of_vertex(k, distance, f64::NEG_INFINITY);

@@ -17,6 +17,9 @@ impl<const D: usize> Touching<D> {
             return Ok(false);
         }
         self.search()?;
+        let mut of_grown = vec![false; self.laws.class.len()];
+        self.reach.grown().for_each(|p| of_grown[self.surface.body[p as usize] as usize] = true);
+        self.clearance.set_limits(&self.surface, self.thickest, |body| of_grown[body as usize]);
         Ok(self.any_come_within_reach(true) || self.any_come_within_reach(false))
     }
 
@@ -26,17 +29,12 @@ impl<const D: usize> Touching<D> {
         let list = usize::from(!with_facet);
         let mut pairs = std::mem::take(&mut self.found[0].unclear[list]);
         pairs.clear();
-        let Touching { surface, before: [x, _], candidates, clearance, reach, laws, thickest, .. } = &*self;
+        let Touching { surface, before: [x, _], candidates, clearance, reach, laws, .. } = &*self;
         // Bodies at rest also take the gaps of pairs that stay somewhat farther apart.
         let beyond = if self.at_once { AT_REST * self.margin } else { 0.0 };
-        let mut of_grown = vec![false; laws.class.len()];
-        reach.grown().for_each(|p| of_grown[surface.body[p as usize] as usize] = true);
         let all = if with_facet { &candidates.vertex_facet } else { &candidates.edge_edge };
-        let farthest = thickest[0].larger(thickest[1]) + beyond;
         for (candidate, features) in all.iter().enumerate() {
-            let bodies = clearance.bodies(list, candidate);
-            if bodies.iter().any(|body| of_grown[*body as usize])
-                && !clearance.is_clear(list, candidate, farthest)
+            if !clearance.is_clear(list, candidate, beyond)
                 && surface.points_of_features(features, with_facet).into_iter().flatten().any(|p| reach.has_grown(*p))
             {
                 pairs.push(Unclear { candidate, features: *features, distance: 0.0 });

@@ -89,6 +89,7 @@ mod impact;
 mod impulses;
 mod inside;
 mod kept;
+mod known_pairs;
 mod law;
 mod least_parts;
 mod motion;

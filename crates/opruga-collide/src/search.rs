@@ -30,6 +30,12 @@ impl<const D: usize> Touching<D> {
     /// Searches for candidates if the present ones may not include all pairs that meet in this step.
     pub(crate) fn search(&mut self) -> Result<(), Trouble> {
         self.clearance.set_push(self.reach.body_push());
+        self.search_if_necessary()?;
+        self.clearance.set_limits(&self.surface, self.thickest, |_| true);
+        Ok(())
+    }
+
+    fn search_if_necessary(&mut self) -> Result<(), Trouble> {
         if self.reach.is_covered() && self.clearance.covers_all(self.margin) {
             return Ok(());
         }
