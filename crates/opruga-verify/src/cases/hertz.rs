@@ -53,7 +53,7 @@ small contacts from approaches of 2 cm and 5 mm, by `equilibrium`",
         source: "closed form: F = 4/3 E* √R δ^(3/2), R = R₁/2, E* = E/(2(1 − ν²)), as a/R → 0 (H. Hertz 1882; K. L. Johnson, Contact Mechanics, \
 1985, ch. 4)",
         over: Over::Cells("cells along an eighth of a great circle; one less for the other ball"),
-        levels: &[4.0, 5.0, 6.0],
+        levels: &[6.0, 8.0, 10.0],
         expected: &[1.0],
         measure: ratio_at_small_contacts,
         ..BASE
