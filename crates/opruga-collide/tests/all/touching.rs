@@ -282,6 +282,46 @@ fn nothing_tunnels() {
     }
 }
 
+/// A fast wire hits the upper end of a long one, whose lower end thereby reaches a third one in the same step. The two wires at rest are out of reach
+/// of one another before the impact.
+#[test]
+fn what_is_pushed_far_meets_others_in_the_same_step() {
+    let fast = Mesh::<2>::line([-0.04, 0.29], [0.0, 0.3], 1).expect("a wire");
+    let long = Mesh::<2>::line([0.0, -0.4], [0.0, 0.4], 1).expect("a wire");
+    let third = Mesh::<2>::line([0.0, -0.39], [0.0, -0.15], 1).expect("a wire");
+    let bodies = [(fast, [-0.05, 0.0], [1000.0, 0.0]), (long, [0.0; 2], [0.0; 2]), (third, [0.004, 0.0], [0.0; 2])];
+    let mut toy = Toy::new(&bodies, law(0.0, 0.0));
+    for step in 0..10 {
+        toy.step(1e-4);
+        let x = &toy.touching.after[0];
+        let along = |y: f64| x[2][0] + (y - x[2][1]) / (x[3][1] - x[2][1]) * (x[3][0] - x[2][0]);
+        assert!((4..6).all(|p| along(x[p][1]) < x[p][0]), "step {step}: {:?} passed through {:?}", &x[2..4], &x[4..6]);
+    }
+    let pushed = &toy.touching.after[1][4..6];
+    assert!(pushed[0][0] + pushed[1][0] > 1.0, "{pushed:?}");
+}
+
+/// The same with wires in space, where pairs of edges meet.
+#[test]
+fn what_is_pushed_far_meets_edges_in_the_same_step() {
+    let fast = Mesh::<3>::line([0.0, 0.3, -0.02], [0.0, 0.31, 0.02], 1).expect("a wire");
+    let long = Mesh::<3>::line([0.0, -0.4, 0.0], [0.0, 0.4, 0.0], 1).expect("a wire");
+    let third = Mesh::<3>::line([0.0, -0.3, -0.05], [0.0, -0.31, 0.05], 1).expect("a wire");
+    let at = |x: f64, speed: f64| ([x, 0.0, 0.0], [speed, 0.0, 0.0]);
+    let bodies = [(fast, at(-0.05, 1000.0)), (long, at(0.0, 0.0)), (third, at(0.004, 0.0))];
+    let bodies = bodies.map(|(mesh, (at, velocity))| (mesh, at, velocity));
+    let mut toy = Toy::new(&bodies, law(0.0, 0.0));
+    for step in 0..10 {
+        toy.step(1e-4);
+        let x = &toy.touching.after[0];
+        let part = (-0.305 - x[2][1]) / (x[3][1] - x[2][1]);
+        let (long, third) = (x[2][0] + part * (x[3][0] - x[2][0]), 0.5 * (x[4][0] + x[5][0]));
+        assert!(long < third, "step {step}: {long} is beyond {third}");
+    }
+    let pushed = &toy.touching.after[1][4..6];
+    assert!(pushed[0][0] + pushed[1][0] > 1.0, "{pushed:?}");
+}
+
 /// Two pinned wires that are moved through one another.
 #[test]
 fn what_is_led_through_is_refused() {
