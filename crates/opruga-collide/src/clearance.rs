@@ -192,7 +192,7 @@ impl<const D: usize> Clearance<D> {
             }
             of_both(ends, bodies) + thickest[usize::from(of_obstacle(bodies))]
         };
-        self.pairs.iter_mut().for_each(|pairs| pairs.set_limits(&limit));
+        self.pairs.iter_mut().for_each(|pairs| pairs.set_limits(limit));
     }
 
     /// The bodies of a pair.
