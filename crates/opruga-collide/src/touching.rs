@@ -143,7 +143,7 @@ pub struct Counts {
     /// The number of turns in which these were solved.
     pub turns: u64,
     /// The number of rounds, each of which computes gaps and solves for impulses. Every substep has one round, and another whenever contact pushes
-    /// points beyond their boxes.
+    /// points close to others that were out of reach, or pairs would still pass through one another.
     pub rounds: u64,
 }
 
