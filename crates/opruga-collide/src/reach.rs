@@ -243,6 +243,7 @@ impl<const D: usize> Reach<D> {
     /// Bytes on the heap, apart from those of points.
     pub(crate) fn heap_bytes(&self) -> usize {
         size_of::<Began>() * self.began.iter().map(Vec::capacity).sum::<usize>()
+            + size_of::<(u32, f64, Bounds<D>)>() * self.grown.capacity()
     }
 }
 
