@@ -7,6 +7,7 @@ use crate::found::Found;
 use crate::gap::Gap;
 use crate::impact::{impact, meeting_time};
 use crate::law::PairLaw;
+use crate::reach::SPARE;
 use crate::settle::OVERLAP;
 use crate::touching::Touching;
 use crate::vector::{add, dot, scaled, subtract};
@@ -18,10 +19,6 @@ use opruga_math::Lane;
 /// is perpendicular to this face. Deformation changes both values. Without this limit, points near an edge of the other body
 /// leave sideways while others do not, and the cubes of `cubes_that_begin_inside_one_another_part` end up interlocked.
 const FACING: f64 = -0.3;
-
-/// If a vertex seems to be deep inside a body, or its body is at rest, the gaps of all facets that may come within this many margins of
-/// it are computed.
-pub(crate) const AT_REST: f64 = 0.25;
 
 /// Finds, in one part of the candidates, the pairs that come close in a step of h [s].
 pub(crate) struct Finder<'a, const D: usize> {
@@ -92,7 +89,7 @@ impl<const D: usize> Finder<'_, D> {
         if self.touching.at_once || self.found.around.iter().any(|(row, _)| row.gap < known) {
             inside |= self.touching.at_once;
             self.found.around.clear();
-            self.take_gaps_of(self.candidates_of(unclear), AT_REST * self.touching.margin, inside);
+            self.take_gaps_of(self.candidates_of(unclear), SPARE * self.touching.margin, inside);
         }
         if self.touching.began_inside.binary_search(&vertex).is_ok() {
             self.take_exit(self.candidates_of(unclear));

@@ -1,14 +1,14 @@
-//! Whether contact that pushes points farther than expected brings further pairs together.
+//! The decision whether to repeat a step because contact pushed points farther than expected.
 
 use crate::distances::{Distances, Unclear};
-use crate::finder::AT_REST;
+use crate::reach::SPARE;
 use crate::touching::{Touching, Trouble};
 use crate::vector::{dot, subtract};
 use opruga_math::Lane;
 
 impl<const D: usize> Touching<D> {
-    /// Extends the boxes of points that contact has pushed beyond them; returns whether further pairs may have come too close, so that the step
-    /// needs another round.
+    /// Extends the boxes of points that contact pushed beyond them. Returns whether further pairs may have come too close, so that the step needs
+    /// another round.
     ///
     /// # Errors
     /// [`Trouble`] as for [`Touching::step`].
@@ -19,19 +19,20 @@ impl<const D: usize> Touching<D> {
         self.search()?;
         let mut of_grown = vec![false; self.laws.class.len()];
         self.reach.grown().for_each(|p| of_grown[self.surface.body[p as usize] as usize] = true);
+        // The next round sets the limits of all pairs again.
         self.clearance.set_limits(&self.surface, self.thickest, |body| of_grown[body as usize]);
         Ok(self.any_come_within_reach(true) || self.any_come_within_reach(false))
     }
 
-    /// Whether the points of any candidate that was out of reach before boxes have grown last may have come too close by their motion to the end of
-    /// the step. The result does not depend on the steps in which candidates are searched, because it follows from their exact distances.
+    /// Whether any candidate that was left out, because its features could not meet within their boxes, may have come too close in the motion to the
+    /// end of the step. The result follows from exact distances, so it does not depend on the steps in which candidates are searched.
     fn any_come_within_reach(&mut self, with_facet: bool) -> bool {
         let list = usize::from(!with_facet);
         let mut pairs = std::mem::take(&mut self.found[0].unclear[list]);
         pairs.clear();
         let Touching { surface, before: [x, _], candidates, clearance, reach, laws, .. } = &*self;
-        // Bodies at rest also take the gaps of pairs that stay somewhat farther apart.
-        let beyond = if self.at_once { AT_REST * self.margin } else { 0.0 };
+        // For bodies at rest, the gaps of pairs somewhat beyond their boxes are computed too.
+        let beyond = if self.at_once { SPARE * self.margin } else { 0.0 };
         let all = if with_facet { &candidates.vertex_facet } else { &candidates.edge_edge };
         for (candidate, features) in all.iter().enumerate() {
             if !clearance.is_clear(list, candidate, beyond)

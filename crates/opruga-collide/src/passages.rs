@@ -113,7 +113,7 @@ impl<const D: usize> Touching<D> {
     }
 
     /// The points of a pair, or the nodes that carry them.
-    fn points_of_pair(&self, [a, b]: [u32; 2], with_facet: bool) -> PointsOfPair {
+    fn points_of_pair(&self, pair: [u32; 2], with_facet: bool) -> PointsOfPair {
         let mut out = ([0; 16], 0);
         let mut add = |p: u32| {
             self.surface.visit_nodes(p, |node, _| {
@@ -121,22 +121,12 @@ impl<const D: usize> Touching<D> {
                 out.1 += 1;
             });
         };
-        if with_facet {
-            add(a);
-            self.surface.facets[b as usize].into_iter().for_each(add);
-        } else {
-            [a, b].into_iter().flat_map(|e| self.surface.edges[e as usize]).for_each(add);
-        }
+        self.surface.points_of_features(&pair, with_facet).into_iter().flatten().for_each(|p| add(*p));
         out
     }
 
-    fn bodies_of(&self, [a, b]: [u32; 2], with_facet: bool) -> [u32; 2] {
-        let points = if with_facet {
-            [a, self.surface.facets[b as usize][0]]
-        } else {
-            [a, b].map(|e| self.surface.edges[e as usize][0])
-        };
-        points.map(|p| self.surface.body[p as usize])
+    fn bodies_of(&self, pair: [u32; 2], with_facet: bool) -> [u32; 2] {
+        self.surface.points_of_features(&pair, with_facet).map(|points| self.surface.body[points[0] as usize])
     }
 
     /// Replaces the rows of passing pairs by rows with the gaps that the check has found for them.

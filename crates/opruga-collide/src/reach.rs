@@ -25,11 +25,17 @@ pub(crate) struct Reach<const D: usize> {
     stale: Vec<bool>,
     /// For every body, whether it will soon be stale. The next search covers all such bodies at once.
     due: Vec<bool>,
-    /// The points whose boxes have grown last, ascending, and for each of them the displacement and the box before.
+    /// The points whose boxes the last call of [`Reach::grow`] extended, ascending. Also the displacement that contact may add to the motion of each
+    /// point, and its box, both as they were before that call.
     grown: Vec<(u32, f64, Bounds<D>)>,
     /// The results for the points of bodies in this step, one list for each part of the points.
     began: Vec<Vec<Began>>,
 }
+
+/// A search finds all pairs within the boxes of its points. These boxes extend at least this many margins beyond the boxes of every step that uses its
+/// pairs. In bodies at rest, and around vertices that seem to be deep inside a body, gaps are computed up to this distance beyond the boxes of the step.
+/// If the distance in one of these places were larger than in the other, results would depend on when a search was made.
+pub(crate) const SPARE: f64 = 0.25;
 
 /// If the margin of a box is this many times as wide as it would be now, the box is computed anew. Otherwise bodies that come to rest after an impact
 /// would keep the candidates of their flight (`candidates_of_a_flight_are_dropped_at_rest`). The number is above 2 because a point that moves
@@ -79,7 +85,7 @@ impl<const D: usize> Reach<D> {
         self.stale.fill(false);
         self.due.fill(false);
         self.body_push.fill(0.0);
-        let spare = 0.25 * margin;
+        let spare = SPARE * margin;
         let size = threads::part_size(from.len(), threads, least_parts::POINTS);
         let boxes = self.push.chunks_mut(size).zip(self.swept.chunks_mut(size)).zip(self.found_in.chunks(size));
         let points = from.chunks(size).zip(to.chunks(size)).zip(body.chunks(size));
@@ -171,7 +177,7 @@ impl<const D: usize> Reach<D> {
 
     /// Widens the boxes of touched points that contact pushes beyond them; returns whether there are any.
     pub(crate) fn grow(&mut self, body: &[u32], touched: &[bool], [free, end]: [&[[f64; D]]; 2], margin: f64) -> bool {
-        let spare = 0.25 * margin;
+        let spare = SPARE * margin;
         self.grown.clear();
         for p in (0..touched.len()).filter(|p| touched[*p]) {
             let displacement = subtract(&end[p], &free[p]);
@@ -214,18 +220,18 @@ impl<const D: usize> Reach<D> {
         between(around(of, a), around(of, b))
     }
 
-    /// Whether the box of a point has grown last.
+    /// Whether the last call of [`Reach::grow`] extended the box of a point.
     pub(crate) fn has_grown(&self, point: u32) -> bool {
         self.grown.binary_search_by_key(&point, |(grown, ..)| *grown).is_ok()
     }
 
-    /// The points whose boxes have grown last, ascending.
+    /// The points whose boxes the last call of [`Reach::grow`] extended, ascending.
     pub(crate) fn grown(&self) -> impl Iterator<Item = u32> + '_ {
         self.grown.iter().map(|(point, ..)| *point)
     }
 
-    /// Whether two features at a given distance may come closer than another distance within the step [m]. With `before` set, this is what held
-    /// before boxes have grown last.
+    /// Whether two features at a given distance may come closer than another distance within the step [m]. If `before` is set, the boxes are those
+    /// before the last call of [`Reach::grow`].
     pub(crate) fn may_meet(&self, distance: f64, other: f64, [a, b]: [&[u32]; 2], before: bool) -> bool {
         let of = |p: u32| match self.grown.binary_search_by_key(&p, |(grown, ..)| *grown) {
             Ok(k) if before => (self.grown[k].1, self.grown[k].2),

@@ -77,7 +77,7 @@ struct Round {
     grading: f64,
 }
 
-/// Cells grow by a factor of 27 from the pole to the rim.
+/// Cells grow by a factor of 27 from the pole to the rim. Cells of equal size would be about as large as the contact.
 const GRADING: f64 = 4.0;
 
 /// The interaction of two bodies.
@@ -189,8 +189,8 @@ fn force_of_balls(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     Ok(balls(lab, n, 0.02, GRADING)?.force)
 }
 
-/// The ratio of the force to Hertz's deviates from 1 by about a/R, because the middle planes are not far away. A quarter of the approach halves
-/// this deviation.
+/// The ratio of the force to Hertz's deviates from 1 in proportion to a/R, because the middle planes are not far away. A quarter of the approach
+/// halves this deviation.
 fn ratio_at_small_contacts(lab: &Lab, n: f64) -> Result<f64, Trouble> {
     let stiffness = 1e6 / (2.0 * (1.0 - POISSON * POISSON));
     let ratio = |approach: f64, grading| -> Result<f64, Trouble> {
