@@ -1,8 +1,11 @@
 //! Points that are inside another body at the start of a frame, because their bodies began inside one another and have not come out yet.
 
+use crate::closest::{closest_on_facet, mean};
 use crate::gap::Gap;
+use crate::reach::{NOWHERE, joined};
 use crate::touching::Touching;
-use opruga_math::Lane;
+use crate::vector::{Bounds, apart, dot, subtract};
+use core::ops::Range;
 use opruga_mesh::winding_number;
 
 impl<const D: usize> Touching<D> {
@@ -13,59 +16,52 @@ impl<const D: usize> Touching<D> {
         self.began_inside.clear();
         self.entangled.clear();
         let x = &self.before[0];
-        let mut boxes = vec![[[f64::INFINITY; D], [f64::NEG_INFINITY; D]]; self.surface.bodies()];
-        for (number, [low, high]) in boxes.iter_mut().enumerate() {
-            for p in self.surface.vertices_of(number) {
-                for d in 0..D {
-                    low[d] = x[p][d].smaller(low[d]);
-                    high[d] = x[p][d].larger(high[d]);
-                }
+        let around =
+            |body| self.surface.vertices_of(body).fold(NOWHERE.map(|c| [c; D]), |all, p| joined(all, [x[p]; 2]));
+        let boxes: Vec<Bounds<D>> = (0..self.surface.bodies()).map(around).collect();
+        for pair in 0..self.pairs.all.len() {
+            let (bodies @ [a, b], candidates) = (self.pairs.all[pair].bodies, self.pairs.all[pair].range(0));
+            if a != b && apart(&boxes[a as usize], &boxes[b as usize]) <= 0.0 {
+                self.find_inside(bodies, candidates, &boxes);
             }
         }
-        // Bodies are numbered in the order of their facets.
-        let mut body_of = Vec::with_capacity(self.surface.facets.len());
-        for number in 0..self.surface.bodies() {
-            body_of.resize(self.surface.facets_of(number).end, number as u32);
-        }
-        for pairs in self.candidates.vertex_facet.chunk_by(|a, b| a[0] == b[0]) {
-            let vertex = pairs[0][0];
-            let at = &x[vertex as usize];
-            let mut nearest: Vec<(u32, f64)> = Vec::new();
-            for [_, facet] in pairs {
-                let corners = &self.surface.facets[*facet as usize];
-                let other = body_of[*facet as usize];
-                let [low, high] = &boxes[other as usize];
-                let within = (0..D).all(|d| low[d] <= at[d] && at[d] <= high[d]);
-                let of_other = self.surface.body[corners[0] as usize] != self.surface.body[vertex as usize];
-                if !within || !of_other || !self.surface.closed[*facet as usize] {
-                    continue;
-                }
-                let gap = Gap::of_vertex_and_facet(&self.surface, x, vertex, *facet).gap;
-                match nearest.iter_mut().find(|(body, _)| *body == other) {
-                    Some((_, known)) if gap.abs() < known.abs() => *known = gap,
-                    Some(_) => {}
-                    None => nearest.push((other, gap)),
-                }
-            }
-            let is_inside = |other: u32| {
-                // Facets of closed boundaries come first.
-                let all = self.surface.facets_of(other as usize);
-                let closed = self.surface.closed[all.clone()].partition_point(|closed| *closed);
-                let boundary = &self.surface.facets[all.start..all.start + closed];
-                winding_number(boundary, x, at).abs() > 0.5
-            };
-            let mut inside = nearest.iter().filter(|(other, gap)| *gap < 0.0 && is_inside(*other)).peekable();
-            if inside.peek().is_some() {
-                self.began_inside.push(vertex);
-            }
-            let body = self.surface.body[vertex as usize];
-            self.entangled.extend(inside.map(|(other, _)| {
-                let other = self.surface.body[self.surface.vertices_of(*other as usize).start];
-                if body < other { [body, other] } else { [other, body] }
-            }));
-        }
+        self.began_inside.sort_unstable();
+        self.began_inside.dedup();
         self.entangled.sort_unstable();
         self.entangled.dedup();
+    }
+
+    /// Finds the vertices among the candidates of two bodies that are inside the other body, given the boxes around all bodies [m].
+    fn find_inside(&mut self, [a, b]: [u32; 2], candidates: Range<usize>, boxes: &[Bounds<D>]) {
+        let Touching { surface, before: [x, _], pairs, began_inside, entangled, .. } = self;
+        for of_vertex in pairs.features[0][candidates].chunk_by(|a, b| a[0] == b[0]) {
+            let vertex = of_vertex[0][0];
+            let other = if surface.body[vertex as usize] == a { b } else { a };
+            let (at, [low, high]) = (&x[vertex as usize], &boxes[other as usize]);
+            if !(0..D).all(|d| low[d] <= at[d] && at[d] <= high[d]) {
+                continue;
+            }
+            let closed = of_vertex.iter().map(|[_, facet]| *facet).filter(|facet| surface.closed[*facet as usize]);
+            let square = |facet: u32| {
+                let corners = surface.facets[facet as usize].map(|p| x[p as usize]);
+                let between = subtract(at, &mean(&closest_on_facet(at, &corners), &corners));
+                dot(&between, &between)
+            };
+            let nearest = closed
+                .map(|facet| (square(facet), facet))
+                .reduce(|known, one| if one.0 < known.0 { one } else { known });
+            if !nearest.is_some_and(|(_, facet)| Gap::of_vertex_and_facet(surface, x, vertex, facet).gap < 0.0) {
+                continue;
+            }
+            // Facets of closed boundaries come first.
+            let all = surface.facets_of(other as usize);
+            let closed = surface.closed[all.clone()].partition_point(|closed| *closed);
+            let boundary = &surface.facets[all.start..all.start + closed];
+            if winding_number(boundary, x, at).abs() > 0.5 {
+                began_inside.push(vertex);
+                entangled.push([a, b]);
+            }
+        }
     }
 
     /// Whether points of one of two bodies were inside the other one at the start of the frame. Edges of two such bodies do not

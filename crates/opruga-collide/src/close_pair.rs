@@ -8,6 +8,8 @@ use crate::surface::Surface;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ClosePair<const D: usize> {
     pub(crate) id: u64,
+    /// The index of its pair of bodies.
+    pub(crate) pair: u32,
     pub(crate) points: [u32; 4],
     pub(crate) weights: [f64; 4],
     pub(crate) normal: [f64; D],
@@ -23,7 +25,7 @@ impl<const D: usize> ClosePair<D> {
     /// Returns its row, without masses.
     pub(crate) fn into_row(self, spread: &mut Spread, surface: &Surface<D>) -> Row<D> {
         let mut row = Row::new(self.id, (self.points, self.weights), self.normal, self.friction);
-        (row.gap, row.target) = (self.gap, self.target);
+        (row.gap, row.target, row.pair) = (self.gap, self.target, self.pair);
         row.put_into(spread, surface);
         row
     }

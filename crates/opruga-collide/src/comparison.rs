@@ -4,7 +4,7 @@ use crate::grid::Grid;
 use crate::overlaps::{Columns, Overlaps};
 use crate::reach::around;
 use crate::surface::Surface;
-use crate::vector::{Bounds, wider};
+use crate::vector::{Bounds, shifted, wider};
 use core::ops::Range;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use opruga_math::{Simd, WIDTH};
@@ -13,13 +13,26 @@ use opruga_math::{Simd, WIDTH};
 /// many packs of pairs. Otherwise, features are sorted into cells. Finding the cells of a feature takes as long as a thousand comparisons.
 const FEW: usize = 1024;
 
+/// Two bodies, or a body and itself, whose features are compared.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Compared<const D: usize> {
+    /// The bodies; the first number is not larger than the second.
+    pub(crate) bodies: [u32; 2],
+    /// The displacement of the boxes of the first body relative to those of the second body [m].
+    pub(crate) shift: [f64; D],
+    /// The largest distance of features that form a pair [m].
+    pub(crate) distance: f64,
+}
+
 /// One part of the pairs of bodies, and the pairs of features found in it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Comparison<const D: usize> {
     /// The pairs of bodies.
     pub(crate) range: Range<usize>,
-    /// The pairs of a vertex and a facet, and of two edges, each list in ascending order.
+    /// The pairs of a vertex and a facet, and of two edges. The pairs of features of two bodies are ascending.
     pub(crate) pairs: [Vec<[u32; 2]>; 2],
+    /// For every pair of bodies, the end of its pairs of features in both lists.
+    pub(crate) ends: Vec<[usize; 2]>,
     first: Vec<(u32, Bounds<D>)>,
     second: Vec<(u32, Bounds<D>)>,
     columns: Columns,
@@ -28,17 +41,14 @@ pub(crate) struct Comparison<const D: usize> {
 }
 
 /// Pairs of bodies whose features are compared.
-pub(crate) struct Comparisons<'a, O, const D: usize> {
+pub(crate) struct Comparisons<'a, const D: usize> {
     pub(crate) surface: &'a Surface<D>,
     /// The boxes of points for pairs of two bodies [m], and those for pairs within one body.
     pub(crate) boxes: &'a [Bounds<D>],
-    pub(crate) own: O,
-    /// The boxes around the points of every body [m].
+    pub(crate) own: &'a [Bounds<D>],
+    /// The boxes around the boxes of the vertices of every body for pairs of two bodies [m].
     pub(crate) bodies: &'a [Bounds<D>],
-    /// The pairs of bodies, each in both orders.
-    pub(crate) pairs: &'a [[u32; 2]],
-    /// The largest distances of features that form a pair [m]: between bodies, and with obstacles.
-    pub(crate) distances: [f64; 2],
+    pub(crate) pairs: &'a [Compared<D>],
     pub(crate) simd: Simd,
     /// The largest allowed number of pairs of features, and the number that all parts together have found so far.
     pub(crate) most: usize,
@@ -54,45 +64,68 @@ fn meet_boxes<const D: usize>(a: &Bounds<D>, b: &Bounds<D>) -> bool {
     (0..D).all(|d| a[0][d] <= b[1][d] && b[0][d] <= a[1][d])
 }
 
-impl<O: Fn(u32) -> Bounds<D>, const D: usize> Comparisons<'_, O, D> {
+/// A body and the displacement of its boxes [m].
+type Shifted<const D: usize> = (u32, [f64; D]);
+
+impl<const D: usize> Comparisons<'_, D> {
     /// Compares the features of the bodies in a part. Ends early if all parts together have found too many pairs.
     pub(crate) fn compare(&self, part: &mut Comparison<D>) {
         let [mut with_facets, mut of_edges] = core::mem::take(&mut part.pairs);
         with_facets.clear();
         of_edges.clear();
-        for pair @ [a, b] in &self.pairs[part.range.clone()] {
-            let before = with_facets.len() + of_edges.len();
-            if !self.surface.is_obstacle(*b) || self.surface.touches_faces(*a) {
-                self.compare_vertices_with_facets(part, *pair, &mut with_facets);
+        part.ends.clear();
+        for Compared { bodies: [a, b], shift, distance } in &self.pairs[part.range.clone()] {
+            let starts = [with_facets.len(), of_edges.len()];
+            let both @ [first, second] = [(*a, *shift), (*b, [0.0; D])];
+            self.compare_vertices_with_facets(part, both, *distance, &mut with_facets);
+            if a != b {
+                self.compare_vertices_with_facets(part, [second, first], *distance, &mut with_facets);
             }
-            if D == 3 && a <= b {
-                self.compare_edges(part, *pair, &mut of_edges);
+            if D == 3 {
+                self.compare_edges(part, both, *distance, &mut of_edges);
             }
-            let fresh = with_facets.len() + of_edges.len() - before;
+            with_facets[starts[0]..].sort_unstable_by_key(key);
+            of_edges[starts[1]..].sort_unstable_by_key(key);
+            part.ends.push([with_facets.len(), of_edges.len()]);
+            let fresh = with_facets.len() - starts[0] + of_edges.len() - starts[1];
             if self.counted.fetch_add(fresh, Ordering::Relaxed) + fresh > self.most {
                 break;
             }
         }
-        with_facets.sort_unstable_by_key(key);
-        of_edges.sort_unstable_by_key(key);
         part.pairs = [with_facets, of_edges];
     }
 
-    /// The box of a point for pairs of two bodies, or of one body with itself.
-    fn at(&self, [a, b]: [u32; 2], point: u32) -> Bounds<D> {
-        if a == b { (self.own)(point) } else { self.boxes[point as usize] }
+    /// The boxes of points for a pair of bodies, and the regions in which features of the first body can meet the second body, and the other way
+    /// around. Features of one body can be anywhere.
+    fn boxes_for(&self, [first, second]: &[Shifted<D>; 2], distance: f64) -> (&[Bounds<D>], [Bounds<D>; 2]) {
+        if first.0 == second.0 {
+            return (self.own, [[[f64::NEG_INFINITY; D], [f64::INFINITY; D]]; 2]);
+        }
+        let region =
+            |(body, shift): &Shifted<D>, distance: f64| wider(shifted(self.bodies[*body as usize], shift), distance);
+        (self.boxes, [region(second, distance), region(first, 0.0)])
     }
 
-    fn distance(&self, pair: [u32; 2]) -> f64 {
-        self.distances[usize::from(pair.iter().any(|body| self.surface.is_obstacle(*body)))]
-    }
-
-    fn compare_vertices_with_facets(&self, part: &mut Comparison<D>, pair: [u32; 2], found: &mut Vec<[u32; 2]>) {
-        let (surface, distance) = (self.surface, self.distance(pair));
-        let ([a, b], at) = (pair.map(|body| body as usize), |p: u32| self.at(pair, p));
-        let facet = |f: usize| wider(around(at, &surface.facets[f]), distance);
-        choose(&mut part.first, surface.vertices_of(a), &wider(self.bodies[b], distance), |p| at(p as u32));
-        choose(&mut part.second, surface.facets_of(b), &self.bodies[a], facet);
+    fn compare_vertices_with_facets(
+        &self,
+        part: &mut Comparison<D>,
+        [first, second]: [Shifted<D>; 2],
+        distance: f64,
+        found: &mut Vec<[u32; 2]>,
+    ) {
+        let surface = self.surface;
+        if surface.is_obstacle(second.0) && !surface.touches_faces(first.0) {
+            return;
+        }
+        let [a, b] = [first.0 as usize, second.0 as usize];
+        let (boxes, regions) = self.boxes_for(&[first, second], distance);
+        let vertex = |p: usize| shifted(boxes[p], &first.1);
+        let facet = |f: usize| {
+            let around = around(|p| boxes[p as usize], &surface.facets[f]);
+            wider(shifted(around, &second.1), distance)
+        };
+        choose(&mut part.first, surface.vertices_of(a), &regions[0], vertex);
+        choose(&mut part.second, surface.facets_of(b), &regions[1], facet);
         part.join(self.simd, |p, facet| {
             if a != b || !surface.share(&[p], &surface.facets[facet as usize]) {
                 found.push([p, facet]);
@@ -100,16 +133,23 @@ impl<O: Fn(u32) -> Bounds<D>, const D: usize> Comparisons<'_, O, D> {
         });
     }
 
-    fn compare_edges(&self, part: &mut Comparison<D>, pair: [u32; 2], found: &mut Vec<[u32; 2]>) {
-        let (surface, distance) = (self.surface, self.distance(pair));
-        let [a, b] = pair.map(|body| body as usize);
-        let of = |edge: usize| around(|p| self.at(pair, p), &surface.edges[edge]);
-        choose(&mut part.first, surface.edges_of(a), &wider(self.bodies[b], distance), of);
-        choose(&mut part.second, surface.edges_of(b), &self.bodies[a], |edge| wider(of(edge), distance));
+    fn compare_edges(
+        &self,
+        part: &mut Comparison<D>,
+        [first, second]: [Shifted<D>; 2],
+        distance: f64,
+        found: &mut Vec<[u32; 2]>,
+    ) {
+        let surface = self.surface;
+        let [a, b] = [first.0 as usize, second.0 as usize];
+        let (boxes, regions) = self.boxes_for(&[first, second], distance);
+        let of = |edge: usize, shift: &[f64; D]| shifted(around(|p| boxes[p as usize], &surface.edges[edge]), shift);
+        choose(&mut part.first, surface.edges_of(a), &regions[0], |edge| of(edge, &first.1));
+        choose(&mut part.second, surface.edges_of(b), &regions[1], |edge| wider(of(edge, &second.1), distance));
         part.join(self.simd, |i, j| {
             let [first, second] = [i, j].map(|edge| &surface.edges[edge as usize]);
             if a != b || i < j && !surface.share(first, second) {
-                found.push(if i < j { [i, j] } else { [j, i] });
+                found.push([i, j]);
             }
         });
     }
@@ -131,6 +171,9 @@ impl<const D: usize> Comparison<D> {
     /// Calls `visit` with all pairs of a feature of the first list and a feature of the second list whose boxes overlap.
     fn join(&mut self, simd: Simd, mut visit: impl FnMut(u32, u32)) {
         let Comparison { first, second, columns, grid, found, .. } = self;
+        if first.is_empty() || second.is_empty() {
+            return;
+        }
         if second.len() <= FEW || first.len() * second.len() <= FEW * WIDTH {
             columns.fill(second);
             return simd.run(Overlaps { first, second, columns, visit });
@@ -145,6 +188,7 @@ impl<const D: usize> Comparison<D> {
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         8 * self.pairs.iter().map(Vec::capacity).sum::<usize>()
+            + 16 * self.ends.capacity()
             + 4 * self.found.capacity()
             + (16 * D + 8) * (self.first.capacity() + self.second.capacity())
             + self.grid.heap_bytes()

@@ -2,18 +2,9 @@
 
 use crate::closest::PARALLEL;
 use crate::surface::Surface;
+use crate::unclear::Unclear;
 use crate::vector::{dot, scaled, subtract};
 use opruga_math::{Lane, Pack, WIDTH, Work, lanes};
-
-/// A candidate that may touch in a step according to the bound on its distance.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Unclear {
-    /// The index of the candidate among all candidates.
-    pub(crate) candidate: usize,
-    pub(crate) features: [u32; 2],
-    /// The distance at the start of the step, or a lower bound on it [m].
-    pub(crate) distance: f64,
-}
 
 /// Computes the distances of pairs of a vertex and a facet, or of pairs of edges, with the points at `x` [m].
 ///

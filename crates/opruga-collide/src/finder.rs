@@ -1,15 +1,18 @@
 //! The selection of contacts among the candidates, according to their gaps.
 
+use crate::body_pairs::BodyPair;
 use crate::close_pair::ClosePair;
 use crate::closest::facet_normal;
-use crate::distances::{Distances, Unclear};
+use crate::distances::Distances;
 use crate::found::Found;
 use crate::gap::Gap;
 use crate::impact::{impact, meeting_time};
+use crate::last_impulse::number_of;
 use crate::law::PairLaw;
 use crate::reach::SPARE;
 use crate::settle::OVERLAP;
 use crate::touching::Touching;
+use crate::unclear::{FindUnclear, Unclear};
 use crate::vector::{add, dot, scaled, subtract};
 use core::ops::Range;
 use opruga_math::Lane;
@@ -20,6 +23,9 @@ use opruga_math::Lane;
 /// leave sideways while others do not, and the cubes of `cubes_that_begin_inside_one_another_part` end up interlocked.
 const FACING: f64 = -0.3;
 
+/// The range of impulses before the first search for those of a pair.
+const NOT_SOUGHT: Range<usize> = usize::MAX..usize::MAX;
+
 /// Finds, in one part of the candidates, the pairs that come close in a step of h [s].
 pub(crate) struct Finder<'a, const D: usize> {
     pub(crate) touching: &'a Touching<D>,
@@ -27,41 +33,59 @@ pub(crate) struct Finder<'a, const D: usize> {
     pub(crate) h: f64,
 }
 
+/// What all candidates of one vertex and two bodies have in common.
+struct Kind {
+    /// The index of the pair of bodies.
+    pair: u32,
+    /// The body of the vertex and that of the facet.
+    own: u32,
+    other: u32,
+    /// The displacement of the bodies relative to one another in the free motion [m].
+    relative: f64,
+    law: PairLaw,
+}
+
 impl<const D: usize> Finder<'_, D> {
-    /// Computes the gaps of all candidates that may touch, in the order of their features.
+    /// Computes the gaps of all candidates that may touch, in the order of their bodies and features.
     pub(crate) fn find(&mut self) {
         self.find_unclear();
-        let mut unclear = std::mem::take(&mut self.found.unclear);
+        let [mut with_facets, of_edges] = std::mem::take(&mut self.found.unclear);
         self.found.notes.clear();
-        for own in unclear[0].chunk_by_mut(|a, b| a.features[0] == b.features[0]) {
+        self.found.last = NOT_SOUGHT;
+        let mut edges = of_edges.iter().peekable();
+        for own in with_facets.chunk_by_mut(|a, b| (a.pair, a.features[0]) == (b.pair, b.features[0])) {
+            while let Some(earlier) = edges.next_if(|edges| edges.pair < own[0].pair) {
+                self.take_gap_of_edges(earlier);
+            }
             self.take_gaps_of_vertex(own);
         }
-        unclear[1].iter().for_each(|unclear| self.take_gap_of_edges(unclear));
-        self.found.unclear = unclear;
+        edges.for_each(|unclear| self.take_gap_of_edges(unclear));
+        self.found.unclear = [with_facets, of_edges];
     }
 
     /// Lists the candidates that may touch according to the bounds on their distances, and computes the distances of these candidates. The
     /// list includes all candidates of points that began inside other bodies, and all candidates of bodies at rest.
     fn find_unclear(&mut self) {
-        let Touching { surface, before: [x, _], candidates, clearance, began_inside, at_once, .. } = self.touching;
-        let Found { part, unclear, .. } = &mut *self.found;
+        let Touching { surface, before: [x, _], pairs: known, pieces, began_inside, at_once, .. } = self.touching;
+        let Found { part, unclear, least, .. } = &mut *self.found;
         unclear.iter_mut().for_each(Vec::clear);
-        let mut inside = began_inside.iter().peekable();
-        for k in part[0].clone() {
-            let features @ [vertex, _] = candidates.vertex_facet[k];
-            while inside.next_if(|other| **other < vertex).is_some() {}
-            let all = *at_once || inside.peek() == Some(&&vertex);
-            if all || !clearance.is_clear(0, k, 0.0) {
-                unclear[0].push(Unclear { candidate: k, features, distance: 0.0 });
-            }
-        }
-        for k in part[1].clone() {
-            if !clearance.is_clear(1, k, 0.0) {
-                unclear[1].push(Unclear { candidate: k, features: candidates.edge_edge[k], distance: 0.0 });
+        least.clear();
+        let pieces = &pieces[part.clone()];
+        let everywhere = *at_once || !began_inside.is_empty();
+        known.simd.run(FindUnclear { known, pieces, lists: [!everywhere, true], beyond: 0.0, unclear, least });
+        if everywhere {
+            let vertices = &mut unclear[0];
+            for (pair, _, range) in pieces.iter().filter(|(_, list, _)| *list == 0) {
+                for (k, features) in range.clone().zip(&known.features[0][range.clone()]) {
+                    let all = *at_once || began_inside.binary_search(&features[0]).is_ok();
+                    if all || !known.is_clear(*pair as usize, 0, k, 0.0) {
+                        vertices.push(Unclear { candidate: k, pair: *pair, features: *features, distance: 0.0 });
+                    }
+                }
             }
         }
         for (list, pairs) in unclear.iter_mut().enumerate() {
-            candidates.simd.run(Distances { surface, x, pairs, with_facet: list == 0 });
+            known.simd.run(Distances { surface, x, pairs, with_facet: list == 0 });
         }
     }
 
@@ -71,8 +95,10 @@ impl<const D: usize> Finder<'_, D> {
         self.found.around.clear();
         let close = self.found.close[0].len();
         let mut inside = false;
-        for Unclear { candidate, distance, .. } in unclear.iter_mut() {
-            *distance = self.take_gap_of_vertex(*candidate, 0.0, *distance);
+        let pair = unclear[0].pair;
+        let kind = self.kind_of(pair, vertex);
+        for Unclear { features, distance, .. } in unclear.iter_mut() {
+            *distance = self.take_gap_of_vertex(&kind, features, 0.0, *distance);
             inside |= *distance == f64::NEG_INFINITY;
         }
         if inside {
@@ -80,7 +106,7 @@ impl<const D: usize> Finder<'_, D> {
             // are.
             self.found.around.clear();
             self.found.close[0].truncate(close);
-            self.take_gaps_of(self.candidates_of(unclear), 0.0, true);
+            self.take_gaps_of(&kind, self.candidates_of(unclear), 0.0, true);
         }
         // A vertex that seems to be deep inside may be in front of a nearer facet, which was left out because the vertex cannot
         // reach it in this step.
@@ -89,45 +115,50 @@ impl<const D: usize> Finder<'_, D> {
         if self.touching.at_once || self.found.around.iter().any(|(row, _)| row.gap < known) {
             inside |= self.touching.at_once;
             self.found.around.clear();
-            self.take_gaps_of(self.candidates_of(unclear), SPARE * self.touching.margin, inside);
+            self.take_gaps_of(&kind, self.candidates_of(unclear), SPARE * self.touching.margin, inside);
         }
-        if self.touching.began_inside.binary_search(&vertex).is_ok() {
-            self.take_exit(self.candidates_of(unclear));
+        let began_inside = &self.touching.began_inside;
+        if !began_inside.is_empty() && began_inside.binary_search(&vertex).is_ok() {
+            self.take_exit(pair, self.candidates_of(unclear));
         }
         self.keep_the_nearest();
-        self.take_around(false);
+        self.take_around(pair, false);
     }
 
-    /// The range of all candidates that have the same vertex as some given ones.
+    fn kind_of(&self, pair: u32, vertex: u32) -> Kind {
+        let Touching { pairs, laws, .. } = self.touching;
+        let BodyPair { bodies: [a, b], relative, .. } = pairs.all[pair as usize];
+        let own = self.body_of(vertex);
+        let other = if own == a { b } else { a };
+        Kind { pair, own, other, relative, law: *laws.of(own, other) }
+    }
+
+    fn body_of(&self, point: u32) -> u32 {
+        self.touching.surface.body[point as usize]
+    }
+
+    /// The range of all candidates of the same bodies that have the same vertex as some given ones.
     fn candidates_of(&self, some: &[Unclear]) -> Range<usize> {
-        let (all, vertex) = (&self.touching.candidates.vertex_facet, some[0].features[0]);
+        let all = self.touching.pairs.all[some[0].pair as usize].range(0);
+        let (vertices, vertex) = (&self.touching.pairs.features[0], some[0].features[0]);
         let (mut first, mut end) = (some[0].candidate, some[some.len() - 1].candidate + 1);
-        while first > 0 && all[first - 1][0] == vertex {
+        while first > all.start && vertices[first - 1][0] == vertex {
             first -= 1;
         }
-        while all.get(end).is_some_and(|pair| pair[0] == vertex) {
+        while end < all.end && vertices[end][0] == vertex {
             end += 1;
         }
         first..end
     }
 
-    /// Whether features at a given distance stay farther apart than another distance [m]. The free motion of a point is no longer than the
-    /// distance by which contact may push it, so no point moves by more than twice this distance.
-    fn stay_apart(&self, distance: f64, other: f64, first: &[u32], second: &[u32]) -> bool {
-        let reach =
-            |points: &[u32]| points.iter().fold(0.0, |most: f64, p| self.touching.reach.push_of(*p).larger(most));
-        distance > other + 2.0 * (reach(first) + reach(second))
-    }
-
     /// Computes the gap of a candidate of two edges.
     fn take_gap_of_edges(&mut self, unclear: &Unclear) {
-        let Unclear { candidate, features: pair @ [a, b], distance } = *unclear;
+        let Unclear { pair: number, features: pair @ [a, b], distance, .. } = *unclear;
         let edges = pair.map(|e| self.touching.surface.edges[e as usize]);
-        let bodies = self.touching.clearance.bodies(1, candidate);
+        let BodyPair { bodies, relative, .. } = self.touching.pairs.all[number as usize];
         let law = *self.touching.laws.of(bodies[0], bodies[1]);
-        if self.stay_apart(distance, law.thickness, &edges[0], &edges[1])
-            || self.touching.reach.apart(&edges[0], &edges[1]) > law.thickness
-        {
+        let farthest = law.thickness + self.touching.reach.moves_of(&edges[0], &edges[1]) + relative;
+        if distance > farthest || self.touching.reach.apart(bodies, &edges[0], &edges[1]) > law.thickness {
             return;
         }
         if self.touching.are_entangled(bodies) {
@@ -143,8 +174,11 @@ impl<const D: usize> Finder<'_, D> {
         if gap.gap < -law.thickness {
             return;
         }
-        self.push(gap, &law, pair, false, 0.0);
-        self.take_around(true);
+        if gap.gap > farthest {
+            return;
+        }
+        self.push(gap, &law, (pair, number), false);
+        self.take_around(number, true);
     }
 
     /// Activates the pairs around a vertex or of two edges. Pairs that would not meet in the free motion are only watched.
@@ -153,25 +187,54 @@ impl<const D: usize> Finder<'_, D> {
     /// Pairs of edges are inactive at first unless they pressed in the previous step. The same is true of all pairs if there are
     /// coupled bodies. Where contacts of vertices and facets already keep surfaces apart, few edges press. Near coupled bodies,
     /// only a quarter of the pairs press. Overlapping pairs are active, because they must be separated.
-    fn take_around(&mut self, of_edges: bool) {
+    fn take_around(&mut self, pair: u32, of_edges: bool) {
+        if self.found.around.is_empty() {
+            return;
+        }
+        self.seek_last(pair);
         let starts_inactive =
             !self.touching.at_once && (of_edges || self.touching.coupled.count() > 0 && !self.touching.coupled.apart);
         let overlap = -OVERLAP * self.touching.thickest[0];
         let Touching { surface, inverse_mass, last, .. } = self.touching;
-        let Found { around, rows, heads, watched, inactive, spread, .. } = &mut *self.found;
+        let Found { around, rows, heads, watched, inactive, spread, last: of_pair, .. } = &mut *self.found;
+        let last = &last[of_pair.clone()];
         for (close, meets) in around.drain(..) {
             let mut row = close.into_row(spread, surface);
             if !meets {
                 heads.push(row.head());
                 watched.push(row);
-            } else if starts_inactive
-                && row.gap >= overlap
-                && last.binary_search_by_key(&row.id, |(id, ..)| *id).is_err()
-            {
+                continue;
+            }
+            let pressed = last.binary_search_by_key(&row.id, |last| last.id);
+            if starts_inactive && row.gap >= overlap && pressed.is_err() {
                 inactive.push(row);
             } else if row.can_move(spread, inverse_mass) {
+                if let Ok(k) = pressed {
+                    (row.normal_impulse, row.friction_impulse) = (last[k].along, last[k].across);
+                }
                 rows.push(row);
             }
+        }
+    }
+
+    /// Finds the impulses of a pair of bodies in the previous substep. Pairs come in ascending order.
+    fn seek_last(&mut self, pair: u32) {
+        let last = &self.touching.last;
+        let bodies = number_of(self.touching.pairs.all[pair as usize].bodies);
+        let range = &mut self.found.last;
+        if *range == NOT_SOUGHT {
+            range.start = last.partition_point(|last| last.bodies < bodies);
+            range.end = range.start;
+        }
+        if last.get(range.start).is_some_and(|last| last.bodies < bodies) {
+            range.start = range.end;
+            while last.get(range.start).is_some_and(|last| last.bodies < bodies) {
+                range.start += 1;
+            }
+            range.end = range.start;
+        }
+        while last.get(range.end).is_some_and(|last| last.bodies == bodies) {
+            range.end += 1;
         }
     }
 
@@ -183,14 +246,15 @@ impl<const D: usize> Finder<'_, D> {
     /// Computes the gaps of those among some candidates of one vertex that may come closer than a distance [m]. Unless `all` is
     /// set, candidates that are known to be farther apart are skipped. Returns whether the vertex seems to be inside another
     /// body.
-    fn take_gaps_of(&mut self, candidates: Range<usize>, distance: f64, all: bool) -> bool {
+    fn take_gaps_of(&mut self, kind: &Kind, candidates: Range<usize>, distance: f64, all: bool) -> bool {
         let mut inside = false;
+        let pairs = &self.touching.pairs;
         for k in candidates {
-            if !all && self.touching.clearance.is_clear(0, k, distance) {
+            if !all && pairs.is_clear(kind.pair as usize, 0, k, distance) {
                 continue;
             }
-            let known = self.take_gap_of_vertex(k, distance, f64::NEG_INFINITY);
-            self.found.notes.push((k, known));
+            let known = self.take_gap_of_vertex(kind, &pairs.features[0][k], distance, f64::NEG_INFINITY);
+            self.found.notes.push((kind.pair, k, known));
             inside |= known == f64::NEG_INFINITY;
         }
         inside
@@ -199,66 +263,79 @@ impl<const D: usize> Finder<'_, D> {
     /// Computes the gap of a candidate of a vertex if it may come closer than a distance [m], given its present distance (negative behind the plane
     /// of the facet). Returns a lower bound on the distance, for later steps: −∞ if the vertex seems to be inside another body and has to come out,
     /// however deep it is.
-    fn take_gap_of_vertex(&mut self, candidate: usize, distance: f64, mut separation: f64) -> f64 {
-        let pair @ [vertex, facet] = self.touching.candidates.vertex_facet[candidate];
-        let corners = &self.touching.surface.facets[facet as usize];
-        let [own, other] = self.touching.clearance.bodies(0, candidate);
-        let law = *self.touching.laws.of(own, other);
-        if separation.is_finite() && (own == other || !self.touching.surface.closed[facet as usize]) {
+    fn take_gap_of_vertex(
+        &mut self,
+        kind: &Kind,
+        features @ [vertex, facet]: &[u32; 2],
+        distance: f64,
+        mut separation: f64,
+    ) -> f64 {
+        let Touching { surface, reach, before: [x, _], .. } = self.touching;
+        let corners = &surface.facets[*facet as usize];
+        let Kind { pair, own, other, relative, law } = kind;
+        if separation.is_finite() && (own == other || !surface.closed[*facet as usize]) {
             // Such a facet has no inner side.
             separation = separation.abs();
         }
-        if self.stay_apart(separation, law.thickness + distance, &[vertex], corners) {
+        let farthest = law.thickness + distance + reach.moves_of(&[*vertex], corners) + relative;
+        if separation > farthest {
             return separation;
         }
-        let apart = self.touching.reach.apart(&[vertex], corners);
+        let apart = reach.apart([*own, *other], &[*vertex], corners);
         if apart > law.thickness + distance {
             return apart.larger(separation);
         }
-        let mut gap = Gap::of_vertex_and_facet(&self.touching.surface, &self.touching.before[0], vertex, facet);
+        let mut gap = Gap::of_vertex_and_facet(surface, x, *vertex, *facet);
         if distance == 0.0 {
-            self.found.close[0].push((pair, gap.gap.abs()));
+            self.found.close[0].push((*features, gap.gap.abs()));
         }
         if own == other && gap.gap < 0.0 {
             // Contact of a body with itself acts on both sides.
             (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
         }
-        self.push(gap, &law, pair, true, distance);
+        // A gap that is not a number counts as close.
+        let is_far = gap.gap > farthest;
+        if !is_far {
+            self.push(gap, law, (*features, *pair), true);
+        }
         if gap.gap < 0.0 { f64::NEG_INFINITY } else { gap.gap }
     }
 
-    /// Adds a row for the gap of a vertex and a facet, or of two edges, unless they stay farther apart than a distance [m].
-    fn push(&mut self, mut gap: Gap<D>, law: &PairLaw, pair: [u32; 2], with_facet: bool, distance: f64) {
-        let (first, second) = gap.points.split_at(if with_facet { 1 } else { 2 });
-        if self.stay_apart(gap.gap, law.thickness + distance, first, second) {
-            return;
-        }
+    /// Adds a row for the gap of a vertex and a facet, or of two edges.
+    fn push(&mut self, mut gap: Gap<D>, law: &PairLaw, (pair, number): ([u32; 2], u32), with_facet: bool) {
+        let ([x0, v0], [x1, v1]) = (&self.touching.before, &self.touching.after);
         let mut meets = true;
-        if gap.gap > law.thickness && !self.touching.at_once && self.goes_far(&gap, with_facet) {
+        let mut travel = gap.mean_change([x0, x1]);
+        if gap.gap > law.thickness && !self.touching.at_once && self.goes_far(&gap, &travel, with_facet) {
             // The closest points at the start of the step are not those at the impact.
             self.found.impact.resize(self.touching.surface.points(), [0.0; D]);
-            let ends = [&self.touching.before[0][..], &self.touching.after[0]];
+            let ends = [&x0[..], x1];
             let time = meeting_time(&self.touching.surface, ends, law.thickness, pair, with_facet);
             match time
                 .and_then(|time| impact(&self.touching.surface, ends, &mut self.found.impact, time, pair, with_facet))
             {
-                Some(then) => gap = then,
+                Some(then) => {
+                    gap = then;
+                    travel = gap.mean_change(ends);
+                }
                 None => meets = false,
             }
         }
-        let mut close = self.touching.close_pair(&gap, law, self.h, pair, with_facet);
-        let ([x0, v0], [x1, v1]) = (&self.touching.before, &self.touching.after);
-        let (came, comes) = (-gap.along(v0), -gap.along(v1));
-        let end = close.gap + gap.along(x1) - gap.along(x0);
+        let mut close = self.touching.close_pair(&gap, law, self.h, (pair, number), with_facet);
+        let end = close.gap + dot(&travel, &gap.normal);
+        let comes = || -gap.along(v1);
         // For bodies at rest, a pair that pressed in the previous correction is assumed to press again; the solution may show
         // that it does not.
-        let presses =
-            self.touching.at_once && self.touching.last.binary_search_by_key(&close.id, |(id, ..)| *id).is_ok();
-        let meets = meets && (end < 0.0 || close.gap < 0.0 || self.h * comes > close.gap || presses);
+        let presses = || {
+            let bodies = self.touching.pairs.all[number as usize].bodies;
+            self.touching.at_once && self.touching.last_of(bodies, close.id).is_some()
+        };
+        let meets = meets && (end < 0.0 || close.gap < 0.0 || self.h * comes() > close.gap || presses());
         if law.restitution > 0.0 && meets && close.gap > 0.0 {
             // The pair meets within the step, but the force acts until the end of the step. The speed s of the impact therefore
             // follows from s² = u² + 2 a g, with the approach u and the gap g at the start of the step and the acceleration a.
             // It is limited to the range between the approaches at both ends of the step.
+            let (came, comes) = (-gap.along(v0), comes());
             let square = came * came + 2.0 * (comes - came) / self.h * close.gap;
             let speed = square.larger(0.0).sqrt().smaller(came.larger(comes)).larger(came.smaller(comes));
             if speed > self.touching.laws.rest_speed {
@@ -268,18 +345,12 @@ impl<const D: usize> Finder<'_, D> {
         self.found.around.push((close, meets));
     }
 
-    /// Whether the relative displacement of a pair within the step exceeds a quarter of the length of an edge of its features.
-    fn goes_far(&self, gap: &Gap<D>, with_facet: bool) -> bool {
-        let ([x0, _], [x1, _]) = (&self.touching.before, &self.touching.after);
+    /// Whether the relative displacement of a pair within the step [m] exceeds a quarter of the length of an edge of its features.
+    fn goes_far(&self, gap: &Gap<D>, travel: &[f64; D], with_facet: bool) -> bool {
+        let x0 = &self.touching.before[0];
         let first = usize::from(with_facet);
         let edge = subtract(&x0[gap.points[first + 1] as usize], &x0[gap.points[first] as usize]);
-        let mut travel = [0.0; D];
-        for (p, w) in gap.points.iter().zip(&gap.weights) {
-            for d in 0..D {
-                travel[d] += w * (x1[*p as usize][d] - x0[*p as usize][d]);
-            }
-        }
-        16.0 * dot(&travel, &travel) > dot(&edge, &edge)
+        16.0 * dot(travel, travel) > dot(&edge, &edge)
     }
 
     /// Keeps the relevant rows of one vertex. If the vertex is outside a body, these are the rows of all facets that have the vertex in front of
@@ -289,30 +360,31 @@ impl<const D: usize> Finder<'_, D> {
             return;
         }
         let surface = &self.touching.surface;
-        let Found { around, keep, .. } = &mut *self.found;
-        let body = |row: &ClosePair<D>| surface.body[row.points[1] as usize];
+        let Found { around, keep, keys, .. } = &mut *self.found;
+        // All rows have the same vertex and the same two bodies.
+        let [own, other] = [0, 1].map(|k| surface.body[around[0].0.points[k] as usize]);
         let is_closed = |row: &ClosePair<D>| row.points[1..=D].iter().all(|p| surface.is_closed(*p));
         let depth = |row: &ClosePair<D>| row.gap + row.thickness;
         let rows = &*around;
         keep.clear();
         keep.resize(rows.len(), true);
+        keys.clear();
+        keys.extend(rows.iter().map(|(row, _)| features(row)));
         for (j, (row, _)) in rows.iter().enumerate() {
-            let own = surface.body[row.points[0] as usize];
-            let key = features(row);
-            for (k, (other, _)) in rows.iter().enumerate() {
-                if j == k || body(row) != body(other) {
+            for (k, (nearer, _)) in rows.iter().enumerate() {
+                if j == k {
                     continue;
                 }
-                let others = features(other);
-                let [a, b] = [row, other].map(depth);
+                let (key, others) = (&keys[j], &keys[k]);
+                let [a, b] = [row, nearer].map(depth);
                 // Both rows have the same closest point, or the closest point of this row is on the rim of the other facet,
                 // which has a nearer point.
                 let within = key.iter().all(|p| *p == u32::MAX || others.contains(p));
                 if within && (key != others || k < j) {
                     keep[j] = false;
                 }
-                let other_is_nearer = b.abs() < a.abs() || b.abs() == a.abs() && k < j;
-                if other_is_nearer && (a < 0.0 || b < 0.0) && own != body(row) && is_closed(row) && is_closed(other) {
+                let is_nearer = b.abs() < a.abs() || b.abs() == a.abs() && k < j;
+                if is_nearer && (a < 0.0 || b < 0.0) && own != other && is_closed(row) && is_closed(nearer) {
                     keep[j] = false;
                 }
             }
@@ -323,20 +395,21 @@ impl<const D: usize> Finder<'_, D> {
 
     /// For each body in which a vertex began, takes the gap through which the vertex leaves. Among the given candidates of the vertex, it is the gap
     /// of the nearest facet that faces the surface at the vertex. If no facet faces it, the nearest facet counts.
-    fn take_exit(&mut self, candidates: Range<usize>) {
+    fn take_exit(&mut self, number: u32, candidates: Range<usize>) {
         let x = &self.touching.before[0];
         let normal = |facet: u32| {
             let normal = facet_normal(&self.touching.surface.facets[facet as usize].map(|p| x[p as usize]));
             scaled(&normal, 1.0 / dot(&normal, &normal).sqrt())
         };
-        let vertex = self.touching.candidates.vertex_facet[candidates.start][0];
+        let features = &self.touching.pairs.features[0];
+        let vertex = features[candidates.start][0];
         let around = self.touching.surface.facets_around(vertex).iter();
         let outward = around.fold([0.0; D], |sum, facet| add(&sum, &normal(*facet)));
         let size = dot(&outward, &outward).sqrt();
         let mut nearest: Vec<(u32, bool, [u32; 2], Gap<D>)> = Vec::new();
         for k in candidates {
-            let pair @ [_, facet] = self.touching.candidates.vertex_facet[k];
-            let [own, other] = self.touching.clearance.bodies(0, k);
+            let pair @ [_, facet] = features[k];
+            let [own, other] = [vertex, self.touching.surface.facets[facet as usize][0]].map(|p| self.body_of(p));
             if own == other || !self.touching.surface.closed[facet as usize] {
                 continue;
             }
@@ -353,7 +426,7 @@ impl<const D: usize> Finder<'_, D> {
             let law = *self.touching.laws.of(self.touching.surface.body[pair[0] as usize], other);
             let surface = &self.touching.surface;
             self.found.around.retain(|(row, _)| surface.body[row.points[1] as usize] != other);
-            self.push(gap, &law, pair, true, f64::INFINITY);
+            self.push(gap, &law, (pair, number), true);
         }
     }
 }

@@ -1,17 +1,16 @@
 //! The pairs that come close in a step.
 
 use crate::close_pair::ClosePair;
-use crate::distances::Unclear;
 use crate::row::Row;
 use crate::spread::Spread;
+use crate::unclear::Unclear;
 use core::ops::Range;
 
 /// The pairs of one part of the candidates that come close in a step.
 #[derive(Debug, Default)]
 pub(crate) struct Found<const D: usize> {
-    /// The ranges of the candidates of a vertex and a facet, and of two edges. All candidates of one vertex are in the same
-    /// part.
-    pub(crate) part: [Range<usize>; 2],
+    /// The pieces of the lists of candidates.
+    pub(crate) part: Range<usize>,
     pub(crate) rows: Vec<Row<D>>,
     pub(crate) watched: Vec<Row<D>>,
     pub(crate) heads: Vec<[u32; 4]>,
@@ -20,12 +19,17 @@ pub(crate) struct Found<const D: usize> {
     pub(crate) close: [Vec<([u32; 2], f64)>; 2],
     /// The candidates that may touch in the step according to the bounds on their distances.
     pub(crate) unclear: [Vec<Unclear>; 2],
-    /// Candidates of a vertex and a facet that were examined again, and lower bounds on their distances at the start of the
-    /// step [m].
-    pub(crate) notes: Vec<(usize, f64)>,
+    /// Candidates of a vertex and a facet that were examined again, with their pairs of bodies, and lower bounds on their distances at the start of
+    /// the step [m].
+    pub(crate) notes: Vec<(u32, usize, f64)>,
+    /// The smallest bound of every piece [m].
+    pub(crate) least: Vec<f64>,
     /// The pairs of one vertex, or of two edges, and whether each meets in the free motion. Also which of these pairs are kept.
     pub(crate) around: Vec<(ClosePair<D>, bool)>,
     pub(crate) keep: Vec<bool>,
+    pub(crate) keys: Vec<[u32; 3]>,
+    /// The impulses of the present pair of bodies in the previous substep, as a range of all of them.
+    pub(crate) last: Range<usize>,
     /// Positions at an impact within a step.
     pub(crate) impact: Vec<[f64; D]>,
 }
@@ -42,7 +46,8 @@ impl<const D: usize> Found<D> {
             + self.spread.heap_bytes()
             + lists(0)
             + lists(1)
-            + size_of::<(usize, f64)>() * self.notes.capacity()
+            + 24 * self.notes.capacity()
+            + 8 * self.least.capacity()
             + 8 * D * self.impact.capacity()
     }
 }

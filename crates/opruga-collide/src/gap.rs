@@ -134,6 +134,18 @@ impl<const D: usize> Gap<D> {
         }
     }
 
+    /// Returns Σ wᵢ (bᵢ − aᵢ) for two vectors at each point, such as its positions.
+    #[inline]
+    pub(crate) fn mean_change(&self, [from, to]: [&[[f64; D]]; 2]) -> [f64; D] {
+        let mut sum = [0.0; D];
+        for (p, w) in self.points[..=D].iter().zip(&self.weights) {
+            for d in 0..D {
+                sum[d] += w * (to[*p as usize][d] - from[*p as usize][d]);
+            }
+        }
+        sum
+    }
+
     /// Returns Σ wᵢ n·aᵢ for vectors aᵢ at the points, such as their velocities.
     #[inline]
     pub fn along(&self, vectors: &[[f64; D]]) -> f64 {

@@ -1,13 +1,15 @@
 //! The decision whether to repeat a step because contact pushed points farther than expected.
 
-use crate::distances::{Distances, Unclear};
+use crate::body_pairs::BodyPair;
+use crate::distances::Distances;
 use crate::reach::SPARE;
-use crate::touching::{Touching, Trouble};
+use crate::touching::{Piece, Touching, Trouble};
+use crate::unclear::{FindUnclear, Unclear};
 use crate::vector::{dot, subtract};
 use opruga_math::Lane;
 
 impl<const D: usize> Touching<D> {
-    /// Extends the boxes of points that contact pushed beyond them. Returns whether further pairs may have come too close, so that the step needs
+    /// Takes account of points that contact pushed farther than expected. Returns whether further pairs may have come too close, so that the step needs
     /// another round.
     ///
     /// # Errors
@@ -17,46 +19,57 @@ impl<const D: usize> Touching<D> {
             return Ok(false);
         }
         self.search()?;
-        let mut of_grown = vec![false; self.laws.class.len()];
-        self.reach.grown().for_each(|p| of_grown[self.surface.body[p as usize] as usize] = true);
-        // The next round sets the limits of all pairs again.
-        self.clearance.set_limits(&self.surface, self.thickest, |body| of_grown[body as usize]);
-        Ok(self.any_come_within_reach(true) || self.any_come_within_reach(false))
+        Ok(self.any_come_within_reach())
     }
 
     /// Whether any candidate that was left out, because its features could not meet within their boxes, may have come too close in the motion to the
     /// end of the step. The result follows from exact distances, so it does not depend on the steps in which candidates are searched.
-    fn any_come_within_reach(&mut self, with_facet: bool) -> bool {
-        let list = usize::from(!with_facet);
-        let mut pairs = std::mem::take(&mut self.found[0].unclear[list]);
-        pairs.clear();
-        let Touching { surface, before: [x, _], candidates, clearance, reach, laws, .. } = &*self;
+    fn any_come_within_reach(&mut self) -> bool {
+        let mut unclear = std::mem::take(&mut self.found[0].unclear);
+        let mut least = std::mem::take(&mut self.found[0].least);
+        unclear.iter_mut().for_each(Vec::clear);
+        least.clear();
+        let Touching { surface, before: [x, _], pairs: known, reach, .. } = &*self;
+        let mut of_grown = vec![false; surface.bodies()];
+        reach.grown().for_each(|p| of_grown[surface.body[p as usize] as usize] = true);
+        let has_grown = |pair: &BodyPair<D>| pair.is_active && pair.bodies.iter().any(|body| of_grown[*body as usize]);
+        let all = known.all.iter().enumerate().filter(|(_, pair)| has_grown(pair));
+        let pieces: Vec<Piece> =
+            all.flat_map(|(k, pair)| [0, 1].map(|list| (k as u32, list, pair.range(list)))).collect();
         // For bodies at rest, the gaps of pairs somewhat beyond their boxes are computed too.
         let beyond = if self.at_once { SPARE * self.margin } else { 0.0 };
-        let all = if with_facet { &candidates.vertex_facet } else { &candidates.edge_edge };
-        for (candidate, features) in all.iter().enumerate() {
-            if !clearance.is_clear(list, candidate, beyond)
-                && surface.points_of_features(features, with_facet).into_iter().flatten().any(|p| reach.has_grown(*p))
-            {
-                pairs.push(Unclear { candidate, features: *features, distance: 0.0 });
-            }
+        let (pieces, lists, found) = (&pieces[..], [true; 2], &mut unclear);
+        known.simd.run(FindUnclear { known, pieces, lists, beyond, unclear: found, least: &mut least });
+        let mut any = false;
+        for (list, pairs) in unclear.iter_mut().enumerate() {
+            let with_facet = list == 0;
+            pairs.retain(|pair| {
+                surface
+                    .points_of_features(&pair.features, with_facet)
+                    .into_iter()
+                    .flatten()
+                    .any(|p| reach.has_grown(*p))
+            });
+            known.simd.run(Distances { surface, x, pairs, with_facet });
+            any |= pairs.iter().any(|pair| self.comes_within_reach(pair, with_facet, beyond));
         }
-        candidates.simd.run(Distances { surface, x, pairs: &mut pairs, with_facet });
-        let comes = |pair: &Unclear| {
-            let [own, other] = clearance.bodies(list, pair.candidate);
-            let thickness = laws.of(own, other).thickness;
-            let points = surface.points_of_features(&pair.features, with_facet);
-            // A facet without an inner side has the same distance on both sides.
-            let has_inside = with_facet && own != other && surface.closed[pair.features[1] as usize];
-            let distance = if has_inside { pair.distance } else { pair.distance.abs() };
-            let least = thickness + beyond;
-            distance <= least + self.largest_relative_displacement(points)
-                && reach.may_meet(distance, least, points, false)
-                && !reach.may_meet(distance, least, points, true)
-        };
-        let any = pairs.iter().any(comes);
-        self.found[0].unclear[list] = pairs;
+        (self.found[0].unclear, self.found[0].least) = (unclear, least);
         any
+    }
+
+    /// Whether a candidate may have come within reach, given its distance at the start of the step.
+    fn comes_within_reach(&self, pair: &Unclear, with_facet: bool, beyond: f64) -> bool {
+        let Touching { surface, reach, laws, .. } = self;
+        let points = surface.points_of_features(&pair.features, with_facet);
+        let features = points.map(|points| (points, surface.body[points[0] as usize]));
+        let [own, other] = features.map(|(_, body)| body);
+        // A facet without an inner side has the same distance on both sides.
+        let has_inside = with_facet && own != other && surface.closed[pair.features[1] as usize];
+        let distance = if has_inside { pair.distance } else { pair.distance.abs() };
+        let least = laws.of(own, other).thickness + beyond;
+        distance <= least + self.largest_relative_displacement(points)
+            && reach.may_meet(distance, least, features, false)
+            && !reach.may_meet(distance, least, features, true)
     }
 
     /// The largest displacement to the end of the step of a point of one feature relative to a point of the other [m]. The distance of the features

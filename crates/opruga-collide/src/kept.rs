@@ -53,18 +53,4 @@ impl<const D: usize> Touching<D> {
             _ => Some(OBSTACLE_BIT | u64::from(at(surface.points_of(first), own)?) << 31 | u64::from(other)),
         }
     }
-
-    /// Calls `visit` with the pressing pairs, in the form of [`Touching::features_of`], and their impulses of the previous step
-    /// along and across their normals [N s].
-    pub fn visit_kept(&self, mut visit: impl FnMut([u32; 5], f64, [f64; D])) {
-        for (id, along, across) in &self.last {
-            visit(self.features_of(*id), *along, *across);
-        }
-    }
-
-    /// Lets the next step start from these impulses, given in ascending order of the numbers of their pairs.
-    pub fn keep(&mut self, pairs: impl Iterator<Item = (u64, f64, [f64; D])>) {
-        self.last.clear();
-        self.last.extend(pairs);
-    }
 }

@@ -445,6 +445,7 @@ mod tests {
     /// A contact of two points, with an impulse of 1 N s.
     fn contact(points: [u32; 2], friction: f64, inverse_mass: &[[f64; 3]]) -> Row<3> {
         let mut row = Row {
+            pair: u32::MAX,
             id: 0,
             points: [points[0], points[1], 0, 0],
             weights: [1.0, -1.0, 0.0, 0.0],

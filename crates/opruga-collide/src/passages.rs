@@ -146,13 +146,17 @@ impl<const D: usize> Touching<D> {
             let (pair, with_facet) = pair_of(id);
             let bodies = self.bodies_of(pair, with_facet);
             let law = *self.laws.of(bodies[0], bodies[1]);
-            let close_pair = self.close_pair(&gap, &law, h, pair, with_facet);
+            let number = self.pairs.index_of(bodies).map_or(u32::MAX, |number| number as u32);
+            let close_pair = self.close_pair(&gap, &law, h, (pair, number), with_facet);
             let mut row = close_pair.into_row(&mut self.spread, &self.surface);
+            if let Some(last) = self.last_of(bodies, id) {
+                (row.normal_impulse, row.friction_impulse) = (last.along, last.across);
+            }
             if row.can_move(&self.spread, &self.inverse_mass) {
                 self.rows.push(row);
             }
         }
-        self.rows.sort_by_key(|row| row.id);
+        self.rows.sort_by_key(Row::sort_key);
     }
 
     /// Makes the points of pairs that still pass move rigidly together: x = x₀ + h (c + ω × r), with the velocity c of their centre, the angular

@@ -12,7 +12,9 @@ pub(crate) const OBSTACLE_BIT: u64 = 1 << 63;
 /// One contact: a lower bound on its normal velocity, and Coulomb friction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row<const D: usize> {
-    /// The key of its features. Rows are sorted by this key, and the impulses of the previous substep are found by it.
+    /// The index of its pair of bodies, and the key of its features. Rows are sorted by both. The index is `u32::MAX` for a point and an obstacle that
+    /// holds it.
+    pub(crate) pair: u32,
     pub(crate) id: u64,
     pub(crate) points: [u32; 4],
     pub(crate) weights: [f64; 4],
@@ -47,6 +49,7 @@ const IMMOBILE: f64 = 1e-12;
 impl<const D: usize> Row<D> {
     pub(crate) fn new(id: u64, (points, weights): ([u32; 4], [f64; 4]), normal: [f64; D], friction: f64) -> Row<D> {
         Row {
+            pair: u32::MAX,
             id,
             points,
             weights,
@@ -62,6 +65,11 @@ impl<const D: usize> Row<D> {
             of_obstacle: false,
             coupled: false,
         }
+    }
+
+    /// The order of the rows of a step.
+    pub(crate) fn sort_key(&self) -> (u32, u64) {
+        (self.pair, self.id)
     }
 
     /// The effective mass of the row along its normal [kg] if its points respond independently; 0 if no point can move.

@@ -1,7 +1,6 @@
 //! The pairs of a step, found on one thread or several.
 
 use crate::close_pair::ClosePair;
-use crate::distances::Unclear;
 use crate::finder::Finder;
 use crate::found::Found;
 use crate::gap::Gap;
@@ -10,6 +9,8 @@ use crate::law::PairLaw;
 use crate::least_parts;
 use crate::spread::Spread;
 use crate::touching::Touching;
+use crate::unclear::Unclear;
+use core::ops::Range;
 use opruga_core::threads;
 
 impl<const D: usize> Touching<D> {
@@ -33,33 +34,40 @@ impl<const D: usize> Touching<D> {
 
     /// Divides the candidates into parts: one, or several if there are threads for them. The result does not depend on the
     /// number of parts.
-    fn divide(&self, all: &mut Vec<Found<D>>) {
-        let pairs = &self.candidates.vertex_facet;
-        let lists = [pairs.len(), self.candidates.edge_edge.len()];
-        let length = lists[0] + lists[1];
-        let size = threads::part_size(length, self.threads, least_parts::CANDIDATES);
-        if size >= length {
-            all.resize_with(1, Found::default);
-            all[0].part = lists.map(|length| 0..length);
-            return;
-        }
-        let mut number = 0;
-        for (list, length) in lists.into_iter().enumerate() {
-            let mut first = 0;
-            while first < length {
-                let mut end = length.min(first + size);
-                while list == 0 && end < length && pairs[end][0] == pairs[end - 1][0] {
-                    end += 1;
+    fn divide(&mut self, all: &mut Vec<Found<D>>) {
+        let Touching { pairs, pieces, threads, .. } = self;
+        pieces.clear();
+        let active = || pairs.all.iter().enumerate().filter(|(_, pair)| pair.is_active);
+        let length = active().map(|(_, pair)| pair.range(0).len() + pair.range(1).len()).sum();
+        let size = threads::part_size(length, *threads, least_parts::CANDIDATES);
+        for (number, pair) in active() {
+            for list in 0..2 {
+                let Range { start: mut first, end: last } = pair.range(list);
+                while first < last {
+                    let mut end = last.min(first + size);
+                    while list == 0 && end < last && pairs.features[0][end][0] == pairs.features[0][end - 1][0] {
+                        end += 1;
+                    }
+                    pieces.push((number as u32, list, first..end));
+                    first = end;
                 }
-                if all.len() <= number {
-                    all.push(Found::default());
-                }
-                all[number].part = [0..0, 0..0];
-                all[number].part[list] = first..end;
-                (first, number) = (end, number + 1);
             }
         }
-        all.truncate(number);
+        let (mut parts, mut first, mut candidates) = (0, 0, 0);
+        for (k, (.., range)) in pieces.iter().enumerate() {
+            candidates += range.len();
+            if candidates >= size || k + 1 == pieces.len() {
+                if all.len() <= parts {
+                    all.push(Found::default());
+                }
+                all[parts].part = first..k + 1;
+                (parts, first, candidates) = (parts + 1, k + 1, 0);
+            }
+        }
+        all.resize_with(parts.max(1), Found::default);
+        if parts == 0 {
+            all[0].part = 0..0;
+        }
     }
 
     /// Adds the pairs found in a part of the candidates to the pairs of the previous parts.
@@ -76,12 +84,19 @@ impl<const D: usize> Touching<D> {
         append(&mut self.heads, &mut found.heads);
         for list in 0..2 {
             append(&mut self.close[list], &mut found.close[list]);
-            for Unclear { candidate, distance, .. } in &found.unclear[list] {
-                self.clearance.note(list, *candidate, *distance);
+        }
+        for ((pair, list, range), least) in self.pieces[found.part.clone()].iter().zip(&found.least) {
+            if *range == self.pairs.all[*pair as usize].range(*list) {
+                self.pairs.set_least(*pair as usize, *list, *least);
             }
         }
-        for (candidate, distance) in &found.notes {
-            self.clearance.note(0, *candidate, *distance);
+        for list in 0..2 {
+            for Unclear { candidate, pair, distance, .. } in &found.unclear[list] {
+                self.pairs.note(&self.reach, *pair as usize, list, *candidate, *distance);
+            }
+        }
+        for (pair, candidate, distance) in &found.notes {
+            self.pairs.note(&self.reach, *pair as usize, 0, *candidate, *distance);
         }
     }
 
@@ -100,14 +115,15 @@ impl<const D: usize> Touching<D> {
         gap: &Gap<D>,
         law: &PairLaw,
         h: f64,
-        pair: [u32; 2],
+        (features, pair): ([u32; 2], u32),
         with_facet: bool,
     ) -> ClosePair<D> {
         let own = gap.gap - law.thickness;
         let target = if own > 0.0 || self.at_once { -own / h } else { 0.0 };
         let Gap { points, weights, normal, .. } = *gap;
         let (thickness, friction) = (law.thickness, law.friction);
-        ClosePair { id: key(pair, with_facet), points, weights, normal, gap: own, thickness, friction, target }
+        let id = key(features, with_facet);
+        ClosePair { id, pair, points, weights, normal, gap: own, thickness, friction, target }
     }
 }
 

@@ -215,6 +215,7 @@ pub(crate) mod tests {
         inverse_mass[0] = [0.0; 2];
         let row = |k: usize| {
             let mut row = Row {
+                pair: u32::MAX,
                 id: k as u64,
                 points: [k as u32 + 1, k as u32, 0, 0],
                 weights: [1.0, -1.0, 0.0, 0.0],

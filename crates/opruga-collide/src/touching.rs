@@ -1,11 +1,11 @@
 //! Touching deformable bodies: the contact of their surfaces in a substep.
 
-use crate::candidates::Candidates;
-use crate::clearance::Clearance;
+use crate::body_pairs::BodyPairs;
 use crate::coupled::{Coupled, Respond};
 use crate::found::Found;
 use crate::gap::Gap;
 use crate::impulses::Problem;
+use crate::last_impulse::LastImpulse;
 use crate::law::Laws;
 use crate::reach::Reach;
 use crate::reports::{self, Report};
@@ -15,6 +15,7 @@ use crate::surface::Surface;
 use crate::turns::Turns;
 use crate::vector::{dot, length, subtract};
 use crate::zones::Zones;
+use core::ops::Range;
 use opruga_core::contacts::Touch;
 use opruga_math::{Lane, Simd};
 
@@ -67,9 +68,12 @@ pub struct Touching<const D: usize> {
     pub margin: f64,
     /// The largest number of candidates.
     pub most: usize,
-    pub(crate) candidates: Candidates<D>,
+    pub(crate) pairs: BodyPairs<D>,
     pub(crate) reach: Reach<D>,
-    pub(crate) clearance: Clearance<D>,
+    /// Whether the motion of the present substep was examined before.
+    pub(crate) is_begun: bool,
+    /// Pieces of the lists of candidates, pair of bodies by pair of bodies. All candidates of one vertex and two bodies are in the same piece.
+    pub(crate) pieces: Vec<Piece>,
     /// The threads that may look for pairs; the bits of the results do not depend on them.
     pub threads: usize,
     pub(crate) found: Vec<Found<D>>,
@@ -86,7 +90,7 @@ pub struct Touching<const D: usize> {
     /// rows have been solved.
     pub(crate) inactive: Vec<Row<D>>,
     /// Features and impulses of the previous substep, ascending.
-    pub(crate) last: Vec<(u64, f64, [f64; D])>,
+    pub(crate) last: Vec<LastImpulse<D>>,
     /// Whether the obstacles of a point are among the rows (`known`), whether they are requested (`asks`), and the points whose obstacles are
     /// requested, ascending (`asked`).
     pub(crate) known: Vec<bool>,
@@ -162,6 +166,9 @@ impl Counts {
     }
 }
 
+/// A pair of bodies, a list of candidates, and a range in this list.
+pub(crate) type Piece = (u32, usize, Range<usize>);
+
 /// Why a step cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trouble {
@@ -192,13 +199,13 @@ impl<const D: usize> Touching<D> {
         if self.found_for != self.laws {
             self.found_for.clone_from(&self.laws);
             self.reach.forget();
-            self.clearance.forget_own();
+            self.pairs.clear();
         }
     }
 
     /// Chooses the vector instructions. The bits of the results do not depend on them.
     pub fn use_simd(&mut self, simd: Simd) {
-        self.candidates.simd = simd;
+        self.pairs.simd = simd;
     }
 
     /// The caller needs this if the state is no longer the result of these impulses.
@@ -253,6 +260,7 @@ impl<const D: usize> Touching<D> {
     pub fn begin_step(&mut self) {
         self.passing.clear();
         self.coupled.apart = false;
+        self.is_begun = false;
         self.counts.steps += 1;
     }
 
@@ -337,7 +345,7 @@ impl<const D: usize> Touching<D> {
             reports::add(&mut self.reports, &self.rows, &self.surface, &self.end);
         }
         self.book(h);
-        self.counts.candidates += self.candidates.len() as u64;
+        self.counts.candidates += self.pairs.len() as u64;
         self.counts.pairs += (self.rows.len() + self.watched.len()) as u64;
     }
 
@@ -505,46 +513,16 @@ impl<const D: usize> Touching<D> {
         self.rows.len() > before
     }
 
-    /// Keeps the impulses for the next substep.
-    fn keep_impulses(&mut self) {
-        self.last.clear();
-        self.last.resize(self.rows.len(), (0, 0.0, [0.0; D]));
-        for (row, k) in self.rows.iter().zip(self.turns.order()) {
-            self.last[*k as usize] = (row.id, row.normal_impulse, row.friction_impulse);
-        }
-        self.last.retain(|(_, along, _)| *along > 0.0);
-    }
-
-    /// Starts from the impulses of the previous substep.
-    fn start_warm(&mut self) {
-        let mut k = 0;
-        for row in &mut self.rows {
-            while self.last.get(k).is_some_and(|(id, ..)| *id < row.id) {
-                k += 1;
-            }
-            if let Some((_, along, across)) = self.last.get(k).filter(|(id, ..)| *id == row.id) {
-                (row.normal_impulse, row.friction_impulse) = (*along, *across);
-                let impulse = row.impulse();
-                if row.coupled {
-                    self.coupled.give(row.on(&self.spread), &impulse, &self.inverse_mass, &mut self.v);
-                } else {
-                    row.give(&self.spread, &impulse, &self.inverse_mass, &mut self.v);
-                }
-            }
-        }
-    }
-
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         let vectors = [&self.inverse_mass, &self.v, &self.moved, &self.impact, &self.end];
-        let vectors = vectors.map(Vec::capacity).iter().sum::<usize>() + 6 * self.reach.points();
+        let vectors = vectors.map(Vec::capacity).iter().sum::<usize>();
         let states: usize = self.before.iter().chain(&self.after).map(Vec::capacity).sum();
         8 * D * (vectors + states)
             + self.surface.heap_bytes()
             + self.coupled.heap_bytes()
             + self.spread.heap_bytes()
-            + self.candidates.heap_bytes()
-            + self.clearance.heap_bytes()
+            + self.pairs.heap_bytes()
             + size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity() + self.inactive.capacity())
             + self.found.iter().map(Found::heap_bytes).sum::<usize>()
             + self.turns.heap_bytes()

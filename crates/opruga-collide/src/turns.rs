@@ -230,8 +230,8 @@ impl<const D: usize> Turns<D> {
         inverse_mass: &[[f64; D]],
         coupled: &Coupled<D>,
     ) {
-        if !rows.is_sorted_by_key(|row| row.id) {
-            rows.sort_by_key(|row| row.id);
+        if !rows.is_sorted_by_key(Row::sort_key) {
+            rows.sort_by_key(Row::sort_key);
             self.find_movers(rows, inverse_mass);
         }
         let movers = std::mem::take(&mut self.movers);

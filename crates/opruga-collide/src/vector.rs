@@ -14,6 +14,21 @@ pub(crate) fn wider<const D: usize>([mut low, mut high]: Bounds<D>, distance: f6
     [low, high]
 }
 
+/// A box, moved by a displacement [m].
+pub(crate) fn shifted<const D: usize>(own: Bounds<D>, by: &[f64; D]) -> Bounds<D> {
+    own.map(|corner| add(&corner, by))
+}
+
+/// The distance between two boxes along the axis where it is largest [m]; negative if they overlap.
+#[inline]
+pub(crate) fn apart<const D: usize>([low_a, high_a]: &Bounds<D>, [low_b, high_b]: &Bounds<D>) -> f64 {
+    let mut most = f64::NEG_INFINITY;
+    for d in 0..D {
+        most = (low_a[d] - high_b[d]).larger(low_b[d] - high_a[d]).larger(most);
+    }
+    most
+}
+
 /// The scalar product.
 #[inline(always)]
 pub(crate) fn dot<S: Lane, const D: usize>(a: &[S; D], b: &[S; D]) -> S {

@@ -431,10 +431,13 @@ fn what_is_known_of_distances_changes_no_bits() {
     compare(stack, 1.0 / 1920.0, 500);
 }
 
-/// Bodies that have come to rest keep no candidates of a fast motion.
+/// Bodies that have come to rest keep no candidates of a motion relative to one another.
 #[test]
 fn candidates_of_a_flight_are_dropped_at_rest() {
-    let bodies: Vec<_> = (0..5).map(|k| (ring(24, 0.25), [0.6 * f64::from(k), 0.0], [0.0, 400.0])).collect();
+    // The boxes of neighbours overlap, the neighbours do not.
+    let speed = |k: u32| if k.is_multiple_of(2) { 40.0 } else { -40.0 };
+    let at = |k: u32| [0.4 * f64::from(k); 2];
+    let bodies: Vec<_> = (0..5).map(|k| (ring(24, 0.25), at(k), [speed(k), -speed(k)])).collect();
     let mut toy = Toy::new(&bodies, law(0.0, 0.0));
     let candidates = |toy: &mut Toy<2>| {
         let before = toy.touching.counts.candidates;
@@ -445,6 +448,22 @@ fn candidates_of_a_flight_are_dropped_at_rest() {
     toy.touching.after[1].iter_mut().for_each(|v| *v = [0.0; 2]);
     let resting = candidates(&mut toy);
     assert!(resting < flying / 2, "{flying} in flight, {resting} at rest");
+}
+
+/// A common motion of all bodies requires no further searches and few further candidates.
+#[test]
+fn bodies_that_fly_together_have_the_candidates_of_bodies_at_rest() {
+    let costs = [[0.0; 2], [30.0, -20.0]].map(|common: [f64; 2]| {
+        let velocity = |k: u32| [common[0] + if k == 2 { -0.5 } else { 0.0 }, common[1]];
+        let bodies: Vec<_> = (0..5).map(|k| (ring(24, 0.25), [0.51 * f64::from(k), 0.0], velocity(k))).collect();
+        let mut toy = Toy::new(&bodies, law(0.0, 0.0));
+        (0..200).for_each(|_| toy.step(1e-3));
+        let counts = toy.touching.counts;
+        assert!(counts.candidates > 0 && counts.contacts > 0, "{counts:?}");
+        (counts.searches, counts.candidates)
+    });
+    let [(searches, candidates), (searches_in_flight, candidates_in_flight)] = costs;
+    assert!(searches_in_flight <= searches + 2 && candidates_in_flight < 2 * candidates, "{costs:?}");
 }
 
 /// Points that nodes carry pass impulses on to these nodes: momentum and angular momentum are conserved, and nothing crosses.
