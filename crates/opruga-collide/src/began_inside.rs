@@ -17,7 +17,7 @@ impl<const D: usize> Touching<D> {
         self.entangled.clear();
         let x = &self.before[0];
         let around =
-            |body| self.surface.vertices_of(body).fold(NOWHERE.map(|c| [c; D]), |all, p| joined(all, [x[p]; 2]));
+            |body| self.surface.feature_points_of(body).fold(NOWHERE.map(|c| [c; D]), |all, p| joined(all, [x[p]; 2]));
         let boxes: Vec<Bounds<D>> = (0..self.surface.bodies()).map(around).collect();
         for pair in 0..self.pairs.all.len() {
             let (bodies @ [a, b], candidates) = (self.pairs.all[pair].bodies, self.pairs.all[pair].range(0));

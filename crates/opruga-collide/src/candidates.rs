@@ -42,7 +42,8 @@ impl<const D: usize> Candidates<D> {
         most: usize,
         meet: impl Fn(u32, u32) -> bool,
     ) -> bool {
-        let around = |body| surface.vertices_of(body).fold(NOWHERE.map(|c| [c; D]), |whole, p| joined(whole, boxes[p]));
+        let around =
+            |body| surface.feature_points_of(body).fold(NOWHERE.map(|c| [c; D]), |whole, p| joined(whole, boxes[p]));
         self.bodies.clear();
         self.bodies.extend((0..surface.bodies()).map(around));
         self.close_bodies.find(surface, &self.bodies, distances, meet);

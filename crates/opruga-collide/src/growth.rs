@@ -2,6 +2,7 @@
 
 use crate::body_pairs::BodyPair;
 use crate::distances::Distances;
+use crate::impact::meeting_time;
 use crate::reach::SPARE;
 use crate::touching::{Piece, Touching, Trouble};
 use crate::unclear::{FindUnclear, Unclear};
@@ -67,9 +68,11 @@ impl<const D: usize> Touching<D> {
         let has_inside = with_facet && own != other && surface.closed[pair.features[1] as usize];
         let distance = if has_inside { pair.distance } else { pair.distance.abs() };
         let least = laws.of(own, other).thickness + beyond;
+        let ends = [&self.before[0][..], &self.end];
         distance <= least + self.largest_relative_displacement(points)
             && reach.may_meet(distance, least, features, false)
             && !reach.may_meet(distance, least, features, true)
+            && (self.at_once || meeting_time(surface, ends, least, pair.features, with_facet).is_some())
     }
 
     /// The largest displacement to the end of the step of a point of one feature relative to a point of the other [m]. The distance of the features

@@ -28,6 +28,8 @@ pub(crate) struct Reach<const D: usize> {
     pub(crate) found_in: Vec<Bounds<D>>,
     /// The points that contact pushed farther than expected in the last call of [`Reach::grow`], ascending, and how much farther [m].
     grown: Vec<(u32, f64)>,
+    /// For every point, whether it is among them.
+    has_grown: Vec<bool>,
     blocks: Vec<Block<D>>,
 }
 
@@ -182,12 +184,14 @@ impl<const D: usize> Reach<D> {
         self.x = x.to_vec();
         self.home = x.to_vec();
         self.moves = vec![[0.0; 2]; x.len()];
+        self.grown.clear();
+        self.has_grown = vec![false; x.len()];
         self.swept = vec![NOWHERE.map(|c| [c; D]); x.len()];
         self.found_in = vec![NOWHERE.map(|c| [c; D]); x.len()];
         self.bodies = vec![BodyReach::new(); surface.bodies()];
         self.blocks.clear();
         for body in 0..surface.bodies() {
-            let all = surface.vertices_of(body);
+            let all = surface.feature_points_of(body);
             for first in all.clone().step_by(BLOCK) {
                 let vertices = first..all.end.min(first + BLOCK);
                 let nowhere = NOWHERE.map(|c| [c; D]);
@@ -204,7 +208,6 @@ impl<const D: usize> Reach<D> {
     /// ([`BodyReach::approach`]). In both cases contact may also separate overlapping bodies. [`Reach::grow`] takes account of a point that contact
     /// pushes farther.
     pub(crate) fn begin(&mut self, motion: FreeMotion<'_, D>, threads: usize) {
-        self.grown.clear();
         let mut bodies = std::mem::take(&mut self.bodies);
         for body in &mut bodies {
             body.moved = if motion.is_repeated { [0.0; D] } else { body.free };
@@ -312,7 +315,7 @@ impl<const D: usize> Reach<D> {
             // NaN is never covered.
             if !(left >= 0.0 || too_wide) {
                 let mut least = f64::INFINITY;
-                for p in surface.vertices_of(number) {
+                for p in surface.feature_points_of(number) {
                     let (own, found) = (&self.swept[p], &self.found_in[p]);
                     for d in 0..D {
                         let origin = body.origin[d];
@@ -335,7 +338,7 @@ impl<const D: usize> Reach<D> {
                 continue;
             }
             let (mut region, mut within) = (NOWHERE.map(|c| [c; D]), NOWHERE);
-            for p in surface.vertices_of(number) {
+            for p in surface.feature_points_of(number) {
                 let [push, _] = self.moves[p];
                 let more = beyond(self.bodies[number].spread, steps, margin);
                 let mut found = self.swept[p];
@@ -357,7 +360,7 @@ impl<const D: usize> Reach<D> {
     pub(crate) fn come_home(&mut self, surface: &Surface<D>, number: usize) {
         let body = &mut self.bodies[number];
         body.strayed = 0.0;
-        for p in surface.vertices_of(number) {
+        for p in surface.feature_points_of(number) {
             self.home[p] = subtract(&self.x[p], &body.origin);
         }
     }
@@ -385,15 +388,16 @@ impl<const D: usize> Reach<D> {
     /// Extends the displacements of touched vertices that contact pushes farther, given their positions after the free motion and at the end of the
     /// step [m]; returns whether there are any.
     pub(crate) fn grow(&mut self, surface: &Surface<D>, touched: &[bool], [free, end]: [&[[f64; D]]; 2]) -> bool {
-        self.grown.clear();
+        self.grown.drain(..).for_each(|(p, _)| self.has_grown[p as usize] = false);
         for (number, body) in self.bodies.iter_mut().enumerate() {
-            for p in surface.vertices_of(number).filter(|p| touched[*p]) {
+            for p in surface.feature_points_of(number).filter(|p| touched[*p]) {
                 let displacement = subtract(&end[p], &free[p]);
                 let pushed = dot(&displacement, &displacement).sqrt();
                 let moves = &mut self.moves[p];
                 if pushed > moves[0] {
                     let more = pushed - moves[0];
                     self.grown.push((p as u32, more));
+                    self.has_grown[p] = true;
                     *moves = [pushed, moves[1] + more];
                     self.swept[p] = wider(self.swept[p], more);
                     body.most = [moves[0].larger(body.most[0]), moves[1].larger(body.most[1])];
@@ -453,7 +457,7 @@ impl<const D: usize> Reach<D> {
 
     /// Whether the last call of [`Reach::grow`] extended the displacement of a point.
     pub(crate) fn has_grown(&self, point: u32) -> bool {
-        self.grown.binary_search_by_key(&point, |(grown, _)| *grown).is_ok()
+        self.has_grown[point as usize]
     }
 
     /// The points whose displacements the last call of [`Reach::grow`] extended, ascending.
@@ -487,7 +491,8 @@ impl<const D: usize> Reach<D> {
             + 48 * D * self.x.capacity()
             + size_of::<BodyReach<D>>() * self.bodies.capacity()
             + size_of::<Block<D>>() * self.blocks.capacity()
-            + 24 * self.grown.capacity()
+            + self.has_grown.capacity()
+            + 16 * self.grown.capacity()
     }
 }
 

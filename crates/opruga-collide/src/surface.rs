@@ -51,6 +51,11 @@ impl<const D: usize> Surface<D> {
         self.starts.get(number).map_or(points.end, |start| start[3] as usize)..points.end
     }
 
+    /// The points of the features of a body. Facets of obstacles may have corners that are no vertices.
+    pub(crate) fn feature_points_of(&self, number: usize) -> core::ops::Range<usize> {
+        if self.is_obstacle(number as u32) { self.points_of(number) } else { self.vertices_of(number) }
+    }
+
     /// The facets of the body that was added with this number.
     pub fn facets_of(&self, number: usize) -> core::ops::Range<usize> {
         self.range(number, 1, self.facets.len())
