@@ -72,6 +72,9 @@ pub(crate) struct BodyPair<const D: usize> {
     least: [f64; 2],
 }
 
+/// A pair of bodies, a list of candidates, and a range in this list.
+pub(crate) type Piece = (u32, usize, Range<usize>);
+
 /// The distances of a search for features [m].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Distances {

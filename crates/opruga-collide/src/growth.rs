@@ -1,10 +1,10 @@
 //! The decision whether to repeat a step because contact pushed points farther than expected.
 
-use crate::body_pairs::BodyPair;
+use crate::body_pairs::{BodyPair, Piece};
 use crate::distances::Distances;
 use crate::impact::meeting_time;
 use crate::reach::SPARE;
-use crate::touching::{Piece, Touching, Trouble};
+use crate::touching::{Touching, Trouble};
 use crate::unclear::{FindUnclear, Unclear};
 use crate::vector::{dot, subtract};
 use opruga_math::Lane;

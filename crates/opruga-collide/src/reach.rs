@@ -59,7 +59,7 @@ pub(crate) struct BodyReach<const D: usize> {
     found_path: f64,
     found_within: [f64; 2],
     /// Whether a new search must find the candidates of the body. A new search is necessary if the boxes of the last search do not contain the
-    /// possible positions of the points, with a quarter of a margin to spare. It is also necessary if these boxes are far too large because they were
+    /// possible positions of the points, with an eighth of a margin to spare. It is also necessary if these boxes are far too large because they were
     /// made for a faster motion.
     pub(crate) is_stale: bool,
     /// Whether it will soon be stale. The next search covers all such bodies at once.
@@ -91,8 +91,8 @@ pub(crate) struct FreeMotion<'a, const D: usize> {
     pub(crate) is_repeated: bool,
 }
 
-/// A search finds all pairs within the boxes of its points. These boxes extend at least this many margins beyond the possible positions in every step
-/// that uses its pairs. In bodies at rest, and around vertices that seem to be deep inside a body, gaps are computed up to this distance beyond the
+/// A search finds all pairs within the boxes of its points. The boxes of the two features of a pair together extend at least this many margins beyond
+/// the possible positions in every step that uses its pairs. In bodies at rest, and around vertices that seem to be deep inside a body, gaps are computed up to this distance beyond the
 /// boxes of the step. If the distance in one of these places were larger than in the other, results would depend on when a search was made.
 pub(crate) const SPARE: f64 = 0.25;
 
@@ -303,7 +303,8 @@ impl<const D: usize> Reach<D> {
 
     /// Determines the bodies whose candidates must be searched for anew, with a margin [m].
     pub(crate) fn find_stale(&mut self, surface: &Surface<D>, (margin, steps): (f64, f64)) {
-        let spare = SPARE * margin;
+        // The boxes of both features of a pair extend beyond the possible positions.
+        let spare = 0.5 * SPARE * margin;
         for number in 0..self.bodies.len() {
             let body = self.bodies[number];
             let [push, moves] = body.most;

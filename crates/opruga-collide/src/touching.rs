@@ -1,6 +1,6 @@
 //! Touching deformable bodies: the contact of their surfaces in a substep.
 
-use crate::body_pairs::BodyPairs;
+use crate::body_pairs::{BodyPairs, Piece};
 use crate::coupled::{Coupled, Respond};
 use crate::found::Found;
 use crate::gap::Gap;
@@ -15,7 +15,6 @@ use crate::surface::Surface;
 use crate::turns::Turns;
 use crate::vector::{dot, length, subtract};
 use crate::zones::Zones;
-use core::ops::Range;
 use opruga_core::contacts::Touch;
 use opruga_math::{Lane, Simd};
 
@@ -165,9 +164,6 @@ impl Counts {
         }
     }
 }
-
-/// A pair of bodies, a list of candidates, and a range in this list.
-pub(crate) type Piece = (u32, usize, Range<usize>);
 
 /// Why a step cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

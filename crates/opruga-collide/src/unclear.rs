@@ -1,7 +1,6 @@
 //! The candidates that may touch in a step according to the bounds on their distances.
 
-use crate::body_pairs::BodyPairs;
-use crate::touching::Piece;
+use crate::body_pairs::{BodyPairs, Piece};
 use opruga_math::{Pack, Work};
 
 /// A candidate that may touch in a step according to the bound on its distance.
