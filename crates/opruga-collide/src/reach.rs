@@ -87,6 +87,8 @@ pub(crate) struct FreeMotion<'a, const D: usize> {
     pub(crate) ends: [&'a [[f64; D]]; 2],
     /// The distance by which contact separates overlapping bodies [m].
     pub(crate) recovery: f64,
+    /// How far points may move in addition to the given free motion, apart from contact [m].
+    pub(crate) unknown: f64,
     /// Whether the previous call began the same step.
     pub(crate) is_repeated: bool,
 }
@@ -250,7 +252,8 @@ impl<const D: usize> Reach<D> {
     }
 
     /// Computes the possible positions of the points in the step. The approaches of the bodies must be known.
-    pub(crate) fn sweep(&mut self, FreeMotion { ends: [from, to], recovery, .. }: FreeMotion<'_, D>, threads: usize) {
+    pub(crate) fn sweep(&mut self, motion: FreeMotion<'_, D>, threads: usize) {
+        let FreeMotion { ends: [from, to], recovery, unknown, .. } = motion;
         let mut swept = std::mem::take(&mut self.swept);
         let bodies = std::mem::take(&mut self.bodies);
         self.each_block(&mut swept, threads, |block, swept, moves| {
@@ -261,7 +264,7 @@ impl<const D: usize> Reach<D> {
             for (((from, to), swept), moves) in own {
                 let [free, relative] = *moves;
                 let push = recovery + (relative + approach).smaller(free);
-                *moves = [push, push + relative];
+                *moves = [push, push + relative + unknown];
                 most = [moves[0].larger(most[0]), moves[1].larger(most[1])];
                 for d in 0..D {
                     let relative = to[d] - from[d] - of_body[d];

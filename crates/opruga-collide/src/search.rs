@@ -22,14 +22,17 @@ impl<const D: usize> Touching<D> {
             self.pairs.clear();
         }
         let recovery = if self.at_once { self.thickest[0] + self.margin } else { h * self.laws.recovery_speed };
-        let motion = FreeMotion { ends: self.free_ends(), recovery, is_repeated: self.is_begun };
+        // Bodies at rest have no free motion, but their forces move them between two corrections.
+        let unknown = if self.at_once { recovery } else { 0.0 };
+        let motion = FreeMotion { ends: self.free_ends(), recovery, unknown, is_repeated: self.is_begun };
         reach.begin(motion, self.threads);
         self.pairs.follow(&mut reach, self.margin);
         self.reach = reach;
         self.include_neighbours();
         let mut reach = std::mem::take(&mut self.reach);
         self.pairs.find_approaches(&mut reach);
-        reach.sweep(FreeMotion { ends: self.free_ends(), recovery, is_repeated: true }, self.threads);
+        let motion = FreeMotion { ends: self.free_ends(), recovery, unknown, is_repeated: true };
+        reach.sweep(motion, self.threads);
         (self.reach, self.is_begun) = (reach, true);
     }
 
