@@ -18,6 +18,15 @@ fn the_quick_cases_pass() {
     assert!(failed.is_empty(), "{}", table(&ROWS));
 }
 
+/// The search for the common equilibrium of two elastic balls ends, whichever pairs of features it finds first.
+#[test]
+fn two_balls_of_few_cells_reach_their_common_equilibrium() {
+    let balls = cases().find(|case| case.name == "hertz-sphere").expect("the case");
+    let coarse: &'static Case = Box::leak(Box::new(Case { levels: &[4.0], ..*balls }));
+    let rows = run_all(&[coarse], &Lab::default(), 1, &AtomicBool::new(false), &|_| {});
+    assert_eq!(rows[0].trouble, None);
+}
+
 /// A table that passes whatever the engine does would prove nothing: with a shear modulus that is wrong by 1 % it fails.
 #[test]
 fn a_modulus_that_is_wrong_by_a_hundredth_is_noticed() {
