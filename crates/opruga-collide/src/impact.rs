@@ -9,6 +9,12 @@ pub(crate) fn key([a, b]: [u32; 2], with_facet: bool) -> u64 {
     u64::from(!with_facet) << 62 | u64::from(a) << 31 | u64::from(b)
 }
 
+/// The features of a key, and whether they are a vertex and a facet.
+pub(crate) fn features_in(id: u64) -> ([u32; 2], bool) {
+    let part = |shift: u32| ((id >> shift) & ((1 << 31) - 1)) as u32;
+    ([part(31), part(0)], id >> 62 == 0)
+}
+
 /// The fraction of the step at which a vertex and a facet, or two edges, come closer to one another than a distance [m]; `None` if they stay apart.
 #[inline]
 pub(crate) fn meeting_time<const D: usize>(

@@ -1,7 +1,7 @@
 //! Impulses that pass from one substep to the next. Callers keep them while the clusters of bodies change, identified by the numbers of features
 //! within their bodies.
 
-use crate::impact::key;
+use crate::impact::{features_in, key};
 use crate::last_impulse::{LastImpulse, NO_BODIES, number_of};
 use crate::row::OBSTACLE_BIT;
 use crate::touching::Touching;
@@ -55,6 +55,17 @@ impl<const D: usize> Touching<D> {
         }
     }
 
+    /// The bodies of a contact in one number, given the key of its features.
+    fn bodies_in(&self, id: u64) -> u64 {
+        if id & OBSTACLE_BIT != 0 {
+            return NO_BODIES;
+        }
+        let (features, with_facet) = features_in(id);
+        number_of(
+            self.surface.points_of_features(&features, with_facet).map(|points| self.surface.body[points[0] as usize]),
+        )
+    }
+
     /// The impulse of a contact between two bodies in the previous substep; `None` if it did not press.
     pub(crate) fn last_of(&self, bodies: [u32; 2], id: u64) -> Option<&LastImpulse<D>> {
         let key = (number_of(bodies), id);
@@ -67,7 +78,8 @@ impl<const D: usize> Touching<D> {
         self.last.clear();
         self.last.resize(self.rows.len(), nothing);
         for (row, k) in self.rows.iter().zip(self.turns.order()) {
-            let bodies = self.pairs.all.get(row.pair as usize).map_or(NO_BODIES, |pair| number_of(pair.bodies));
+            // The list of pairs of bodies may have changed since the rows were made, so their indices in it do not count.
+            let bodies = self.bodies_in(row.id);
             let (id, along, across) = (row.id, row.normal_impulse, row.friction_impulse);
             self.last[*k as usize] = LastImpulse { bodies, id, along, across };
         }
@@ -111,8 +123,7 @@ impl<const D: usize> Touching<D> {
         let mut last = std::mem::take(&mut self.last);
         last.clear();
         last.extend(pairs.map(|(id, along, across)| {
-            let [_, first, _, second, _] = self.features_of(id);
-            let bodies = if id & OBSTACLE_BIT == 0 { number_of([first, second]) } else { NO_BODIES };
+            let bodies = self.bodies_in(id);
             LastImpulse { bodies, id, along, across }
         }));
         last.sort_by_key(|last| (last.bodies, last.id));

@@ -2,7 +2,7 @@
 //! them.
 
 use crate::gap::Gap;
-use crate::impact::{impact, key, meeting_time};
+use crate::impact::{features_in, impact, key, meeting_time};
 use crate::least_parts;
 use crate::row::Row;
 use crate::touching::{Touching, Trouble};
@@ -143,7 +143,7 @@ impl<const D: usize> Touching<D> {
         self.inactive.retain(|row| !passes(row));
         for k in 0..self.passing.len() {
             let (id, gap) = self.passing[k];
-            let (pair, with_facet) = pair_of(id);
+            let (pair, with_facet) = features_in(id);
             let bodies = self.bodies_of(pair, with_facet);
             let law = *self.laws.of(bodies[0], bodies[1]);
             let number = self.pairs.index_of(bodies).map_or(u32::MAX, |number| number as u32);
@@ -171,11 +171,11 @@ impl<const D: usize> Touching<D> {
     /// R. Bridson, R. Fedkiw, J. Anderson, Robust treatment of collisions, contact and friction for cloth animation (2002), section 7.4.
     pub(crate) fn hold_together(&mut self, h: f64) -> Result<(), Trouble> {
         loop {
-            let Some(first) = self.fresh.first().map(|id| pair_of(*id)) else { return Ok(()) };
+            let Some(first) = self.fresh.first().map(|id| features_in(*id)) else { return Ok(()) };
             let trouble = Trouble::LedThrough { bodies: self.bodies_of(first.0, first.1) };
             self.zones.resize(self.surface.points());
             for id in std::mem::take(&mut self.fresh) {
-                let (pair, with_facet) = pair_of(id);
+                let (pair, with_facet) = features_in(id);
                 let (points, count) = self.points_of_pair(pair, with_facet);
                 self.zones.join(&points[..count], &self.v);
             }
@@ -224,10 +224,4 @@ impl<const D: usize> Touching<D> {
         }
         Some(motion)
     }
-}
-
-/// The features of a key.
-fn pair_of(id: u64) -> ([u32; 2], bool) {
-    let part = |shift: u32| ((id >> shift) & ((1 << 31) - 1)) as u32;
-    ([part(31), part(0)], id >> 62 == 0)
 }

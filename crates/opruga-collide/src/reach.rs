@@ -172,6 +172,11 @@ impl<const D: usize> Block<D> {
     }
 }
 
+/// The largest moves of the blocks of a body [m].
+fn most_of<const D: usize>(blocks: &[Block<D>]) -> [f64; 2] {
+    [0, 1].map(|k| blocks.iter().fold(0.0, |most: f64, block| block.most[k].larger(most)))
+}
+
 /// The middle of a box.
 fn middle<const D: usize>([low, high]: &Bounds<D>) -> [f64; D] {
     scaled(&add(low, high), 0.5)
@@ -228,9 +233,7 @@ impl<const D: usize> Reach<D> {
             let body = &mut bodies[blocks[0].body as usize];
             let joint = |of: fn(&Block<D>) -> Bounds<D>| blocks[1..].iter().map(of).fold(of(&blocks[0]), joined);
             (body.hull, body.free) = (joint(|block| block.hull), middle(&joint(|block| block.free)));
-            (body.most, body.approach) = (blocks[0].most, 0.0);
-            let [free, relative] = body.most;
-            (body.most, body.spread) = ([free + motion.recovery, free + motion.recovery + relative], relative);
+            body.approach = 0.0;
             let largest = |k: usize| blocks.iter().fold(0.0, |most: f64, block| block.squares[k].larger(most)).sqrt();
             (body.path, body.strayed) = (body.path + largest(0), largest(1));
             large |= blocks.len() > 1;
@@ -241,12 +244,11 @@ impl<const D: usize> Reach<D> {
                     block.set_moves(&motion, &bodies[block.body as usize].free, moves);
                 }
             });
-            for Block { body, most: [free, relative], .. } in &self.blocks {
-                let body = &mut bodies[*body as usize];
-                body.spread = relative.larger(body.spread);
-                body.most[0] = (free + motion.recovery).larger(body.most[0]);
-                body.most[1] = body.most[0] + body.spread;
-            }
+        }
+        for blocks in self.blocks.chunk_by(|a, b| a.body == b.body) {
+            let body = &mut bodies[blocks[0].body as usize];
+            let [free, relative] = most_of(blocks);
+            (body.spread, body.most) = (relative, [motion.recovery + free, motion.recovery + free + relative]);
         }
         (self.bodies, self.x, self.home) = (bodies, x, home);
     }
@@ -276,8 +278,7 @@ impl<const D: usize> Reach<D> {
         });
         (self.swept, self.bodies) = (swept, bodies);
         for blocks in self.blocks.chunk_by(|a, b| a.body == b.body) {
-            let most = |k: usize| blocks.iter().fold(0.0, |most: f64, block| block.most[k].larger(most));
-            self.bodies[blocks[0].body as usize].most = [most(0), most(1)];
+            self.bodies[blocks[0].body as usize].most = most_of(blocks);
         }
     }
 

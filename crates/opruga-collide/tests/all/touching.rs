@@ -466,6 +466,29 @@ fn bodies_that_fly_together_have_the_candidates_of_bodies_at_rest() {
     assert!(searches_in_flight <= searches + 2 && candidates_in_flight < 2 * candidates, "{costs:?}");
 }
 
+/// The last vertices of a body with so many vertices that several threads measure its motion meet another body.
+#[test]
+fn the_last_of_many_vertices_meet() {
+    let angle = 0.3 + core::f64::consts::TAU * 0.9;
+    let direction = [libm::cos(angle), libm::sin(angle)];
+    let results = [1, 3].map(|threads| {
+        let bodies = [
+            (ring(5000, 0.25), [0.0; 2], [0.0; 2]),
+            (ring(24, 0.25), direction.map(|c| 0.501 * c), direction.map(|c| -c)),
+        ];
+        let mut toy = Toy::new(&bodies, law(0.0, 0.0));
+        toy.stiffness = 0.0;
+        toy.touching.threads = threads;
+        (0..40).for_each(|_| toy.step(1e-4));
+        assert!(toy.touching.counts.contacts > 0, "{:?}", toy.touching.counts);
+        toy.touching.after.clone()
+    });
+    assert!(results[0] == results[1]);
+    let moved = (0..5000).filter(|k| libm::hypot(results[0][1][*k][0], results[0][1][*k][1]) > 0.1);
+    let moved: Vec<usize> = moved.collect();
+    assert!(!moved.is_empty() && moved.iter().all(|k| (4100..4900).contains(k)), "{moved:?}");
+}
+
 /// Points that nodes carry pass impulses on to these nodes: momentum and angular momentum are conserved, and nothing crosses.
 #[test]
 fn carried_points_meet() {
