@@ -1,18 +1,13 @@
 //! The comparison of the features of pairs of bodies.
 
-use crate::grid::Grid;
-use crate::overlaps::{Columns, Overlaps};
+use crate::order::{Kind, Ordered};
+use crate::overlaps::{Hierarchy, Overlaps};
 use crate::reach::around;
 use crate::surface::Surface;
 use crate::vector::{Bounds, shifted, wider};
 use core::ops::Range;
 use core::sync::atomic::{AtomicUsize, Ordering};
-use opruga_math::{Simd, WIDTH};
-
-/// The features of two bodies are compared directly, eight at a time, if the second body has at most this many features or if there are at most this
-/// many packs of pairs. Otherwise, features are sorted into cells. With cells, a frame of two rings of 4,096 vertices takes a tenth longer. Without
-/// cells, all features along a straight line across the axis of sorting would be compared with one another.
-const FEW: usize = 4096;
+use opruga_math::Simd;
 
 /// Two bodies, or a body and itself, whose features are compared.
 #[derive(Clone, Copy, Debug)]
@@ -36,9 +31,7 @@ pub(crate) struct Comparison<const D: usize> {
     pub(crate) ends: Vec<[usize; 2]>,
     first: Vec<(u32, Bounds<D>)>,
     second: Vec<(u32, Bounds<D>)>,
-    columns: Columns,
-    grid: Grid<D>,
-    found: Vec<u32>,
+    hierarchy: Hierarchy,
 }
 
 /// Pairs of bodies whose features are compared.
@@ -125,8 +118,8 @@ impl<const D: usize> Comparisons<'_, D> {
             let around = around(|p| boxes[p as usize], &surface.facets[f]);
             wider(shifted(around, &second.1), distance)
         };
-        choose(&mut part.first, surface.vertices_of(a), &regions[0], vertex);
-        choose(&mut part.second, surface.facets_of(b), &regions[1], facet);
+        choose(&mut part.first, surface.ordered(a, Kind::Vertices), &regions[0], vertex);
+        choose(&mut part.second, surface.ordered(b, Kind::Facets), &regions[1], facet);
         part.join(self.simd, |p, facet| {
             if a != b || !surface.share(&[p], &surface.facets[facet as usize]) {
                 found.push([p, facet]);
@@ -145,8 +138,9 @@ impl<const D: usize> Comparisons<'_, D> {
         let [a, b] = [first.0 as usize, second.0 as usize];
         let (boxes, regions) = self.boxes_for(&[first, second], distance);
         let of = |edge: usize, shift: &[f64; D]| shifted(around(|p| boxes[p as usize], &surface.edges[edge]), shift);
-        choose(&mut part.first, surface.edges_of(a), &regions[0], |edge| of(edge, &first.1));
-        choose(&mut part.second, surface.edges_of(b), &regions[1], |edge| wider(of(edge, &second.1), distance));
+        let edges = |body: usize| surface.ordered(body, Kind::Edges);
+        choose(&mut part.first, edges(a), &regions[0], |edge| of(edge, &first.1));
+        choose(&mut part.second, edges(b), &regions[1], |edge| wider(of(edge, &second.1), distance));
         part.join(self.simd, |i, j| {
             let [first, second] = [i, j].map(|edge| &surface.edges[edge as usize]);
             if a != b || i < j && !surface.share(first, second) {
@@ -159,40 +153,35 @@ impl<const D: usize> Comparisons<'_, D> {
 /// Collects the features whose boxes meet a region.
 fn choose<const D: usize>(
     list: &mut Vec<(u32, Bounds<D>)>,
-    features: Range<usize>,
+    features: Ordered<'_>,
     region: &Bounds<D>,
     bounds: impl Fn(usize) -> Bounds<D>,
 ) {
     list.clear();
-    let all = features.map(|feature| (feature as u32, bounds(feature)));
-    list.extend(all.filter(|(_, own)| meet_boxes(own, region)));
+    features.visit(|feature| {
+        let own = bounds(feature as usize);
+        if meet_boxes(&own, region) {
+            list.push((feature, own));
+        }
+    });
 }
 
 impl<const D: usize> Comparison<D> {
     /// Calls `visit` with all pairs of a feature of the first list and a feature of the second list whose boxes overlap.
-    fn join(&mut self, simd: Simd, mut visit: impl FnMut(u32, u32)) {
-        let Comparison { first, second, columns, grid, found, .. } = self;
+    fn join(&mut self, simd: Simd, visit: impl FnMut(u32, u32)) {
+        let Comparison { first, second, hierarchy, .. } = self;
         if first.is_empty() || second.is_empty() {
             return;
         }
-        if second.len() <= FEW || first.len() * second.len() <= FEW * WIDTH {
-            columns.fill(second);
-            return simd.run(Overlaps { first, second, columns, visit });
-        }
-        grid.fill(second.iter().map(|(_, bounds)| *bounds));
-        for (a, bounds) in first.iter() {
-            grid.touching(bounds, found);
-            found.iter().for_each(|k| visit(*a, second[*k as usize].0));
-        }
+        hierarchy.fill(second);
+        simd.run(Overlaps { first, second, hierarchy, visit });
     }
 
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         8 * self.pairs.iter().map(Vec::capacity).sum::<usize>()
             + 16 * self.ends.capacity()
-            + 4 * self.found.capacity()
             + (16 * D + 8) * (self.first.capacity() + self.second.capacity())
-            + self.grid.heap_bytes()
-            + self.columns.heap_bytes()
+            + self.hierarchy.heap_bytes()
     }
 }

@@ -96,6 +96,7 @@ mod least_parts;
 mod motion;
 mod newton;
 mod obstacle_rows;
+mod order;
 mod outline;
 mod overlaps;
 mod pass;

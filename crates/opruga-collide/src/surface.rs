@@ -1,5 +1,6 @@
 //! The surface of deformable bodies: the features that take part in contact.
 
+use crate::order::{Kind, Ordered, shorter};
 use crate::outline::Outline;
 use opruga_mesh::{Carrier, Mesh, TouchingSurface};
 
@@ -29,6 +30,9 @@ pub struct Surface<const D: usize> {
     touch_faces: Vec<bool>,
     /// The first body that is an obstacle, and its first point.
     obstacles: Option<[u32; 2]>,
+    /// For each body, the vertices, facets and edges in an order in which neighbours follow one another; empty if that is the order of their numbers.
+    /// The order changes only the run time.
+    orders: Vec<[Vec<u32>; 3]>,
     /// The facets around a point: `around[ring[p]..ring[p + 1]]`, ascending.
     ring: Vec<u32>,
     around: Vec<u32>,
@@ -79,11 +83,13 @@ impl<const D: usize> Surface<D> {
     /// Adds the surface of a body: boundary, open surfaces, wires, or its nodes as points if there are none of these. Returns the
     /// nodes of the first added points, in order.
     pub fn add(&mut self, mesh: &Mesh<D>, body: u32) -> Vec<u32> {
-        self.add_surface(mesh.touching_surface(true), body)
+        self.add_surface(mesh.touching_surface(true), &mesh.positions, body)
     }
 
-    /// Adds the surface of a body. Returns the nodes of the first added points, in order; carried points follow.
-    pub fn add_surface(&mut self, own: TouchingSurface<D>, body: u32) -> Vec<u32> {
+    /// Adds the surface of a body whose nodes are at `rest` without forces [m]. Returns the nodes of the first added points, in order; carried points
+    /// follow.
+    pub fn add_surface(&mut self, own: TouchingSurface<D>, rest: &[[f64; D]], body: u32) -> Vec<u32> {
+        let at = own.positions(rest);
         let start = self.points() as u32;
         let first_facet = self.facets.len();
         self.starts.push([start, first_facet as u32, self.edges.len() as u32, start + own.carrying as u32]);
@@ -96,6 +102,7 @@ impl<const D: usize> Surface<D> {
         self.carriers.extend(own.carried.iter().map(|own| Carrier { nodes: own.nodes.map(|p| start + p), ..*own }));
         let wires = own.wires.iter().map(|wire| wire.map(|p| start + p)).collect();
         self.join(first_facet, wires, points);
+        self.put_in_order(&at);
         own.nodes
     }
 
@@ -112,6 +119,33 @@ impl<const D: usize> Surface<D> {
         let (edges, sides): (Vec<_>, Vec<_>) = all.filter(|(edge, _)| is_kept(edge)).unzip();
         self.edges.extend(edges);
         self.sides.extend(sides);
+        self.orders.pop();
+        self.put_in_order(&outline.mesh.positions);
+    }
+
+    /// Determines the orders of the features of the last body, whose points are at `rest` without forces [m].
+    fn put_in_order(&mut self, rest: &[[f64; D]]) {
+        let number = self.bodies() - 1;
+        let first = self.points_of(number).start;
+        let at = |p: u32| rest[p as usize - first];
+        self.orders.push([
+            shorter(self.vertices_of(number), |p| at(p as u32)),
+            shorter(self.facets_of(number), |facet| at(self.facets[facet][0])),
+            shorter(self.edges_of(number), |edge| at(self.edges[edge][0])),
+        ]);
+    }
+
+    /// The features of one kind of the body that was added with this number, in an order in which neighbours follow one another.
+    pub(crate) fn ordered(&self, number: usize, kind: Kind) -> Ordered<'_> {
+        let order = &self.orders[number][kind as usize];
+        if !order.is_empty() {
+            return Ordered::Along(order);
+        }
+        Ordered::ByNumber(match kind {
+            Kind::Vertices => self.vertices_of(number),
+            Kind::Facets => self.facets_of(number),
+            Kind::Edges => self.edges_of(number),
+        })
     }
 
     /// Lets the vertices of a body touch faces of obstacles. Bodies are numbered in the order in which they were added. Otherwise obstacles hold its
@@ -253,5 +287,10 @@ impl<const D: usize> Surface<D> {
             + self.closed.capacity()
             + 4 * (4 * self.starts.capacity() + self.ring.capacity() + self.around.capacity() + self.carried.capacity())
             + core::mem::size_of::<Carrier>() * self.carriers.capacity()
+            + self
+                .orders
+                .iter()
+                .map(|orders| size_of_val(orders) + orders.iter().map(|o| 4 * o.capacity()).sum::<usize>())
+                .sum::<usize>()
     }
 }

@@ -105,8 +105,8 @@ impl<const D: usize> Meeting<D> {
         for (own, number) in cluster.bodies.iter().enumerate() {
             let (island, lane) = scene.seats[*number as usize];
             let first = touching.surface.points() as u32;
-            let surface = blueprint.bodies[scene.bodies[*number as usize]].touching_surface();
-            let nodes = touching.surface.add_surface(surface, own as u32);
+            let body = &blueprint.bodies[scene.bodies[*number as usize]];
+            let nodes = touching.surface.add_surface(body.touching_surface(), &body.mesh.positions, own as u32);
             let Island { system, integrator, .. } = &all[island];
             let island = islands.binary_search(&island).unwrap_or(0);
             let indices: Vec<u32> = nodes.iter().map(|n| system.layout.index(*n as usize, lane) as u32).collect();

@@ -122,7 +122,7 @@ fn candidates_are_those_of_all_pairs() {
             compare_with_all_pairs(&[ring.clone(), wire.clone(), ring.clone(), square.clone(), ring.clone()], seed);
     }
     assert!(found > 1000, "{found}");
-    // With this many features, cells are used.
+    // With this many features, the hierarchy of boxes has four levels.
     let large = Mesh::<2>::ring(1.0, 1500, [0.0, 0.0], 0.0).expect("a ring");
     let found = compare_with_all_pairs(&[large.clone(), wire, ring, large], 8);
     assert!(found > 1000, "{found}");
