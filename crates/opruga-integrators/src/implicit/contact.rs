@@ -27,6 +27,8 @@ pub(crate) struct Contacting<const D: usize> {
     found: Vec<Touch<D>>,
     /// Buffers for the normal forces that determine friction, and for their changes.
     forces: [Vec<f64>; 3],
+    /// Whether contacts, and directions of friction, no longer change in this step.
+    pub(crate) is_settled: bool,
 }
 
 /// One node on one surface.
@@ -101,6 +103,7 @@ impl<const D: usize> Contact<D> {
 impl<const D: usize> Contacting<D> {
     /// Discards the contacts of an earlier step, and reserves memory for one per node.
     pub(crate) fn clear(&mut self, nodes: usize) {
+        self.is_settled = false;
         for contacts in [&mut self.contacts, &mut self.known] {
             contacts.clear();
             contacts.reserve(nodes);

@@ -54,7 +54,8 @@ impl<const D: usize> Contacting<D> {
     ) {
         for contact in self.contacts.iter().filter(|contact| contact.normal_force > 0.0) {
             let normal = &contact.touch.normal;
-            if contact.rubs() && D > 2 {
+            // With a settled direction, this stiffness would only shorten the corrections.
+            if contact.rubs() && D > 2 && !self.is_settled {
                 let slide = contact.slide(contact_query.u, contact_query.theta, contact_query.x0);
                 // A direction of slide that turns by a large angle is not settled yet, so its derivative is not used.
                 let size = dot(&slide, &slide).sqrt();

@@ -280,7 +280,8 @@ impl<'a> Iteration<'a> {
     /// Decides from the forces of the constraints which nodes remain held. Returns whether these nodes, or how they are held,
     /// have changed.
     fn judge<const D: usize>(&self, system: &System<D>, workspace: &mut Workspace<D>) -> bool {
-        if system.contacts.is_none() || self.solved.iterations >= MOST_DECISIONS {
+        workspace.contacting.is_settled = self.solved.iterations >= MOST_DECISIONS;
+        if system.contacts.is_none() || workspace.contacting.is_settled {
             return false;
         }
         let verdict = judge(system, workspace, self.balance, self.settings, self.settings.against_slide());

@@ -247,3 +247,60 @@ fn hard_contact_whole_sweep() {
     let short: Vec<Trial> = trials().into_iter().filter(|trial| trial.short).collect();
     run_all(&short, 1..=1);
 }
+
+/// The heights of the centres of two rings that rest on one another in a narrow box [m].
+fn heights_at_rest(vertices: u32) -> [f64; 2] {
+    let text = rings(vertices, [1, 2]).text;
+    let text = text.replace("seconds = 2.0", "seconds = 8.0").replace("jitter = 0.03", "jitter = 0.0");
+    let text = text.replace("gravity = [0.0, -9.81]", "gravity = [0.0, -9.81]\ndrag = 3.0");
+    let text = text.replace("max = [2.8, 20.0]", "max = [0.7, 20.0]");
+    let read = scene::read(text.as_bytes(), "rings", &catalogue(), &scene::Options::default());
+    let (AnyBlueprint::Plane(blueprint), _) = read.expect("a scene") else { panic!("the rings are in the plane") };
+    let mut world = World::new(blueprint, Options::default()).expect("a world");
+    let centre = |world: &World<2>, body: usize| {
+        let nodes = world.node_count(body) as u32;
+        (0..nodes).map(|node| world.position(body, node)[1]).sum::<f64>() / f64::from(nodes)
+    };
+    let mut before = [0.0; 2];
+    while world.time() < 8.0 - 1e-9 {
+        before = [0, 1].map(|body| centre(&world, body));
+        world.frame().expect("a frame");
+    }
+    let heights = [0, 1].map(|body| centre(&world, body));
+    for (height, before) in heights.iter().zip(before) {
+        assert!((height - before).abs() < 1e-5, "the rings of {vertices} still move: {before} m, then {height} m");
+    }
+    heights
+}
+
+/// Source of the limit of 2 %: the demand that a body keeps its height when its surface is resolved more finely.
+#[test]
+#[ignore = "runs for ten minutes"]
+fn rings_of_any_number_of_vertices_rest_at_the_same_height() {
+    let heights = [64, 256, 1024, 4096].map(|vertices| {
+        let heights = heights_at_rest(vertices);
+        println!("{vertices:>5} vertices: {:.4} m, {:.4} m", heights[0], heights[1]);
+        heights
+    });
+    for own in &heights[1..] {
+        for (height, coarse) in own.iter().zip(heights[0]) {
+            assert!((height / coarse - 1.0).abs() < 0.02, "{height} m instead of {coarse} m");
+        }
+    }
+}
+
+/// Friction changes its direction in one step of this scene until the iteration stops to follow it. With derivatives of a direction that no longer
+/// changes, the corrections were so short that 100 iterations were not enough.
+#[test]
+#[ignore = "a sweep"]
+fn exact_steps_of_a_solid_that_slides_while_it_is_crushed_converge_whole_sweep() {
+    let text = scenes::find("spot-solid").expect("the scene of the solids");
+    let overrides = vec![("integrator.accuracy".to_string(), "exact".to_string())];
+    let reading = scene::Options { overrides, files: scenes::files(), ..scene::Options::default() };
+    let (blueprint, _) = scene::read(text.as_bytes(), "spot-solid", &catalogue(), &reading).expect("a scene");
+    let AnyBlueprint::Space(blueprint) = blueprint else { panic!("the solids are in space") };
+    let mut world = World::new(blueprint, Options::default()).expect("a world");
+    while world.time() < 0.65 {
+        world.frame().expect("a frame");
+    }
+}
