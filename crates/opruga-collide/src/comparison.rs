@@ -1,10 +1,10 @@
 //! The comparison of the features of pairs of bodies.
 
-use crate::order::{Kind, Ordered};
+use crate::order::Kind;
 use crate::overlaps::{Hierarchy, Overlaps};
 use crate::reach::around;
 use crate::surface::Surface;
-use crate::vector::{Bounds, shifted, wider};
+use crate::vector::{Bounds, shifted, subtract, wider};
 use core::ops::Range;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use opruga_math::Simd;
@@ -89,38 +89,18 @@ impl<const D: usize> Comparisons<'_, D> {
         part.pairs = [with_facets, of_edges];
     }
 
-    /// The boxes of points for a pair of bodies, and the regions in which features of the first body can meet the second body, and the other way
-    /// around. Features of one body can be anywhere.
-    fn boxes_for(&self, [first, second]: &[Shifted<D>; 2], distance: f64) -> (&[Bounds<D>], [Bounds<D>; 2]) {
-        if first.0 == second.0 {
-            return (self.own, [[[f64::NEG_INFINITY; D], [f64::INFINITY; D]]; 2]);
-        }
-        let region =
-            |(body, shift): &Shifted<D>, distance: f64| wider(shifted(self.bodies[*body as usize], shift), distance);
-        (self.boxes, [region(second, distance), region(first, 0.0)])
-    }
-
     fn compare_vertices_with_facets(
         &self,
         part: &mut Comparison<D>,
-        [first, second]: [Shifted<D>; 2],
+        pair @ [(a, _), (b, _)]: [Shifted<D>; 2],
         distance: f64,
         found: &mut Vec<[u32; 2]>,
     ) {
         let surface = self.surface;
-        if surface.is_obstacle(second.0) && !surface.touches_faces(first.0) {
+        if surface.is_obstacle(b) && !surface.touches_faces(a) {
             return;
         }
-        let [a, b] = [first.0 as usize, second.0 as usize];
-        let (boxes, regions) = self.boxes_for(&[first, second], distance);
-        let vertex = |p: usize| shifted(boxes[p], &first.1);
-        let facet = |f: usize| {
-            let around = around(|p| boxes[p as usize], &surface.facets[f]);
-            wider(shifted(around, &second.1), distance)
-        };
-        choose(&mut part.first, surface.ordered(a, Kind::Vertices), &regions[0], vertex);
-        choose(&mut part.second, surface.ordered(b, Kind::Facets), &regions[1], facet);
-        part.join(self.simd, |p, facet| {
+        self.compare_features(part, pair, distance, [Kind::Vertices, Kind::Facets], |p, facet| {
             if a != b || !surface.share(&[p], &surface.facets[facet as usize]) {
                 found.push([p, facet]);
             }
@@ -130,53 +110,67 @@ impl<const D: usize> Comparisons<'_, D> {
     fn compare_edges(
         &self,
         part: &mut Comparison<D>,
-        [first, second]: [Shifted<D>; 2],
+        pair @ [(a, _), (b, _)]: [Shifted<D>; 2],
         distance: f64,
         found: &mut Vec<[u32; 2]>,
     ) {
-        let surface = self.surface;
-        let [a, b] = [first.0 as usize, second.0 as usize];
-        let (boxes, regions) = self.boxes_for(&[first, second], distance);
-        let of = |edge: usize, shift: &[f64; D]| shifted(around(|p| boxes[p as usize], &surface.edges[edge]), shift);
-        let edges = |body: usize| surface.ordered(body, Kind::Edges);
-        choose(&mut part.first, edges(a), &regions[0], |edge| of(edge, &first.1));
-        choose(&mut part.second, edges(b), &regions[1], |edge| wider(of(edge, &second.1), distance));
-        part.join(self.simd, |i, j| {
-            let [first, second] = [i, j].map(|edge| &surface.edges[edge as usize]);
-            if a != b || i < j && !surface.share(first, second) {
+        self.compare_features(part, pair, distance, [Kind::Edges; 2], |i, j| {
+            let [first, second] = [i, j].map(|edge| &self.surface.edges[edge as usize]);
+            if a != b || i < j && !self.surface.share(first, second) {
                 found.push([i, j]);
             }
         });
     }
-}
 
-/// Collects the features whose boxes meet a region.
-fn choose<const D: usize>(
-    list: &mut Vec<(u32, Bounds<D>)>,
-    features: Ordered<'_>,
-    region: &Bounds<D>,
-    bounds: impl Fn(usize) -> Bounds<D>,
-) {
-    list.clear();
-    features.visit(|feature| {
-        let own = bounds(feature as usize);
-        if meet_boxes(&own, region) {
-            list.push((feature, own));
+    /// Calls `visit` with all pairs of a feature of the first body and a feature of the second body, each of a given kind, whose boxes are closer than a
+    /// distance [m].
+    fn compare_features(
+        &self,
+        part: &mut Comparison<D>,
+        [first, second]: [Shifted<D>; 2],
+        distance: f64,
+        kinds: [Kind; 2],
+        visit: impl FnMut(u32, u32),
+    ) {
+        let is_one_body = first.0 == second.0;
+        let boxes = if is_one_body { self.own } else { self.boxes };
+        let Comparison { first: of_first, second: of_second, hierarchy, .. } = part;
+        let sides = [(of_first, first, second, 0.0), (of_second, second, first, distance)];
+        for ((list, (body, shift), (other, other_shift), extension), kind) in sides.into_iter().zip(kinds) {
+            list.clear();
+            // Where features can meet the other body, relative to their own body. Features of one body can be anywhere.
+            let region = if is_one_body {
+                [[f64::NEG_INFINITY; D], [f64::INFINITY; D]]
+            } else {
+                wider(shifted(self.bodies[other as usize], &subtract(&other_shift, &shift)), distance)
+            };
+            self.surface.ordered(body as usize, kind).visit(|feature| {
+                let own = self.bounds_of(kind, feature, boxes);
+                if meet_boxes(&own, &region) {
+                    list.push((feature, wider(shifted(own, &shift), extension)));
+                }
+            });
+            if list.is_empty() {
+                return;
+            }
         }
-    });
+        hierarchy.fill(&part.second);
+        self.simd.run(Overlaps { first: &part.first, second: &part.second, hierarchy, visit });
+    }
+
+    /// The box around the boxes of the points of a feature [m].
+    #[inline]
+    fn bounds_of(&self, kind: Kind, feature: u32, boxes: &[Bounds<D>]) -> Bounds<D> {
+        let of = |p: u32| boxes[p as usize];
+        match kind {
+            Kind::Vertices => of(feature),
+            Kind::Facets => around(of, &self.surface.facets[feature as usize]),
+            Kind::Edges => around(of, &self.surface.edges[feature as usize]),
+        }
+    }
 }
 
 impl<const D: usize> Comparison<D> {
-    /// Calls `visit` with all pairs of a feature of the first list and a feature of the second list whose boxes overlap.
-    fn join(&mut self, simd: Simd, visit: impl FnMut(u32, u32)) {
-        let Comparison { first, second, hierarchy, .. } = self;
-        if first.is_empty() || second.is_empty() {
-            return;
-        }
-        hierarchy.fill(second);
-        simd.run(Overlaps { first, second, hierarchy, visit });
-    }
-
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         8 * self.pairs.iter().map(Vec::capacity).sum::<usize>()
