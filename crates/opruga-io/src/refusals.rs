@@ -80,6 +80,7 @@ fn path_of(error: &WorldError) -> String {
         WorldError::Build { part, source } => {
             let around = match part {
                 Part::Body { name } => match source.kind.as_str() {
+                    _ if source.code() == "contact.unfold" => return "world.unfold".into(),
                     // Fields such as the position, the pins and the integrator belong to the body, not to a model.
                     kind if is_field_of_body(kind) => {
                         return format!("{}.{}", body(name), valued(source).unwrap_or(kind.into()));
@@ -121,7 +122,8 @@ fn valued(error: &BuildError) -> Option<String> {
 /// Converts a warning of a world to an error, for callers that want no warnings.
 impl From<&Warning> for SceneError {
     fn from(warning: &Warning) -> SceneError {
-        const CODES: [&str; 4] = ["units.sag", "step.no_stable_step", "step.unstable", "contact.starts_inside"];
+        const CODES: [&str; 5] =
+            ["units.sag", "step.no_stable_step", "step.unstable", "contact.starts_inside", "contact.starts_across"];
         let code = CODES.into_iter().find(|code| *code == warning.code).unwrap_or("world.warning");
         let path = warning
             .field("body")
@@ -249,7 +251,10 @@ fn location(root: &Node, path: &str, parameters: &[String]) -> Option<Location> 
         let Some((next, at)) = next else { break };
         (node, location) = (next, Some(at));
     }
-    let named = parameters.iter().find_map(|parameter| node.entry(parameter)).map(shown_at);
+    let within = |node: &Node| parameters.iter().find_map(|parameter| node.entry(parameter)).map(shown_at);
+    // A part that does not set the parameter takes its value from the section with the same name.
+    let section = || root.get(path.rsplit('.').next()?).and_then(within);
+    let named = within(node).or_else(section);
     // A part in which an override has changed something gets the location of the override.
     let changed =
         || node.entries().iter().map(|entry| entry.value.location).rfind(|at| matches!(at, Location::Override(_)));

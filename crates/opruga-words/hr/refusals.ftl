@@ -298,6 +298,11 @@ contact-barrier-NoBarrier = `{ $integrator }` ne rješava za kraj koraka, što b
     .hint = ili `response = "constraint"`, koji prima svaki integrator
 contact-reach-Reach = doseg je { $reach } m, a najkraći brid tijela { $shortest } m, pa bi se njegovi vlastiti dijelovi gurali u mirovanju
     .allowed = manje od tog brida
+contact-thickness-Thickness = debljina je { $thickness } m, a najkraći brid tijela { $shortest } m, pa bi se njegovi vlastiti dijelovi gurali u mirovanju
+    .allowed = manje od tog brida
+    .hint = uz `contact = {"{"} self = false {"}"}` debljina tijela smije biti veća
+contact-thickness-ThickerThanBody = debljina je { $thickness } m, a tijelo je veliko samo { $size } m
+    .allowed = manje od veličine tijela
 contact-unfold-Unfold = `unfold` pomiče tijela nasumce, i u druga
     .allowed = `unfold = false` u prizoru s `[contact]`
 limit-memory-SceneMemory = tijela prizora traže oko { $all } bajtova, `{ $body }` od toga { $largest }

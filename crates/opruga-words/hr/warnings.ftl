@@ -64,7 +64,8 @@ limit-distance-BodiesLost = tijela su otišla dalje od `world.largest_distance` 
 ledger-numerical_damping-TakenByRules = implicitna su pravila sama uzela { $energy } J, više od dvadesetine energije gibanja (`loss_numerical`): što je brzo za korak nestaje ili raste zbog pravila, a ne po zakonu fizike; s više podkoraka je manje, a `implicit_midpoint` i `newmark` sami uzimaju manje
 ledger-numerical_damping-MadeByRules = implicitna su pravila sama dodala { $energy } J, više od dvadesetine energije gibanja (`loss_numerical`): što je brzo za korak nestaje ili raste zbog pravila, a ne po zakonu fizike; s više podkoraka je manje, a `backward_euler` prigušuje što bi raslo
 ledger-closure-Unexplained = sličica je završila s više od desetine energije gibanja neobjašnjene (`closure`), do kraja { $energy } J { $difference }: pogreška integratora; { $help }
-step-not_converged-Accepted = korak je vrijedio iako Newtonova metoda nije konvergirala (`when_not_converged = "accept"`)
+step-not_converged-Accepted = korak je vrijedio iako nije konvergirao: `when_not_converged` je `"accept"`, ili se trenje uz barijeru nakon trideset krugova još mijenjalo za više od tisućinke
+    .hint = više podkoraka
 step-halved-Halved = korak od { $h } s, u statici ono što on dodaje teretu i putovima pribadača, učinjen je u dvije polovice, a one opet gdje je trebalo, do { $shortest } s, dijela od 1/{ $parts }: Newtonova metoda nije konvergirala preko cijeloga, ili neki model ondje nema smisla (`when_not_converged = "halve"`, ili u stvarnom vremenu); rezultat je onaj tako kratkih koraka na tom mjestu, zbog toga nije lošiji, a trajao je dulje
     .hint = više podkoraka, u statici više `load_steps` ili sličica, štedi uzaludne pokušaje
 step-cut_off-CutOff = korak u stvarnom vremenu potrošio je svoje, ili toliko umnožaka da u sporim gibanjima može ostati mnogo: sile izvan ravnoteže koje bi pojedine čvorove pomaknule do { $left } m; tijelo je prekruto ili pretanko za korak: više podkoraka, `linear_solver = "cholesky"`, ili `accuracy = "exact"`
@@ -81,6 +82,8 @@ statics-load_left-LoadLeft = račun završava prije nego je nanesen cijeli teret
     .hint = više sličica ili dulji `arc_length`
 units-sag-Sag = tijelo `{ $body }` od { $mass } kg ulegnulo bi se pod svojom težinom oko { NUMBER($sag, maximumSignificantDigits: 2) } m, više od svoje veličine od { $size } m: jesu li jedinice pomiješane (metri, kilogrami, njutni po metru)?
 contact-starts_inside-StartsInside = tijelo `{ $body }` počinje u prepreci { $collider } ({ $kind }), čvorova: { $nodes }, najdublji je čvor { $deepest }, { $depth } m; { $remedy }
+contact-starts_across-StartsAcross = tijelo `{ $body }` počinje preko prepreke { $collider } ({ $kind }), koja nema unutrašnjost: svaki čvor ostaje na strani na kojoj počinje, pa prepreka stišće tijelo
+    .hint = pomaknite tijelo ili prepreku
 contact-none-NoContact = u t = { $time } s tijela prolaze jedna kroz druga, parova: { $pairs }, prva dva su `{ $first }` i `{ $second }`
     .hint = odjeljak `[contact]` drži tijela razdvojenima
 contact-mixed-Mixed = u t = { $time } s tijelo `{ $first }` ({ $first_rule }) dodiruje tijelo `{ $second }` ({ $second_rule }): dodir se rješava za oba zajedno, ali svako korača po svojem pravilu, pa za par ne vrijede ni red ni prigušenje nijednoga; broji se po sličici i paru tijela

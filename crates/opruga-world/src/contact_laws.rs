@@ -85,16 +85,12 @@ pub(crate) fn laws<const D: usize>(
             Edges { count: 0, .. } => mean_edge,
             Edges { sum, count, .. } => sum / count as f64,
         };
-        let itself = match own.and_then(|own| own.get("self")) {
-            Some(Value::Boolean(own)) => *own,
-            _ => values.flag("self"),
-        };
         let one = Class {
             group: body.contact_group(),
             friction: number_of("friction").unwrap_or(0.0),
             restitution: number_of("restitution").unwrap_or(0.0),
             thickness: number_of("thickness").unwrap_or_else(|| THICKNESS_OF_EDGE * edge()),
-            itself,
+            itself: touches_itself(contact, body),
         };
         let found = classes.iter().rposition(|other| *other == one).unwrap_or_else(|| {
             classes.push(one);
@@ -165,6 +161,39 @@ fn check_rest<const D: usize>(scene: &Blueprint<D>, own: &dyn Integrator<D>) -> 
     Ok(())
 }
 
+/// Refuses a thickness that a body cannot have: its surface would be in contact with itself at rest, or the body is thinner.
+fn check_thickness<const D: usize>(
+    contact: &ContactBlueprint,
+    body: &BodyBlueprint<D>,
+    shortest: impl Fn() -> f64,
+) -> Result<(), BuildError> {
+    let own = body.contact.as_ref();
+    let given = own.and_then(|own| own.number("thickness")).or_else(|| contact.values.number("thickness"));
+    let Some(thickness) = given.filter(|_| body.touches()) else { return Ok(()) };
+    let refuse = |why: Refusal| Err(BuildError::of("contact", why));
+    let shortest = shortest();
+    if touches_itself(contact, body) && thickness >= shortest {
+        return refuse(Refusal::Thickness { thickness, shortest });
+    }
+    let extent = |d: usize| {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for x in &body.mesh.positions {
+            (low, high) = (x[d].smaller(low), x[d].larger(high));
+        }
+        high - low
+    };
+    let size = (0..D).map(extent).fold(0.0, f64::larger);
+    if size > 0.0 && thickness >= size { refuse(Refusal::ThickerThanBody { thickness, size }) } else { Ok(()) }
+}
+
+/// Whether the parts of a body touch one another.
+fn touches_itself<const D: usize>(contact: &ContactBlueprint, body: &BodyBlueprint<D>) -> bool {
+    match body.contact.as_ref().and_then(|own| own.get("self")) {
+        Some(Value::Boolean(own)) => *own,
+        _ => contact.values.flag("self"),
+    }
+}
+
 /// Refuses a body that cannot be stepped with contact.
 pub(crate) fn check<const D: usize>(
     scene: &Blueprint<D>,
@@ -183,8 +212,9 @@ pub(crate) fn check<const D: usize>(
     if let Some((reach, shortest)) =
         reach.map(|reach| (reach, shortest())).filter(|(reach, shortest)| reach >= shortest)
     {
-        return Err(BuildError::of("contact.reach", Refusal::Reach { reach, shortest }));
+        return Err(BuildError::of("contact", Refusal::Reach { reach, shortest }));
     }
+    check_thickness(contact, body, shortest)?;
     if scene.surroundings.unfold {
         return Err(BuildError::of("contact", Refusal::Unfold {}));
     }

@@ -3,7 +3,7 @@
 use crate::contact_laws::laws;
 use crate::warnings::{Warning, WorldWarning};
 use crate::world::World;
-use opruga_collide::Laws;
+use opruga_collide::{Laws, Picture};
 use opruga_mesh::{Crossings, Mesh, crossing_edges, winding_number};
 
 /// Two bodies, or a body and itself, whose surfaces cross.
@@ -139,6 +139,44 @@ impl<const D: usize> World<D> {
         self.warnings.push(Warning::new(warning, 1));
     }
 
+    /// Warns about bodies that begin across an obstacle without an inside. Copies get one warning for each obstacle.
+    pub(crate) fn warn_of_pinched_bodies(&mut self) {
+        let Some(colliders) = self.colliders.clone() else { return };
+        let mut found: Vec<(String, Warning, usize)> = Vec::new();
+        for (collider, picture) in colliders.pictures(self.time()).iter().enumerate() {
+            let Some((points, facets)) = thin(picture) else { continue };
+            let extent = bounds(points.iter().copied());
+            let count = self.blueprint.bodies.len();
+            let bodies: Vec<usize> = (0..count).filter(|body| overlap(&extent, &self.bounds_of(*body))).collect();
+            let mut surfaces = self.surfaces(&bodies);
+            let first = surfaces.positions.len() as u32;
+            surfaces.positions.extend(points);
+            surfaces.origin.extend((0..facets.len() as u32).map(|number| (count, number)));
+            surfaces.facets.extend(facets.iter().map(|facet| facet.map(|p| first + p)));
+            let pairs = surfaces.crossings().pairs;
+            let mut across: Vec<usize> = pairs
+                .iter()
+                .map(|pair| pair.map(|facet| surfaces.origin[facet as usize].0))
+                .filter(|[a, b]| (*a == count) != (*b == count))
+                .map(|[a, b]| a.min(b))
+                .collect();
+            across.sort_unstable();
+            across.dedup();
+            for own in across.iter().map(|body| &self.blueprint.bodies[*body]) {
+                let name = own.common_name().to_string();
+                if let Some((_, warning, _)) = found.iter_mut().find(|(other, _, at)| *other == name && *at == collider)
+                {
+                    warning.count += 1;
+                    continue;
+                }
+                let kind = self.blueprint.colliders[collider].values.kind().into();
+                let warning = WorldWarning::StartsAcross { body: own.name.clone(), collider, kind };
+                found.push((name, Warning::new(warning, 1), collider));
+            }
+        }
+        self.warnings.extend(found.into_iter().map(|(_, warning, _)| warning));
+    }
+
     fn surfaces(&self, bodies: &[usize]) -> Surfaces<D> {
         let mut out = Surfaces { positions: Vec::new(), facets: Vec::new(), origin: Vec::new(), closed: Vec::new() };
         for body in bodies {
@@ -216,6 +254,22 @@ impl<const D: usize> Surfaces<D> {
             }
         }
         found
+    }
+}
+
+/// The points and facets of an obstacle without an inside; none if it has an inside.
+fn thin<const D: usize>(picture: &Picture<D>) -> Option<(&[[f64; D]], Vec<[u32; D]>)> {
+    match picture {
+        Picture::Polyline { points, closed } => {
+            let (count, sides) = (points.len(), points.len() - usize::from(!closed));
+            let facet = |k: usize| core::array::from_fn(|end| ((k + end) % count) as u32);
+            Some((points, (0..sides).map(facet).collect()))
+        }
+        Picture::Triangles { points, triangles, solid: false } => {
+            let facets = triangles.iter().map(|triangle| core::array::from_fn(|k| triangle[k]));
+            Some((points, facets.collect()))
+        }
+        _ => None,
     }
 }
 

@@ -30,6 +30,14 @@ fn falls(range: Option<f64>) -> &'static str {
 }
 
 /// The other body, or "itself" if both are the same.
+fn meeting(first: &str, second: &str) -> String {
+    if first == second {
+        format!("the surface of `{first}` meets itself")
+    } else {
+        format!("the surfaces of `{first}` and `{second}` meet")
+    }
+}
+
 fn other(first: &str, second: &str) -> String {
     if first == second { "itself".into() } else { format!("`{second}`") }
 }
@@ -108,7 +116,7 @@ messages! {
         /// Surfaces that a barrier should keep apart meet. The second surface belongs to another body, the same body, or an obstacle. Contains the
         /// time at the end of the substep \[s\].
         "contact.surfaces_meet"
-        #[error("the surfaces of `{first}` and {} meet at t = {} s, but a barrier needs a gap; the world is at its last good frame", other(first, second), number(*time))]
+        #[error("{} at t = {} s, but a barrier needs a gap; the world is at its last good frame", meeting(first, second), number(*time))]
         #[hint("move the bodies apart, or use a smaller `thickness` or `response = \"constraint\"`")]
         Meet { first: String, second: String, time: f64 },
         /// Pins and obstacles move a body through another body, itself, or an obstacle. Contains the time at the end of the substep \[s\].

@@ -91,7 +91,8 @@ impl<const D: usize> World<D> {
 
     /// The hint to use `unfold` for a body that rests in a degenerate shape; `None` if the scene already uses it.
     pub(crate) fn or_unfold(&self) -> Option<UnfoldHint> {
-        (!self.blueprint.surroundings.unfold).then_some(UnfoldHint::Unfold)
+        let allowed = !self.blueprint.surroundings.unfold && self.blueprint.contact.is_none();
+        allowed.then_some(UnfoldHint::Unfold)
     }
 
     /// The hint that helps against inverted cells of a body, apart from more substeps. The hint never names a law that the body already has.

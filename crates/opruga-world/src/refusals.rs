@@ -79,12 +79,20 @@ messages! {
         #[hint("use pins or friction to hold bodies that would slide")]
         NoCommonBalance { steps: usize, moved: f64 },
         "contact.barrier" #[error("a barrier needs an integrator that solves for the state at the end of a step, which `{integrator}` does not do")]
-        #[allowed("an implicit integrator, such as `backward_euler`")] #[hint("`response = \"constraint\"` works with every integrator")]
+        #[parameters("response")] #[allowed("an implicit integrator, such as `backward_euler`")] #[hint("`response = \"constraint\"` works with every integrator")]
         NoBarrier { integrator: &'static str },
         "contact.reach"
         #[error("the reach is {} m and the shortest edge of the body is {} m, so neighbouring parts of its surface would push one another apart at rest", number(*reach), number(*shortest))]
-        #[allowed("less than the length of that edge")]
+        #[parameters("reach")] #[allowed("less than the length of that edge")]
         Reach { reach: f64, shortest: f64 },
+        "contact.thickness"
+        #[error("the thickness is {} m and the shortest edge of the body is {} m, so neighbouring parts of its surface would push one another apart at rest", number(*thickness), number(*shortest))]
+        #[parameters("thickness")] #[allowed("less than the length of that edge")] #[hint("with `contact = {{ self = false }}`, the thickness of the body may be larger")]
+        Thickness { thickness: f64, shortest: f64 },
+        "contact.thickness"
+        #[error("the thickness is {} m, but the body is only {} m large", number(*thickness), number(*size))]
+        #[parameters("thickness")] #[allowed("less than the size of the body")]
+        ThickerThanBody { thickness: f64, size: f64 },
         "contact.unfold" #[error("`unfold` displaces bodies at random, possibly into other bodies")] #[parameters("unfold")] #[allowed("`unfold = false` in a scene with `[contact]`")]
         Unfold {},
         "limit.memory" #[error("the bodies of the scene need about {all} bytes, of which `{body}` needs {largest}")] #[allowed("at most {most} bytes")]

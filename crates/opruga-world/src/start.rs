@@ -98,6 +98,7 @@ impl<const D: usize> World<D> {
         world.regroup(&Touched::All, &states)?;
         world.check_stability()?;
         world.warn_of_buried_bodies();
+        world.warn_of_pinched_bodies();
         world.warn_of_slender_cells();
         // The ledger starts here.
         world.flows.start = 0.0;

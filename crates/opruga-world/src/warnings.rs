@@ -169,7 +169,8 @@ messages! {
         "ledger.closure"
         #[error("a frame ended with more than a tenth of the energy in motion unexplained (`closure`): {} J {difference} so far by the error of the integrator; {help}", number(*energy))]
         Unexplained { energy: f64, difference: Difference, help: ErrorHint },
-        "step.not_converged" #[error("a step was accepted although Newton's method had not converged (`when_not_converged = \"accept\"`)")]
+        "step.not_converged" #[error("a step was accepted although it had not converged: `when_not_converged` is `\"accept\"`, or friction under a barrier still changed by more than a thousandth after thirty rounds")]
+        #[hint("use more substeps")]
         Accepted {},
         "step.halved"
         #[error("a step of {} s (in statics, the load and the motion of pins that it adds) was halved, repeatedly if needed, down to {} s, 1/{parts} of it, because Newton's method did not converge over the whole step or a model is undefined in a state within it (`when_not_converged = \"halve\"`, or real time). The result is as good as with such short steps, but took longer", number(*h), number(*shortest))]
@@ -206,6 +207,10 @@ messages! {
         "contact.starts_inside"
         #[error("body `{body}` begins inside obstacle {collider} ({kind}): {}, up to {} m deep (node {deepest}); {remedy}", counted(*nodes as u64, "node", "nodes"), number(*depth))]
         StartsInside { body: String, collider: usize, kind: String, nodes: usize, deepest: u32, depth: f64, remedy: Remedy },
+        "contact.starts_across"
+        #[error("body `{body}` begins across obstacle {collider} ({kind}), which has no inside: every node stays on the side where it begins, so the obstacle pinches the body")]
+        #[hint("move the body or the obstacle")]
+        StartsAcross { body: String, collider: usize, kind: String },
         "contact.none"
         #[error("at t = {} s, {} through one another (first: `{first}` and `{second}`)", number(*time), if *pairs == 1 { "two bodies pass".into() } else { format!("{pairs} pairs of bodies pass") })]
         #[hint("a section `[contact]` keeps bodies apart")]

@@ -304,3 +304,69 @@ fn exact_steps_of_a_solid_that_slides_while_it_is_crushed_converge_whole_sweep()
         world.frame().expect("a frame");
     }
 }
+
+/// Soft rings press one another against the walls of a funnel. The walls are lines without an inside, so a node that contact pushes across one, by
+/// however little, would stay behind it.
+#[test]
+fn no_node_passes_through_the_wall_of_a_funnel() {
+    let text = scenes::find("funnel").expect("the scene of the funnel");
+    let (blueprint, _) =
+        scene::read(text.as_bytes(), "funnel", &catalogue(), &scene::Options::default()).expect("a scene");
+    let AnyBlueprint::Plane(blueprint) = blueprint else { panic!("the funnel is in the plane") };
+    let mut world = World::new(blueprint, Options::default()).expect("a world");
+    let inner = |[x, y]: [f64; 2]| match y {
+        y if y < -0.5 => f64::INFINITY,
+        y if y < 0.0 => 0.3 - x.abs(),
+        // The wall from (0.3, 0) to (1.7, 1.6).
+        y if y < 1.6 => (0.3 + 1.4 / 1.6 * y) - x.abs(),
+        _ => 1.7 - x.abs(),
+    };
+    while world.time() < 2.0 {
+        for body in 0..world.blueprint().bodies.len() {
+            for node in 0..world.node_count(body) as u32 {
+                let x = world.position(body, node);
+                assert!(inner(x) > 0.0, "node {node} of ring {body} is at {x:?} at t = {} s", world.time());
+            }
+        }
+        world.frame().expect("a frame");
+    }
+}
+
+#[test]
+fn a_body_that_begins_across_a_line_is_reported() {
+    let text = scenes::find("funnel").expect("the scene of the funnel");
+    let warnings = |text: &str| {
+        let (blueprint, _) =
+            scene::read(text.as_bytes(), "funnel", &catalogue(), &scene::Options::default()).expect("a scene");
+        let AnyBlueprint::Plane(blueprint) = blueprint else { panic!("the funnel is in the plane") };
+        let world = World::new(blueprint, Options::default()).expect("a world");
+        world.warnings().iter().map(|warning| warning.code.to_string()).collect::<Vec<_>>()
+    };
+    assert!(warnings(&text).is_empty());
+    let lower = text.replace("center = [-0.95, 2.1]", "center = [-0.95, 1.3]");
+    assert_eq!(warnings(&lower), ["contact.starts_across"; 2]);
+}
+
+#[test]
+fn a_thickness_that_a_body_cannot_have_is_refused_at_its_line() {
+    let funnel = scenes::find("funnel").expect("the scene of the funnel");
+    for (thickness, own, allowed) in
+        [(0.1, "", false), (0.1, "contact = { self = false }\n", true), (1.0, "contact = { self = false }\n", false)]
+    {
+        let text = funnel.replace("[contact]\n", &format!("[contact]\nthickness = {thickness}\n"));
+        let text = text.replace("name = \"ring\"\n", &format!("name = \"ring\"\n{own}"));
+        let (blueprint, _) =
+            scene::read(text.as_bytes(), "funnel", &catalogue(), &scene::Options::default()).expect("a scene");
+        let AnyBlueprint::Plane(blueprint) = blueprint else { panic!("the funnel is in the plane") };
+        match World::new(blueprint, Options::default()) {
+            Ok(_) => assert!(allowed, "{thickness} {own}"),
+            Err(error) => {
+                assert!(!allowed, "{error}");
+                let error = opruga::io::refusals::in_scene((&error).into(), &text, "funnel.toml", &[]);
+                assert_eq!(error.code, "contact.thickness");
+                let line = text.lines().position(|line| line.starts_with("thickness")).expect("the line") + 1;
+                assert!(error.to_string().contains(&format!("funnel.toml:{line}:")), "{error}");
+            }
+        }
+    }
+}
