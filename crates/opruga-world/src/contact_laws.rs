@@ -172,7 +172,9 @@ fn check_thickness<const D: usize>(
     let Some(thickness) = given.filter(|_| body.touches()) else { return Ok(()) };
     let refuse = |why: Refusal| Err(BuildError::of("contact", why));
     let shortest = shortest();
-    if touches_itself(contact, body) && thickness >= shortest {
+    // The edges of a wire in space touch only where they cross, so its neighbours do not push one another apart.
+    let has_facets = !body.touching_surface().facets.is_empty();
+    if has_facets && touches_itself(contact, body) && thickness >= shortest {
         return refuse(Refusal::Thickness { thickness, shortest });
     }
     let extent = |d: usize| {
