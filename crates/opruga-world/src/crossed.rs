@@ -257,8 +257,11 @@ impl<const D: usize> Surfaces<D> {
     }
 }
 
+/// Points and facets.
+type Thin<'a, const D: usize> = (&'a [[f64; D]], Vec<[u32; D]>);
+
 /// The points and facets of an obstacle without an inside; none if it has an inside.
-fn thin<const D: usize>(picture: &Picture<D>) -> Option<(&[[f64; D]], Vec<[u32; D]>)> {
+fn thin<const D: usize>(picture: &Picture<D>) -> Option<Thin<'_, D>> {
     match picture {
         Picture::Polyline { points, closed } => {
             let (count, sides) = (points.len(), points.len() - usize::from(!closed));

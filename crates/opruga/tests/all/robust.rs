@@ -342,7 +342,7 @@ fn a_body_that_begins_across_a_line_is_reported() {
         let world = World::new(blueprint, Options::default()).expect("a world");
         world.warnings().iter().map(|warning| warning.code.to_string()).collect::<Vec<_>>()
     };
-    assert!(warnings(&text).is_empty());
+    assert!(warnings(text).is_empty());
     let lower = text.replace("center = [-0.95, 2.1]", "center = [-0.95, 1.3]");
     assert_eq!(warnings(&lower), ["contact.starts_across"; 2]);
 }
