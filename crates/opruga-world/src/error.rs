@@ -29,7 +29,7 @@ fn falls(range: Option<f64>) -> &'static str {
     }
 }
 
-/// The other body, or "itself" if both are the same.
+/// What two surfaces do, or one with itself.
 fn meeting(first: &str, second: &str) -> String {
     if first == second {
         format!("the surface of `{first}` meets itself")
@@ -38,6 +38,7 @@ fn meeting(first: &str, second: &str) -> String {
     }
 }
 
+/// The other body, or "itself" if both are the same.
 fn other(first: &str, second: &str) -> String {
     if first == second { "itself".into() } else { format!("`{second}`") }
 }
