@@ -55,7 +55,7 @@ pub fn arrow_unit(kind: ArrowKind, length: &str) -> String {
 }
 
 /// Draws the pins, names and rubber lines of a picture, and the given arrows. `project` returns the pixel of a point, and `in_sight` returns whether
-/// a point of a surface is visible.
+/// a point is visible that lies at most a distance [m] below a surface.
 pub(crate) fn draw_marks(
     canvas: &mut Canvas,
     (picture, arrows): (&Picture, &[ArrowPicture]),
@@ -63,11 +63,12 @@ pub(crate) fn draw_marks(
     background: [u8; 3],
     unit: f32,
     project: &dyn Fn([f64; 3]) -> Option<[f32; 2]>,
-    in_sight: &dyn Fn([f64; 3]) -> bool,
+    in_sight: &dyn Fn([f64; 3], f64) -> bool,
 ) {
     for body in &picture.bodies {
         let pins = body.pinned.iter().map(|node| body.positions[*node as usize]);
-        let points: Vec<[f32; 2]> = pins.filter(|position| in_sight(*position)).filter_map(project).collect();
+        let points: Vec<[f32; 2]> =
+            pins.filter(|position| in_sight(*position, 0.5 * body.spring_width)).filter_map(project).collect();
         // Marks that would overlap are merged. If supports would be so close that they form a row, dots replace them.
         let supports = marks_apart(&points, 12.0 * unit);
         let row = marks_apart(&supports, SUPPORT_SPACING * unit).len() < supports.len();
@@ -77,7 +78,7 @@ pub(crate) fn draw_marks(
             marks_apart(&points, 7.0 * unit).into_iter().for_each(|point| canvas.disc(point, 2.2 * unit, INK));
         }
     }
-    draw_arrows(canvas, arrows, view, unit, project, in_sight);
+    draw_arrows(canvas, arrows, view, unit, project, &|point| in_sight(point, 0.0));
     for pull in &picture.pulls {
         if let (Some(node), Some(pointer)) = (project(pull.node), project(pull.pointer)) {
             rubber_line(canvas, node, pointer, unit);

@@ -117,6 +117,8 @@ pub struct BodyPicture {
     pub cells: Vec<[u32; 3]>,
     /// The springs, drawn as lines.
     pub segments: Vec<[u32; 2]>,
+    /// The width with which the springs are drawn in three dimensions [m]; lines are never thinner than in a body without this width.
+    pub spring_width: f64,
     /// One scalar per node, which determines its colour; may be empty.
     pub scalar: Vec<f64>,
     /// The colour of a body without scalars; if it is not given, the palette provides one.
@@ -148,6 +150,7 @@ impl Default for BodyPicture {
             facets: Facets::Edges(Vec::new()),
             cells: Vec::new(),
             segments: Vec::new(),
+            spring_width: 0.0,
             scalar: Vec::new(),
             colour: None,
             outlined: None,

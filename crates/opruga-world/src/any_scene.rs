@@ -121,6 +121,8 @@ pub trait AnyBody: core::fmt::Debug {
     fn integrator(&self) -> Option<&Values>;
     /// Depth out of the plane in 2D; in 3D the thickness of a sheet or the width of a wire [m].
     fn thickness(&self) -> f64;
+    /// Its own contact settings; `None` if it has none.
+    fn contact(&self) -> Option<&Values>;
     /// The number of nodes of its rest shape.
     fn nodes(&self) -> usize;
     /// The rest positions of its nodes, before the body is moved to its position in the scene [m]; z is 0 in the plane.
@@ -187,6 +189,9 @@ impl<const D: usize> AnyBody for BodyBlueprint<D> {
     }
     fn facets(&self) -> &[u32] {
         self.mesh.facets.as_flattened()
+    }
+    fn contact(&self) -> Option<&Values> {
+        self.contact.as_ref()
     }
     fn sheets(&self) -> &[[u32; 3]] {
         &self.mesh.sheets

@@ -73,7 +73,7 @@ pub(crate) fn scene(
         picture.arrows.iter().partition(|arrow| arrow.kind == ArrowKind::Pressure && leaves(picture, view, arrow));
     draw_arrows(&mut canvas, &beneath, view, unit, &project, &|_| true);
     bodies::draw(&mut canvas, picture, view, &projection, unit);
-    draw_marks(&mut canvas, (picture, &above), view, background, unit, &project, &|_| true);
+    draw_marks(&mut canvas, (picture, &above), view, background, unit, &project, &|_, _| true);
     Ok((scene, projection.scale))
 }
 

@@ -69,8 +69,9 @@ pub(crate) fn scene(
     let mut canvas = Canvas::new(&mut image);
     let project = |point| painter.camera.see(point).map(|seen| seen.pixel.map(|value| value / SAMPLES as f32));
     let inverse_distances = surfaces.as_deref().unwrap_or(&screen.inverse_distances);
-    draw_marks(&mut canvas, (picture, &picture.arrows), view, background, unit, &project, &|point| {
-        painter.in_sight([screen.width, screen.height], inverse_distances, point)
+    draw_marks(&mut canvas, (picture, &picture.arrows), view, background, unit, &project, &|point, below| {
+        let towards = camera::unit(between(point, painter.camera.position));
+        painter.in_sight([screen.width, screen.height], inverse_distances, camera::along(point, towards, below))
     });
     Ok((image, painter.camera.scale(view.center()) / SAMPLES as f64))
 }
@@ -120,6 +121,10 @@ impl Painter<'_> {
             shadow.triangles(screen, &self.camera, &body.positions, triangles(body));
             for segment in &body.segments {
                 let ends = segment.map(|node| body.positions[node as usize]);
+                if body.spring_width > 0.0 {
+                    let wire = shapes::wire(ends, body.spring_width);
+                    shadow.triangles(screen, &self.camera, &wire.positions, &wire.triangles);
+                }
                 shadow.line(screen, &self.camera, ends, 1.2 * self.unit);
             }
         }
@@ -221,6 +226,23 @@ impl Painter<'_> {
         }
     }
 
+    /// Draws the springs of a body as round wires.
+    fn wires(&self, screen: &mut Screen, body: &BodyPicture, base: [u8; 3]) {
+        let (map, of_nodes) = self.fractions(body);
+        for nodes in &body.segments {
+            let wire = shapes::wire(nodes.map(|node| body.positions[node as usize]), body.spring_width);
+            let half = wire.positions.len() / 2;
+            let mut fractions = Vec::new();
+            if !of_nodes.is_empty() {
+                fractions.extend((0..wire.positions.len()).map(|k| of_nodes[nodes[usize::from(k >= half)] as usize]));
+            }
+            let colouring =
+                if fractions.is_empty() { Colouring::Plain(base) } else { Colouring::mapped(map, &fractions) };
+            let surface = Surface { positions: &wire.positions, triangles: &wire.triangles, smooth: true };
+            shade::fill(screen, &self.camera, &self.light, &surface, &colouring);
+        }
+    }
+
     /// Draws a body without its nodes.
     fn body(&self, screen: &mut Screen, body: &BodyPicture, base: [u8; 3]) {
         for ends in &body.rest.segments {
@@ -237,6 +259,9 @@ impl Painter<'_> {
             Some(&fraction) => map.colour(f64::from(fraction)),
             None => darker(base),
         };
+        if body.spring_width > 0.0 {
+            self.wires(screen, body, base);
+        }
         let seen: Vec<Option<Seen>> = body.positions.iter().map(|&position| self.camera.see(position)).collect();
         let width = self.spring(body);
         for &[a, b] in &body.segments {
@@ -289,6 +314,31 @@ mod tests {
             let other = with.pixels().chunks_exact(4).zip(without.pixels().chunks_exact(4)).filter(|(a, b)| a != b);
             assert!(other.count() > 40, "with dots: {nodes_drawn}");
         }
+    }
+
+    #[test]
+    fn a_wire_is_as_wide_as_it_is_said_to_be_and_does_not_hide_its_pin() {
+        let drawn = |spring_width: f64, pinned: Vec<u32>| {
+            let body = BodyPicture {
+                positions: vec![[0.0, 0.5, 0.0], [1.0, 0.5, 0.0]],
+                facets: Facets::Triangles(Vec::new()),
+                segments: vec![[0, 1]],
+                spring_width,
+                pinned,
+                ..BodyPicture::default()
+            };
+            let region = Some([[0.0; 3], [1.0, 1.0, 0.1]]);
+            let sight = crate::Sight { region, azimuth: Some(0.0), elevation: Some(0.0) };
+            let picture = Picture { dimension: 3, bodies: vec![body], sight, ..Picture::default() };
+            let view = View::fit([&picture]).expect("a view");
+            let image = scene(&picture, &view, [255; 3], [200, 200], 1.0).expect("an image").0;
+            image.pixels().chunks_exact(4).map(<[u8]>::to_vec).collect::<Vec<_>>()
+        };
+        let area = |width: f64| drawn(width, Vec::new()).iter().filter(|p| p[..3] != [255; 3]).count() as f64;
+        let ratio = area(0.2) / area(0.1);
+        assert!((1.8..2.3).contains(&ratio), "{ratio}");
+        let (with, without) = (drawn(0.1, vec![0]), drawn(0.1, Vec::new()));
+        assert!(with.iter().zip(&without).filter(|(a, b)| a != b).count() > 20);
     }
 
     #[test]

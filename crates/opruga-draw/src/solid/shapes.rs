@@ -47,8 +47,8 @@ pub(crate) fn shape(collider: &ColliderPicture) -> Option<Shape> {
             }
             Some(shape)
         }
-        ColliderPicture::Ball { center, radius } => Some(capsule(*center, *center, ROUND * radius)),
-        ColliderPicture::Capsule { a, b, radius } => Some(capsule(*a, *b, ROUND * radius)),
+        ColliderPicture::Ball { center, radius } => Some(capsule(*center, *center, ROUND * radius, FINE)),
+        ColliderPicture::Capsule { a, b, radius } => Some(capsule(*a, *b, ROUND * radius, FINE)),
         ColliderPicture::Polygon(points) => {
             let triangles = (2..points.len() as u32).map(|last| [0, last - 1, last]).collect();
             Some(Shape { positions: points.clone(), triangles })
@@ -60,14 +60,22 @@ pub(crate) fn shape(collider: &ColliderPicture) -> Option<Shape> {
     }
 }
 
+/// The numbers of points around an obstacle and along it, and those of a piece of a wire, of which there are many.
+const FINE: [u32; 2] = [48, 26];
+const COARSE: [u32; 2] = [16, 10];
+
+/// A round piece of a wire. The points of its second half belong to its second end.
+pub(crate) fn wire(ends: [[f64; 3]; 2], width: f64) -> Shape {
+    capsule(ends[0], ends[1], 0.5 * width, COARSE)
+}
+
 /// The surface of a capsule; a ball if both ends are equal.
-fn capsule(a: [f64; 3], b: [f64; 3], radius: f64) -> Shape {
+fn capsule(a: [f64; 3], b: [f64; 3], radius: f64, [around, rings]: [u32; 2]) -> Shape {
     let axis = unit(super::camera::between(a, b));
     let axis = if axis == [0.0; 3] { [0.0, 1.0, 0.0] } else { axis };
     let other = if axis[0].abs() < 0.7 { [1.0, 0.0, 0.0] } else { [0.0, 0.0, 1.0] };
     let side = unit(cross(axis, other));
     let third = cross(axis, side);
-    let (around, rings) = (48_u32, 26_u32);
     let mut shape = Shape::default();
     for ring in 0..rings {
         // The straight part has a ring at each of its ends, so there are two rings in the middle.

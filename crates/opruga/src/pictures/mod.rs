@@ -12,7 +12,7 @@ use crate::draw::{
     Sight,
 };
 use crate::mesh::{Skin, triangle_parts};
-use crate::{AnyBody, AnyWorld};
+use crate::{AnyBody, AnyScene, AnyWorld};
 use opruga_core::spec::Role;
 pub use quantity::Quantity;
 use quantity::{push_quantity, strain};
@@ -47,6 +47,8 @@ struct Fixed {
     facets: Facets,
     cells: Vec<[u32; 3]>,
     segments: Vec<[u32; 2]>,
+    /// The distance that contact keeps between wires, if the scene gives it [m].
+    wire_width: f64,
     /// The edges and their rest lengths, from which the strain is computed for the colours.
     edges: Vec<([u32; 2], f64)>,
     pinned: Vec<u32>,
@@ -134,6 +136,7 @@ impl Scenery {
                     edges.clone()
                 },
                 facets,
+                wire_width: wire_width(scene, body),
                 cells: if flat { triangles(body) } else { Vec::new() },
                 edges: edges.iter().map(|e| (*e, length(e))).collect(),
                 nodes_drawn: present <= 2 && positions.len() <= 64,
@@ -266,6 +269,7 @@ impl Scenery {
                 facets: fixed.facets.clone(),
                 cells: fixed.cells.clone(),
                 segments: fixed.springs.as_ref().unwrap_or(&fixed.segments).clone(),
+                spring_width: if fixed.springs.is_none() { fixed.wire_width } else { 0.0 },
                 colour: None,
                 outlined: None,
                 nodes_drawn: (fixed.nodes_drawn && areas.is_empty()) || fixed.springs.is_some(),
@@ -292,6 +296,15 @@ impl Scenery {
             legend: moment.quantity.legend(),
         }
     }
+}
+
+/// The distance that contact keeps between the wires of a body without a surface, if the scene gives it; otherwise 0 [m].
+fn wire_width(scene: &dyn AnyScene, body: &dyn AnyBody) -> f64 {
+    let Some(contact) = scene.contact().filter(|_| body.facets().is_empty() && body.sheets().is_empty()) else {
+        return 0.0;
+    };
+    let own = body.contact().and_then(|own| own.number("thickness"));
+    own.or_else(|| contact.values.number("thickness")).unwrap_or(0.0)
 }
 
 /// The triangles that fill the cells of a body in a plane.
