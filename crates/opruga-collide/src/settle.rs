@@ -83,6 +83,7 @@ impl<const D: usize> Touching<D> {
         }
         self.losses.clear();
         self.losses.resize(self.changed.len(), [0.0; 4]);
+        self.find_held(h);
         for row in &self.rows {
             if row.normal_impulse == 0.0 {
                 continue;
@@ -92,9 +93,10 @@ impl<const D: usize> Touching<D> {
                     continue;
                 }
                 let (v0, v1) = (&self.before[1][p as usize], &self.v[p as usize]);
-                // The velocity of a coupled point is already the mean velocity of the step. If a point of a coupled body
-                // responds by itself in this step, it gets its impulse at the end of the step.
-                let v0 = match (self.coupled.body_of(p), self.coupled.has(p)) {
+                // The velocity of a coupled point is already the mean velocity of the step. A point of a coupled body that responds by itself in
+                // this step, and a point that an obstacle has stopped in the free motion, get their impulses at the end of the step.
+                let is_at_end = self.coupled.has(p) || self.held[self.number[p as usize] as usize];
+                let v0 = match (self.coupled.body_of(p), is_at_end) {
                     (Some(_), _) => v1,
                     (None, true) => &self.after[1][p as usize],
                     (None, false) => v0,
@@ -118,15 +120,19 @@ impl<const D: usize> Touching<D> {
             }
         }
         self.zones.book(&self.before[1], &self.v, &self.inverse_mass, &self.number, &mut self.losses);
-        for (p, losses) in self.changed.iter().zip(&mut self.losses) {
+        for (k, (p, losses)) in self.changed.iter().zip(&mut self.losses).enumerate() {
             let p = *p as usize;
+            // With these integrators, the energy changes along the path h v₁ cancel in the sum over steps.
+            let telescopes = self.kicked_by_first_force.get(self.surface.body[p] as usize) == Some(&true);
             for d in (0..D).filter(|_| self.coupled.body_of(p as u32).is_none()) {
                 let inverse = self.inverse_mass[p][d];
                 if inverse > 0.0 {
                     let (v0, free, v1) = (self.before[1][p][d], self.after[1][p][d], self.v[p][d]);
                     let travel = self.end[p][d] - self.before[0][p][d];
-                    let by_velocity = if self.coupled.has(p as u32) {
+                    let by_velocity = if self.coupled.has(p as u32) || self.held[k] {
                         self.after[0][p][d] - self.before[0][p][d]
+                    } else if telescopes {
+                        h * v1
                     } else {
                         0.5 * h * (v0 + v1)
                     };
@@ -134,6 +140,20 @@ impl<const D: usize> Touching<D> {
                     self.after[0][p][d] = self.end[p][d];
                     self.after[1][p][d] = v1;
                 }
+            }
+        }
+    }
+
+    /// Finds the changed points that obstacles hold at the end of the free motion. The ledger already contains the work of these obstacles.
+    fn find_held(&mut self, h: f64) {
+        self.held.clear();
+        self.held.resize(self.changed.len(), false);
+        for row in self.rows.iter().filter(|row| row.of_obstacle) {
+            let p = row.points[0] as usize;
+            let [start, end] = [&self.before[0][p], &self.after[0][p]];
+            let travel: [f64; D] = core::array::from_fn(|d| end[d] - start[d] - h * row.carry[d]);
+            if self.touched[p] && row.gap + dot(&travel, &row.normal) < OVERLAP * self.thickest[0] {
+                self.held[self.number[p] as usize] = true;
             }
         }
     }

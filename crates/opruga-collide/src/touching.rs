@@ -40,6 +40,8 @@ pub struct Touching<const D: usize> {
     pub inverse_mass: Vec<[f64; D]>,
     /// Bodies whose points respond together. Their velocities after the motion are the mean velocities of the step.
     pub coupled: Coupled<D>,
+    /// For every body, whether its integrator changes velocities by the force at the start of the step alone. A missing entry means no.
+    pub kicked_by_first_force: Vec<bool>,
     /// Positions [m] and velocities [m/s] of the points at the start of the step.
     pub before: [Vec<[f64; D]>; 2],
     /// Positions and velocities of the points after the free motion. Contact replaces the values of touching points by its result.
@@ -123,6 +125,8 @@ pub struct Touching<const D: usize> {
     pub(crate) masses: Vec<f64>,
     pub(crate) multipliers: Vec<f64>,
     pub(crate) touched: Vec<bool>,
+    /// For every changed point, whether an obstacle holds it at the end of the free motion.
+    pub(crate) held: Vec<bool>,
     /// The index of every changed point in the list of changed points.
     pub(crate) number: Vec<u32>,
     pub(crate) turns: Turns<D>,

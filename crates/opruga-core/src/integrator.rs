@@ -66,6 +66,11 @@ pub trait Integrator<const D: usize>: Send + Sync + Debug {
     fn makes_least_of_contact(&self) -> bool {
         false
     }
+    /// Whether it changes velocities by h F₀/m alone, with the force F₀ at the start of the step. If a point then moves by h v₁, its energy changes in a
+    /// step by ½h (F₀·v₀ − F₁·v₁), up to terms of higher order. These changes cancel in the sum over steps.
+    fn kicks_by_first_force(&self) -> bool {
+        false
+    }
     /// Whether its steps distribute the work on one system over [`System::threads`].
     fn shares_threads(&self) -> bool {
         false

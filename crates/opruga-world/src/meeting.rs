@@ -118,6 +118,7 @@ impl<const D: usize> Meeting<D> {
                 touching.inverse_mass.push(inverse);
                 points.push((island as u32, *index));
             }
+            touching.kicked_by_first_force.push(integrator.kicks_by_first_force());
             if integrator.takes_pushes() {
                 touching.coupled.add(first as usize..first as usize + indices.len());
                 pushed.push(Pushed::new(island, indices.clone()));

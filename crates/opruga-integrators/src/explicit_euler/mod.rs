@@ -58,6 +58,9 @@ impl<const D: usize> Integrator<D> for ExplicitEuler {
     fn name(&self) -> &'static str {
         SPEC.kind
     }
+    fn kicks_by_first_force(&self) -> bool {
+        true
+    }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         Amplification::new([[1.0, h], [-omega * omega * h, 1.0 - c * h]])
     }

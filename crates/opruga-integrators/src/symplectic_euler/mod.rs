@@ -48,6 +48,9 @@ impl<const D: usize> Integrator<D> for SymplecticEuler {
     fn name(&self) -> &'static str {
         SPEC.kind
     }
+    fn kicks_by_first_force(&self) -> bool {
+        true
+    }
     fn amplification(&self, omega: f64, c: f64, h: f64) -> Amplification {
         let (k, d) = (-omega * omega * h, 1.0 - c * h);
         Amplification::new([[1.0 + h * k, h * d], [k, d]])
