@@ -2,6 +2,7 @@
 
 use opruga::math::message::AnyMessage;
 use opruga::math::words::{counted, number, rounded};
+use opruga::world::error::Crossing;
 
 opruga::math::messages! {
     /// Why a call is refused.
@@ -127,16 +128,6 @@ opruga::math::messages! {
         Stdout { reason: String },
         "interrupted" #[error("interrupted; the files are closed")]
         Interrupted {},
-    }
-    /// How two surfaces cross.
-    #[derive(Clone, Debug, PartialEq)]
-    pub(crate) enum Crossing {
-        "part.crossing" #[error("facets {first} and {second} of body `{body}` cross")]
-        Within { first: u32, second: u32, body: String },
-        "part.crossing" #[error("facet {first} of body `{body}` and facet {second} of body `{other}` cross")]
-        Between { first: u32, body: String, second: u32, other: String },
-        "part.crossing" #[error("one of the bodies `{body}` and `{other}` lies inside the other")]
-        Inside { body: String, other: String },
     }
     /// Why a check of a run has failed.
     #[derive(Clone, Debug, PartialEq)]

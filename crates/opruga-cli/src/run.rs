@@ -2,7 +2,7 @@
 
 use crate::arguments::Run;
 use crate::checkpoints::{self, Calling, Keeper, SavedRun};
-use crate::errors::{CallFault, CallNote, CallRange, CallWarning, CheckFault, Crossing};
+use crate::errors::{CallFault, CallNote, CallRange, CallWarning, CheckFault};
 use crate::failure::{Failure, print_data, print_note, print_warning};
 use crate::forecast::{Forecast, duration};
 use crate::interrupt;
@@ -19,6 +19,7 @@ use opruga::io::safe_write::WriteError;
 use opruga::io::scene;
 use opruga::math::words::rounded;
 use opruga::recordings::TapeHint;
+use opruga::world::error::Crossing;
 use opruga::{AnyWorld, Options, Registries, Simd, Warning};
 use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
@@ -216,6 +217,9 @@ impl Job<'_> {
         // The time for collecting data is not part of the time of the steps.
         let mut looking = recorder.record(&mut *world);
         keeper.begin(&recorder.table)?;
+        if call.check_contact {
+            failure = crossed(&*world);
+        }
         while failure.is_none() && world.frames() < frames {
             if stop.load(Ordering::Relaxed) {
                 failure = Some(Failure::Interrupted);
@@ -342,15 +346,8 @@ fn progress_bar(frames: u64) -> indicatif::ProgressBar {
 /// The failure if surfaces of the world cross.
 fn crossed(world: &dyn AnyWorld) -> Option<Failure> {
     let found = world.crossed_surfaces();
-    let first = found.first()?;
     let name = |body: usize| world.scene().body(body).map_or("", |body| body.name()).to_owned();
-    let itself = first.bodies[0] == first.bodies[1];
-    let [body, other] = first.bodies.map(name);
-    let crossing = match first.facets {
-        Some([first, second]) if itself => Crossing::Within { first, second, body },
-        Some([first, second]) => Crossing::Between { first, body, second, other },
-        None => Crossing::Inside { body, other },
-    };
+    let crossing = Crossing::of(found.first()?, name);
     Some(Failure::Check(match (world.time(), found.len()) {
         (time, 1) => CheckFault::Crossed { time, crossing },
         (time, pairs) => CheckFault::CrossedByPairs { time, crossing, pairs },

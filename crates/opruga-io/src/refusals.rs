@@ -107,6 +107,7 @@ fn path_of(error: &WorldError) -> String {
         | WorldError::Meet { first: name, .. }
         | WorldError::LedThrough { first: name, .. } => body(name),
         WorldError::Path { path, .. } => path.clone(),
+        WorldError::Cross { .. } => "contact.response".into(),
         WorldError::Snapshot { .. }
         | WorldError::Overflow { .. }
         | WorldError::TooManyContacts { .. }

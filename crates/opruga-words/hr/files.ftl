@@ -245,9 +245,6 @@ part-picture_list-PinnedNodes = njegovi pričvršćeni čvorovi
 
 write-failed-Stdout = stdout se ne može pisati: { $reason }
 interrupted-Interrupted = prekinuto; datoteke su zatvorene
-part-crossing-Within = strane { $first } i { $second } tijela `{ $body }` sijeku se
-part-crossing-Between = strana { $first } tijela `{ $body }` i strana { $second } tijela `{ $other }` sijeku se
-part-crossing-Inside = od tijela `{ $body }` i `{ $other }` jedno leži u drugome
 contact-crossed-Crossed = u t = { $time } s { $crossing }
 contact-crossed-CrossedByPairs = u t = { $time } s { $crossing }; parova tijela ukupno: { $pairs }
 

@@ -383,8 +383,13 @@ run-overflow-Overflow = energija ili količina gibanja svih tijela zajedno prera
 limit-contacts-TooManyContacts = u jednom koraku moglo bi se dodirnuti više od { $most } parova vrhova, bridova i ploha, u sličici od t = { $last } s; svijet je na zadnjoj dobroj sličici
     .allowed = { $most }
     .hint = veći `most_pairs` u `[contact]` ili grublje plohe
-contact-surfaces_meet-Meet = plohe `{ $first }` i `{ $second }` dodiruju se u t = { $time } s, a barijera treba razmak; svijet je na zadnjoj dobroj sličici
+contact-surfaces_meet-Meet = plohe `{ $first }` i `{ $second }` bliže su od svoje debljine (`thickness`) u t = { $time } s, a barijera treba veći razmak; svijet je na zadnjoj dobroj sličici
     .hint = tijela koja počinju odvojena, manji `thickness`, ili `response = "constraint"`
+contact-surfaces_meet-Cross = u t = { $time } s { $crossing } (parova tijela ukupno: { $pairs }), a barijera drži razmaknutima samo plohe koje se ne sijeku
+    .hint = tijela koja počinju odvojena, ili `response = "constraint"`, koji ih razmiče
+part-crossing-Within = strane { $first } i { $second } tijela `{ $body }` sijeku se
+part-crossing-Between = strana { $first } tijela `{ $body }` i strana { $second } tijela `{ $other }` sijeku se
+part-crossing-Inside = od tijela `{ $body }` i `{ $other }` jedno leži u drugome
 contact-led_through-LedThrough = učvršćenja i prepreke vode `{ $first }` kroz `{ $second }` u t = { $time } s; svijet je na zadnjoj dobroj sličici
     .hint = drugi put onoga što ih vodi, ili `touch = false` za taj par
 run-broken_off-BrokenOff = sličica je prekinuta; svijet je na zadnjoj dobroj sličici

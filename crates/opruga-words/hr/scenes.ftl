@@ -31,6 +31,7 @@ part-condition-Given = uz `{ $field }`
 part-condition-GivenOneOf = uz { $fields }
 part-condition-NotGiven = bez `{ $field }`
 part-condition-NotZero = gdje `{ $field }` nije 0
+part-condition-Section = u sceni s odjeljkom `[{ $section }]`
 
 ## ValueError
 
@@ -103,6 +104,7 @@ part-scene_hint-NoQuotes = napiši to bez navodnika
 part-scene_hint-DecimalPoint = veći broj napiši s decimalnom točkom
 part-scene_hint-Misspelt = `{ $word }` je krivo napisano
 part-scene_hint-BeginFormat = započni datoteku s format = "{ $format }"
+part-scene_hint-Section = napiši [{ $name }]
 part-scene_hint-Sections = napiši [[{ $name }]]
 part-scene_hint-Inline = napiši { $name } = [ {"{"} … {"}"} ]
 part-scene_hint-KindSet = `{ $table }.kind` je postavljen na `{ $kind }`, a druga su polja ostala; --set { $table }={ $kind } uzima njegove zadane vrijednosti

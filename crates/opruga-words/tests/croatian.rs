@@ -30,7 +30,7 @@ fn variants() -> impl Iterator<Item = &'static Variant> {
         opruga::recordings::MESSAGES,
         opruga::scenes::MESSAGES,
         &[call_errors::CallError::VARIANTS, call_errors::CallRange::VARIANTS, call_errors::CallFault::VARIANTS],
-        &[call_errors::OutputError::VARIANTS, call_errors::Crossing::VARIANTS, call_errors::CheckFault::VARIANTS],
+        &[call_errors::OutputError::VARIANTS, call_errors::CheckFault::VARIANTS],
         &[call_errors::CallWarning::VARIANTS, call_errors::ResumeHint::VARIANTS, call_errors::CallNote::VARIANTS],
         &[call_errors::Shorter::VARIANTS, start_errors::StartError::VARIANTS],
         opruga::draw::MESSAGES,

@@ -142,7 +142,8 @@ pub(crate) fn reach_of(contact: &ContactBlueprint, mean_edge: f64, shortest: f64
     is_barrier(contact).then(|| contact.values.number("reach").unwrap_or(own))
 }
 
-fn is_barrier(contact: &ContactBlueprint) -> bool {
+/// Whether a barrier keeps bodies apart.
+pub(crate) fn is_barrier(contact: &ContactBlueprint) -> bool {
     contact.values.text("response") == Some("barrier")
 }
 

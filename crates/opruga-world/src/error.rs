@@ -1,5 +1,6 @@
 //! Errors of a world.
 
+use crate::crossed::Crossed;
 use crate::schema::MOST_SUBSTEPS;
 use opruga_core::error::{BuildError, StepError, what_was_left};
 use opruga_math::message::{AnyMessage, Message};
@@ -32,10 +33,15 @@ fn falls(range: Option<f64>) -> &'static str {
 /// What two surfaces do, or one with itself.
 fn meeting(first: &str, second: &str) -> String {
     if first == second {
-        format!("the surface of `{first}` meets itself")
+        format!("parts of the surface of `{first}` are closer to one another than its thickness")
     } else {
-        format!("the surfaces of `{first}` and `{second}` meet")
+        format!("the surfaces of `{first}` and `{second}` are closer to one another than their thickness")
     }
+}
+
+/// How many pairs of bodies cross, if there are several.
+fn others(pairs: usize) -> String {
+    if pairs > 1 { format!("; in all, {pairs} pairs of bodies cross") } else { String::new() }
 }
 
 /// The other body, or "itself" if both are the same.
@@ -73,6 +79,17 @@ messages! {
         Collider { index: usize },
         "part.place" #[error("{path}")]
         Section { path: &'static str },
+    }
+
+    /// Surfaces that cross.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum Crossing {
+        "part.crossing" #[error("facets {first} and {second} of body `{body}` cross")]
+        Within { first: u32, second: u32, body: String },
+        "part.crossing" #[error("facet {first} of body `{body}` and facet {second} of body `{other}` cross")]
+        Between { first: u32, body: String, second: u32, other: String },
+        "part.crossing" #[error("one of the bodies `{body}` and `{other}` lies inside the other")]
+        Inside { body: String, other: String },
     }
 
     /// The reasons why a world could not be built, changed or stepped. The world is as it was before the call.
@@ -117,9 +134,14 @@ messages! {
         /// Surfaces that a barrier should keep apart meet. The second surface belongs to another body, the same body, or an obstacle. Contains the
         /// time at the end of the substep \[s\].
         "contact.surfaces_meet"
-        #[error("{} at t = {} s, but a barrier needs a gap; the world is at its last good frame", meeting(first, second), number(*time))]
+        #[error("{} at t = {} s, but a barrier needs a larger distance; the world is at its last good frame", meeting(first, second), number(*time))]
         #[hint("move the bodies apart, or use a smaller `thickness` or `response = \"constraint\"`")]
         Meet { first: String, second: String, time: f64 },
+        /// Surfaces that a barrier should keep apart cross before the frame. Contains the number of pairs of bodies that cross, and the time \[s\].
+        "contact.surfaces_meet"
+        #[error("at t = {} s, {crossing}{}, but a barrier keeps apart only surfaces that do not cross", number(*time), others(*pairs))]
+        #[hint("move the bodies apart, or use `response = \"constraint\"`, which moves them apart")]
+        Cross { crossing: Crossing, pairs: usize, time: f64 },
         /// Pins and obstacles move a body through another body, itself, or an obstacle. Contains the time at the end of the substep \[s\].
         "contact.led_through"
         #[error("pins and obstacles move `{first}` through {} at t = {} s; the world is at its last good frame", other(first, second), number(*time))]
@@ -142,6 +164,19 @@ impl Part {
     /// A body by its name.
     pub fn body(name: &str) -> Part {
         Part::Body { name: name.into() }
+    }
+}
+
+impl Crossing {
+    /// What two bodies do, given their names.
+    pub fn of(crossed: &Crossed, name: impl Fn(usize) -> String) -> Crossing {
+        let [first, second] = crossed.bodies;
+        let (body, other) = (name(first), name(second));
+        match crossed.facets {
+            None => Crossing::Inside { body, other },
+            Some([first, second]) if body == other => Crossing::Within { first, second, body },
+            Some([first, second]) => Crossing::Between { first, body, second, other },
+        }
     }
 }
 

@@ -70,11 +70,21 @@ impl<const D: usize> World<D> {
                 };
                 problems.extend(refused(part(vec![alone], Vec::new(), Vec::new())).filter(own));
             }
-            if !problems[start..].contains(&first) {
+            if !problems[start..].contains(&first)
+                && !problems[..start].iter().any(|known| is_same_setting(known, &first))
+            {
                 problems.insert(start, first);
             }
         }
         problems
+    }
+}
+
+/// Whether two errors of different bodies have the same cause in `[contact]`.
+fn is_same_setting(a: &WorldError, b: &WorldError) -> bool {
+    match (a, b) {
+        (WorldError::Build { source: a, .. }, WorldError::Build { source: b, .. }) => a.kind == "contact" && a == b,
+        _ => false,
     }
 }
 

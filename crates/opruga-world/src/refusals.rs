@@ -64,7 +64,7 @@ messages! {
         ModesMemory { count: usize, axes: usize, bytes: String, most: String },
         "modes.indefinite" #[error("this state has no natural frequencies, because its stiffness is not finite or is far from positive definite")]
         Indefinite {},
-        "contact.implicit" #[error("bodies with `{integrator}` cannot touch bodies with `{other}`: one integrator finds a state of rest, the other follows a motion")]
+        "contact.implicit" #[error("a body with `{integrator}` cannot touch body `{other}`: one of their integrators finds a state of rest, the other follows a motion")]
         #[allowed("integrators that all find states of rest, or all follow motions")]
         #[hint("`contact.touch = false` of a body lets it pass through the others")]
         RestBesideMotion { integrator: &'static str, other: String },

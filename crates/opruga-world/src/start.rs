@@ -97,6 +97,7 @@ impl<const D: usize> World<D> {
         };
         world.regroup(&Touched::All, &states)?;
         world.check_stability()?;
+        world.refuse_what_meets()?;
         world.warn_of_buried_bodies();
         world.warn_of_pinched_bodies();
         world.warn_of_slender_cells();

@@ -1,7 +1,8 @@
 //! Steps a world through a frame, and reverts a frame that fails.
 
 use crate::clusters::Clusters;
-use crate::error::WorldError;
+use crate::contact_laws::is_barrier;
+use crate::error::{Crossing, WorldError};
 use crate::island::{FramePlan, Island};
 use crate::scene_contact::{MadeFor, SceneContact};
 use crate::together;
@@ -151,13 +152,14 @@ impl<const D: usize> World<D> {
     }
 
     /// Refuses surfaces that cross, because a barrier would keep them crossed.
-    fn refuse_what_meets(&self) -> Result<(), WorldError> {
-        if self.clusters.as_ref().is_none_or(|clusters| clusters.scene.reach.is_none()) {
+    pub(crate) fn refuse_what_meets(&self) -> Result<(), WorldError> {
+        if !self.blueprint.contact.as_ref().is_some_and(is_barrier) {
             return Ok(());
         }
-        let Some(crossed) = self.crossed_surfaces().first().copied() else { return Ok(()) };
-        let [first, second] = crossed.bodies.map(|body| self.blueprint.bodies[body].name.clone());
-        Err(WorldError::Meet { first, second, time: self.time() })
+        let crossed = self.crossed_surfaces();
+        let Some(first) = crossed.first() else { return Ok(()) };
+        let crossing = Crossing::of(first, |body| self.blueprint.bodies[body].name.clone());
+        Err(WorldError::Cross { crossing, pairs: crossed.len(), time: self.time() })
     }
 
     /// The error for bodies that touch and could not be stepped through a frame.

@@ -1,6 +1,6 @@
 //! Warnings of a world as values.
 
-use crate::error::{Part, WorldError};
+use crate::error::{Crossing, Part, WorldError};
 use crate::faults::{BlueprintFault, NameFault};
 use crate::path_faults::{Content, PathFault, Promised, SnapshotFault};
 use crate::refusals::Refusal;
@@ -23,6 +23,7 @@ pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     WorldWarning::VARIANTS,
     Refusal::VARIANTS,
     Part::VARIANTS,
+    Crossing::VARIANTS,
     WorldError::VARIANTS,
     PathFault::VARIANTS,
     SnapshotFault::VARIANTS,

@@ -29,6 +29,8 @@ messages! {
         NotGiven { field: &'static str },
         "part.condition" #[error("if `{field}` is not 0")]
         NotZero { field: &'static str },
+        "part.condition" #[error("in a scene with `[{section}]`")]
+        Section { section: &'static str },
     }
 }
 

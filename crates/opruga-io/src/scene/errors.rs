@@ -128,6 +128,8 @@ messages! {
         Misspelt { word: String },
         "part.scene_hint" #[error("begin the file with format = \"{format}\"")]
         BeginFormat { format: &'static str },
+        "part.scene_hint" #[error("write [{name}]")]
+        Section { name: String },
         "part.scene_hint" #[error("write [[{name}]]")]
         Sections { name: String },
         "part.scene_hint" #[error("write {name} = [ {{ … }} ]")]

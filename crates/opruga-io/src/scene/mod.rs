@@ -26,7 +26,7 @@ mod velocities;
 pub mod written;
 
 use crate::catalogue::Catalogue;
-use crate::document::{self, Location, Node};
+use crate::document::{self, Data, Location, Node};
 use crate::files::Files;
 pub use crate::limits::Limits;
 use crate::overrides;
@@ -281,7 +281,14 @@ fn surroundings<const D: usize>(reader: &mut Reader<'_>, root: &Node) -> Surroun
 
 /// `[contact]`.
 fn contact<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies<D>) -> Option<ContactBlueprint> {
-    let node = root.get("contact")?;
+    let Some(node) = root.get("contact") else {
+        if let Some(Data::Array(bodies)) = root.get("body").map(|bodies| &bodies.data) {
+            for (number, body) in bodies.iter().enumerate() {
+                reader.needs_section(body, &format!("body.{number}"), "contact");
+            }
+        }
+        return None;
+    };
     let values = reader.fields(node, "contact", &schema::CONTACT, None);
     let mut pairs = Vec::new();
     for (item, path) in reader.list(node, "contact", "pair") {

@@ -6,7 +6,7 @@ use crate::catalogue::{Catalogue, find};
 use crate::document::{Data, Entry, Location, Node};
 use crate::problem::{MOST_SHOWN, Notice, SceneError, visible};
 use crate::source::Source;
-use opruga_core::spec::{ChoiceError, Default, Spec, Values, nearest, quoted};
+use opruga_core::spec::{ChoiceError, ConditionText, Default, Spec, Values, nearest, quoted};
 use opruga_world::schema::{self, Child, Section};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -190,6 +190,10 @@ impl<'a> Reader<'a> {
         let mut values = Values::defaults(section.spec, self.dimension);
         if !matches!(node.data, Data::Table(_)) {
             self.wrong_type(node, path, Wanted::Table);
+            let is_section = !path.contains('.') && matches!(node.data, Data::Array(_));
+            if let Some(error) = self.errors.last_mut().filter(|_| is_section) {
+                *error = error.clone().advice(SceneHint::Section { name: path.into() });
+            }
             return values;
         }
         let names = || names(section, tag);
@@ -268,6 +272,14 @@ impl<'a> Reader<'a> {
             let about = SceneError::of(about).path(join(path, field));
             self.notice(entry.location, about);
         }
+    }
+
+    /// Reports a field that has no effect because the scene has no section with its name.
+    pub(crate) fn needs_section(&mut self, node: &Node, path: &str, field: &'static str) {
+        let Some(entry) = node.entry(field) else { return };
+        let (condition, value) = (ConditionText::Section { section: field }, entry.value.shown());
+        let about = FieldError::NoEffect { field, condition, value };
+        self.notice(entry.location, SceneError::of(about).path(join(path, field)));
     }
 
     /// Reports all missing fields of a table at once, except those that a misspelt name probably means.

@@ -3,6 +3,11 @@
 use super::{Child, Holds, Section, child, section};
 use opruga_core::spec::{Allowed, Bound, Condition, Default, Field};
 
+/// What a barrier does not use: it keeps bodies apart before they touch, so nothing bounces or overlaps.
+const WITHOUT_BARRIER: &[Condition] = &[Condition::Word("response", &["constraint"])];
+
+const IF_IT_TOUCHES: &[Condition] = &[Condition::Given("touch")];
+
 const FRICTION: &str =
     "Coulomb's coefficient µ, for both sticking and sliding; two bodies use the mean of their values.";
 const RESTITUTION: &str =
@@ -38,14 +43,16 @@ surfaces, but at most half of the shortest edge.",
             )
             .applies(&[Condition::Word("response", &["barrier"])]),
             Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Number(0.0), FRICTION),
-            Field::new("restitution", Allowed::FRACTION, "", Default::Number(0.0), RESTITUTION),
+            Field::new("restitution", Allowed::FRACTION, "", Default::Number(0.0), RESTITUTION)
+                .applies(WITHOUT_BARRIER),
             Field::new(
                 "rest_speed",
                 Allowed::NOT_NEGATIVE,
                 "m/s",
                 Default::Number(0.05),
                 "Speed of approach up to which a pair does not bounce.",
-            ),
+            )
+            .applies(WITHOUT_BARRIER),
             Field::new("thickness", Allowed::POSITIVE, "m", Default::Absent, THICKNESS),
             Field::new(
                 "recovery_speed",
@@ -54,7 +61,8 @@ surfaces, but at most half of the shortest edge.",
                 Default::Number(0.5),
                 "The speed at which bodies that overlap are moved apart. Only positions are changed; the work of these changes against forces is \
 entered in the ledger as `work_correction`.",
-            ),
+            )
+            .applies(WITHOUT_BARRIER),
             Field::new("self", Allowed::Boolean, "", Default::Boolean(true), "Whether a body touches itself."),
             Field::new(
                 "most_pairs",
@@ -91,14 +99,16 @@ share it. If there are several entries for two groups, the last one applies.",
                 "",
                 Default::Absent,
                 "Coulomb's coefficient µ between the two groups.",
-            ),
+            )
+            .applies(IF_IT_TOUCHES),
             Field::new(
                 "restitution",
                 Allowed::FRACTION,
                 "",
                 Default::Absent,
                 "Ratio of the normal speeds after and before an impact between the two groups.",
-            ),
+            )
+            .applies(IF_IT_TOUCHES),
         ],
     ),
     children: &[],
@@ -117,11 +127,13 @@ pub const BODY_CONTACT: Section = Section {
                 "",
                 Default::Absent,
                 "The group of the body in `[[contact.pair]]`; the default is the name of the body.",
-            ),
-            Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Absent, FRICTION),
-            Field::new("restitution", Allowed::FRACTION, "", Default::Absent, RESTITUTION),
-            Field::new("thickness", Allowed::POSITIVE, "m", Default::Absent, THICKNESS),
-            Field::new("self", Allowed::Boolean, "", Default::Absent, "Whether the body touches itself."),
+            )
+            .applies(IF_IT_TOUCHES),
+            Field::new("friction", Allowed::NOT_NEGATIVE, "", Default::Absent, FRICTION).applies(IF_IT_TOUCHES),
+            Field::new("restitution", Allowed::FRACTION, "", Default::Absent, RESTITUTION).applies(IF_IT_TOUCHES),
+            Field::new("thickness", Allowed::POSITIVE, "m", Default::Absent, THICKNESS).applies(IF_IT_TOUCHES),
+            Field::new("self", Allowed::Boolean, "", Default::Absent, "Whether the body touches itself.")
+                .applies(IF_IT_TOUCHES),
             Field::new(
                 "surface",
                 Allowed::Choice(&["skin", "cells"]),
@@ -129,7 +141,8 @@ pub const BODY_CONTACT: Section = Section {
                 Default::Text("skin"),
                 "For a body filled by a lattice, the surface that touches other bodies: `skin` is the drawn surface, which the lattice carries; \
 `cells` is the boundary of the cells of the lattice, which lies outside the skin.",
-            ),
+            )
+            .applies(IF_IT_TOUCHES),
             Field::new(
                 "touch",
                 Allowed::Boolean,

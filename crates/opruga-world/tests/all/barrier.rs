@@ -5,6 +5,7 @@ use crate::implicit_contact::{force_on, heavy, square_over_a_box};
 use opruga_core::spec::Value;
 use opruga_mesh::Mesh;
 use opruga_world::blueprint::*;
+use opruga_world::error::Crossing;
 use opruga_world::{Options, World, WorldError};
 
 const RULES: [&str; 4] = ["backward_euler", "bdf2", "implicit_midpoint", "newmark"];
@@ -223,11 +224,30 @@ fn a_barrier_refuses_explicit_rules_and_surfaces_that_meet() {
     };
     let refused = World::new(with("verlet", 1.5), Options::default()).expect_err("an explicit rule");
     assert!(refused.to_string().contains("barrier"), "{refused}");
-    let mut world = world(&with("backward_euler", 0.9));
+    let error = World::new(with("backward_euler", 0.9), Options::default()).expect_err("they cross");
+    let crosses =
+        |crossing: &Crossing| matches!(crossing, Crossing::Between { body, other, .. } if body == "a" && other == "b");
+    assert!(matches!(&error, WorldError::Cross { crossing, pairs: 1, .. } if crosses(crossing)), "{error}");
+    // A program can also move a body into another one between two frames.
+    let mut world = world(&with("backward_euler", 1.5));
+    for node in 0..world.node_count(1) as u32 {
+        let [x, y] = world.position(1, node);
+        world.set_node(1, node, [x - 0.6, y], [0.0; 2]).expect("a node");
+    }
     let before = world.position(0, 0);
     let error = world.frame().expect_err("they cross");
-    assert!(matches!(&error, WorldError::Meet { first, second, .. } if first == "a" && second == "b"), "{error}");
+    assert!(matches!(&error, WorldError::Cross { crossing, .. } if crosses(crossing)), "{error}");
     assert_eq!(world.position(0, 0), before);
+}
+
+#[test]
+fn a_fault_of_contact_is_listed_once_for_all_bodies() {
+    let bodies = ["a", "b", "c"].iter().enumerate();
+    let body = |(k, name): (usize, &&str)| block(name, [1.0; 2], [2; 2], [2.0 * k as f64, 0.0], 1.0, 1e4);
+    let mut scene = heavy("verlet", bodies.map(body).collect(), 1);
+    scene.contact = contact::<2>(&[("response", "barrier".into())]);
+    let problems = World::problems(&scene, &Options::default(), &std::sync::Arc::default());
+    assert_eq!(problems.iter().map(WorldError::code).collect::<Vec<_>>(), ["contact.barrier"]);
 }
 
 /// In space, with crossing edges and a sheet over them, with exact steps and in real time.

@@ -29,6 +29,7 @@ fn a_field_that_another_switches_off_is_told_of_with_what_it_needs() {
     let obstacle = |fields: &str| {
         explicit.clone() + &format!("[[collider]]\nkind = \"ball\"\nradius = 1.0\ncenter = [9, 0]\n{fields}\n")
     };
+    let contact = |fields: &str| explicit.clone() + &format!("[contact]\n{fields}\n");
     let cases = [
         (
             explicit.clone() + &body(square, "", &format!("{fem}, mooney_share = 0.3")),
@@ -62,6 +63,12 @@ fn a_field_that_another_switches_off_is_told_of_with_what_it_needs() {
         (obstacle("pivot = [0, 0]\nspin = 1.0") + &body(square, "", fem), None),
         (obstacle("rest_speed = 0.1") + &body(square, "", fem), Some("if `restitution` is not 0")),
         (obstacle("rest_speed = 0.1\nrestitution = 0.5") + &body(square, "", fem), None),
+        (explicit.clone() + &body(square, "contact = { group = \"a\" }", fem), Some("in a scene with `[contact]`")),
+        (contact("") + &body(square, "contact = { group = \"a\" }", fem), None),
+        (contact("") + &body(square, "contact = { touch = false, friction = 0.3 }", fem), Some("with `touch`")),
+        (contact("restitution = 0.5"), None),
+        (contact("response = \"barrier\"\nrestitution = 0.5"), Some("if `response` is \"constraint\"")),
+        (contact("reach = 0.1"), Some("if `response` is \"barrier\"")),
     ];
     for (text, expected) in cases {
         let found = notices(&text);
@@ -87,8 +94,10 @@ fn no_shipped_scene_has_a_field_without_effect() {
 #[test]
 fn conditions_name_fields_and_words_that_exist() {
     let catalogue = catalogue();
-    let sections = [schema::SCENE, schema::TIME, schema::WORLD, schema::BODY, schema::PIN, schema::COPIES];
-    let mut specs: Vec<&Spec> = sections.iter().map(|section| section.spec).collect();
+    let of_contact = [schema::CONTACT, schema::CONTACT_PAIR, schema::BODY_CONTACT];
+    let others = [schema::SCENE, schema::TIME, schema::WORLD, schema::BODY, schema::PIN, schema::COPIES];
+    let sections = others.into_iter().chain(of_contact);
+    let mut specs: Vec<&Spec> = sections.map(|section| section.spec).collect();
     specs.extend(catalogue.models.iter().chain(&catalogue.integrators).chain(&catalogue.colliders));
     specs.extend(opruga::shapes::all());
     let mut conditions = 0;
