@@ -45,8 +45,8 @@ const KEPT: f64 = 0.1;
 const PARALLEL: f64 = 1e-3;
 
 /// The stiffness of sticking, relative to the stiffness of the pair. The ratio of this stiffness to the response of the bodies determines the number
-/// of rounds for the multipliers. With 1000 instead, the search for the equilibrium of a stack of five blocks alternates between sticking and
-/// sliding.
+/// of rounds for the multipliers; where they converge slowly, the caller increases it. With 1000 from the beginning, the search for the equilibrium of
+/// a stack of five blocks alternates between sticking and sliding.
 const STICKING: f64 = 10.0;
 
 /// A pair within reach of the barrier.
@@ -96,13 +96,14 @@ pub struct Rubbing<const D: usize> {
 }
 
 impl<const D: usize> Pressed<D> {
-    /// Returns the friction of the pair. Only the part of the multiplier that is perpendicular to the normal counts, up to µ N.
-    pub fn rubbing(&self, multiplier: [f64; D]) -> Rubbing<D> {
+    /// Returns the friction of the pair. Only the part of the multiplier that is perpendicular to the normal counts, up to µ N. Sticking is `stiffer`
+    /// times as stiff as at first.
+    pub fn rubbing(&self, multiplier: [f64; D], stiffer: f64) -> Rubbing<D> {
         let Pressed { id, points, weights, normal, .. } = *self;
         let across = subtract(&multiplier, &scaled(&normal, dot(&multiplier, &normal)));
         let (size, most) = (length(&across), self.friction * self.force);
         let multiplier = if size > most { scaled(&across, most / size) } else { across };
-        Rubbing { id, points, weights, normal, most, stiffness: STICKING * self.stiffness, multiplier }
+        Rubbing { id, points, weights, normal, most, stiffness: stiffer * STICKING * self.stiffness, multiplier }
     }
 }
 

@@ -135,6 +135,7 @@ impl<const D: usize> Meeting<D> {
             has_budget,
             converged: true,
             stretch: 1.0,
+            sticking: 1.0,
             staying,
         };
         search.find_softness()?;

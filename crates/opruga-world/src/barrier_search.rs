@@ -41,6 +41,11 @@ const MOST_IN_BUDGET: u32 = 100;
 const MOST_ROUNDS: u32 = 30;
 const SETTLED: f64 = 1e-3;
 
+/// If a round leaves more than this fraction of the slip of the previous round, sticking becomes ten times as stiff; if the slip grows, a tenth as stiff
+/// (Nocedal and Wright, Numerical optimization, framework 17.3). With constant stiffness, half of the steps of two gas rings end before friction has
+/// settled (`friction_between_gas_rings_settles_in_every_step`).
+const SLOW: f64 = 0.5;
+
 /// The fraction of the initial residual at which a search with a budget ends. With 0.2 instead, the impact of 27 cubes creates 4 % of the energy in
 /// motion, and the ledger of a tower closes to 2 % (`a_barrier_with_a_budget_leaves_bodies_where_exact_steps_do`).
 const ENOUGH: f64 = 0.05;
@@ -117,6 +122,8 @@ pub(crate) struct Search<'a, 'b, const D: usize> {
     pub(crate) converged: bool,
     /// The factor by which the next correction is lengthened.
     pub(crate) stretch: f64,
+    /// The factor by which sticking is stiffer than at first.
+    pub(crate) sticking: f64,
     /// The terms that keep bodies at rest near their present positions during a correction; `None` for moving bodies.
     pub(crate) staying: Option<Staying>,
 }
@@ -205,6 +212,7 @@ impl<const D: usize> Search<'_, '_, D> {
         // Bodies that come to rest reach equilibrium only when friction is known. Until then friction is updated after every correction: without
         // friction a sliding body may have its only equilibrium far away (`stacks_come_to_their_balance`).
         let (mut precise, mut rounds) = (self.staying.is_none(), 0);
+        let mut last = f64::INFINITY;
         while rounds < MOST_ROUNDS {
             self.converged = true;
             let found = self.find_minimum(precise)?;
@@ -215,10 +223,23 @@ impl<const D: usize> Search<'_, '_, D> {
             let multipliers = self.multipliers();
             before = std::mem::take(&mut self.rubbing);
             self.rub(&multipliers);
-            let settled = found && self.is_settled(&before);
+            let change = self.change_of_friction(&before);
+            let settled = found && change <= SETTLED;
             if settled && precise {
                 self.rubbing = before;
                 return Ok(());
+            }
+            if precise && found {
+                // A stiffer multiplier changes more for the same slip.
+                let slip = change / self.sticking;
+                self.sticking *= if slip > last {
+                    0.1
+                } else if slip > SLOW * last {
+                    10.0
+                } else {
+                    1.0
+                };
+                last = slip;
             }
             precise |= settled;
             rounds += u32::from(found);
@@ -247,11 +268,11 @@ impl<const D: usize> Search<'_, '_, D> {
         let known =
             |id: u64| multipliers.binary_search_by_key(&id, |(id, _)| *id).map_or([0.0; D], |k| multipliers[k].1);
         let rubs = self.pressed.iter().filter(|pair| pair.friction > 0.0 && pair.force > 0.0);
-        self.rubbing = rubs.map(|pair| pair.rubbing(known(pair.id))).collect();
+        self.rubbing = rubs.map(|pair| pair.rubbing(known(pair.id), self.sticking)).collect();
     }
 
-    /// Whether friction has the same values as in the search that has just ended.
-    fn is_settled(&self, before: &[Rubbing<D>]) -> bool {
+    /// The largest change of a friction force since the search that has just ended, as a fraction of the largest possible friction force.
+    fn change_of_friction(&self, before: &[Rubbing<D>]) -> f64 {
         let (mut most, mut changed): (f64, f64) = (0.0, 0.0);
         for rub in &self.rubbing {
             let force = rub.force(&rub.slip(&self.moved));
@@ -261,7 +282,7 @@ impl<const D: usize> Search<'_, '_, D> {
             most = rub.most.larger(most);
             changed = (0..D).map(|d| (force[d] - old[d]).abs()).sum::<f64>().larger(changed);
         }
-        changed <= SETTLED * most
+        if changed > 0.0 { changed / most } else { 0.0 }
     }
 
     /// Minimises the sum at given friction by Newton's method. If `precise` is set, continues until the residual is below the tolerance of the

@@ -171,7 +171,7 @@ fn friction_is_the_derivative_of_its_energy() {
     let barrier = barrier(&surface, &x, &mut seed);
     for pair in pressed(&barrier, &surface, &x) {
         let most = pair.friction * pair.force;
-        let rub = pair.rubbing([0.3 * most, 0.0, 0.2 * most]);
+        let rub = pair.rubbing([0.3 * most, 0.0, 0.2 * most], 1.0);
         for size in [0.1, 5.0] {
             let mut moved = vec![[0.0; 3]; x.len()];
             for p in pair.points {

@@ -281,3 +281,29 @@ fn solids_and_a_sheet_rest_in_space() {
         assert!(world.energy().kinetic < 1e-3, "{accuracy}: {:?}", world.energy());
     }
 }
+
+/// Light rings give way easily, so a multiplier that is only as stiff as the pair approaches its value in dozens of rounds.
+#[test]
+fn friction_between_gas_rings_settles_in_every_step() {
+    let ring = |name: &str, x: [f64; 2]| {
+        let ring = Mesh::ring(0.5, 36, [0.0; 2], 0.0).expect("a ring");
+        let models = vec![
+            model::<2>("mass_spring", &[("stiffness", 900.0), ("damping", 1.0)]),
+            model::<2>("bending", &[("stiffness", 0.1)]),
+            model::<2>("pressure", &[("nRT", 60.0), ("ambient", 20.0)]),
+        ];
+        BodyBlueprint { translation: x, ..BodyBlueprint::new(name, ring, Mass::Total(1.0), models) }
+    };
+    let mut scene = scene("backward_euler", vec![ring("low", [0.0, 0.55]), ring("high", [0.1, 1.7])]);
+    scene.surroundings.gravity = [0.0, -9.81];
+    scene.time = Time { seconds: 2.0, frame: 1.0 / 60.0, substeps: 2 };
+    scene.contact = contact::<2>(&[("response", "barrier".into()), ("friction", 0.4.into())]);
+    let fields = [("normal", Value::Numbers(vec![0.0, 1.0])), ("friction", 0.4.into())];
+    scene.colliders.push(ColliderBlueprint::new::<2>("half_space", &fields).expect("a floor"));
+    let mut world = world(&scene);
+    for _ in 0..60 {
+        world.frame().expect("a frame");
+    }
+    assert!(world.energy().loss_friction > 0.01, "they rub: {:?}", world.energy());
+    assert!(world.warnings().iter().all(|warning| warning.code != "step.not_converged"), "{:?}", world.warnings());
+}
