@@ -83,7 +83,7 @@ impl<const D: usize> Touching<D> {
         }
         self.losses.clear();
         self.losses.resize(self.changed.len(), [0.0; 4]);
-        self.find_held(h);
+        self.find_stopped(h);
         for row in &self.rows {
             if row.normal_impulse == 0.0 {
                 continue;
@@ -95,7 +95,7 @@ impl<const D: usize> Touching<D> {
                 let (v0, v1) = (&self.before[1][p as usize], &self.v[p as usize]);
                 // The velocity of a coupled point is already the mean velocity of the step. A point of a coupled body that responds by itself in
                 // this step, and a point that an obstacle has stopped in the free motion, get their impulses at the end of the step.
-                let is_at_end = self.coupled.has(p) || self.held[self.number[p as usize] as usize];
+                let is_at_end = self.coupled.has(p) || self.stopped[self.number[p as usize] as usize];
                 let v0 = match (self.coupled.body_of(p), is_at_end) {
                     (Some(_), _) => v1,
                     (None, true) => &self.after[1][p as usize],
@@ -129,7 +129,7 @@ impl<const D: usize> Touching<D> {
                 if inverse > 0.0 {
                     let (v0, free, v1) = (self.before[1][p][d], self.after[1][p][d], self.v[p][d]);
                     let travel = self.end[p][d] - self.before[0][p][d];
-                    let by_velocity = if self.coupled.has(p as u32) || self.held[k] {
+                    let by_velocity = if self.coupled.has(p as u32) || self.stopped[k] {
                         self.after[0][p][d] - self.before[0][p][d]
                     } else if telescopes {
                         h * v1
@@ -145,15 +145,15 @@ impl<const D: usize> Touching<D> {
     }
 
     /// Finds the changed points that obstacles hold at the end of the free motion. The ledger already contains the work of these obstacles.
-    fn find_held(&mut self, h: f64) {
-        self.held.clear();
-        self.held.resize(self.changed.len(), false);
+    fn find_stopped(&mut self, h: f64) {
+        self.stopped.clear();
+        self.stopped.resize(self.changed.len(), false);
         for row in self.rows.iter().filter(|row| row.of_obstacle) {
             let p = row.points[0] as usize;
             let [start, end] = [&self.before[0][p], &self.after[0][p]];
             let travel: [f64; D] = core::array::from_fn(|d| end[d] - start[d] - h * row.carry[d]);
             if self.touched[p] && row.gap + dot(&travel, &row.normal) < OVERLAP * self.thickest[0] {
-                self.held[self.number[p] as usize] = true;
+                self.stopped[self.number[p] as usize] = true;
             }
         }
     }

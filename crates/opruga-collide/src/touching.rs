@@ -126,7 +126,7 @@ pub struct Touching<const D: usize> {
     pub(crate) multipliers: Vec<f64>,
     pub(crate) touched: Vec<bool>,
     /// For every changed point, whether an obstacle holds it at the end of the free motion.
-    pub(crate) held: Vec<bool>,
+    pub(crate) stopped: Vec<bool>,
     /// The index of every changed point in the list of changed points.
     pub(crate) number: Vec<u32>,
     pub(crate) turns: Turns<D>,
@@ -304,7 +304,7 @@ impl<const D: usize> Touching<D> {
                     return Ok(false);
                 }
                 self.settle(h);
-                if self.at_once && !self.is_within_limit() {
+                if !self.is_within_limit() {
                     return Ok(false);
                 }
             } else {
@@ -333,9 +333,19 @@ impl<const D: usize> Touching<D> {
         Ok(true)
     }
 
-    /// Whether no point of a body moves farther than allowed.
+    /// Whether no coupled point moves farther than allowed. Contact pushes points of moving bodies at most by the largest extent of a body and its free
+    /// motion. Impulses that have not converged can exceed this, and the search for pairs along such paths would take forever.
     fn is_within_limit(&self) -> bool {
-        let within = |p: usize| length(&subtract(&self.end[p], &self.before[0][p])) <= self.farthest;
+        if self.coupled.apart && !self.at_once {
+            return true;
+        }
+        let (from, farthest) = if self.at_once {
+            (&self.before[0], self.farthest)
+        } else {
+            let extents = self.reach.bodies.iter().map(|body| length(&subtract(&body.hull[1], &body.hull[0])));
+            (&self.after[0], extents.fold(0.0, f64::larger))
+        };
+        let within = |p: usize| length(&subtract(&self.end[p], &from[p])) <= farthest;
         (0..self.coupled.count()).all(|body| self.coupled.points_of(body).all(within))
     }
 

@@ -1,6 +1,7 @@
 //! Whether surfaces of a world cross: a check that shares no code with the detection of contact.
 
 use crate::contact_laws::laws;
+use crate::error::Crossing;
 use crate::warnings::{Warning, WorldWarning};
 use crate::world::World;
 use opruga_collide::{Laws, Picture};
@@ -14,6 +15,19 @@ pub struct Crossed {
     /// A facet of each surface, numbered in this order: boundary or skin, open surfaces, wires. None if one body lies inside the other without
     /// crossing it.
     pub facets: Option<[u32; 2]>,
+}
+
+impl Crossing {
+    /// What two bodies do, given their names.
+    pub fn of(crossed: &Crossed, name: impl Fn(usize) -> String) -> Crossing {
+        let [first, second] = crossed.bodies;
+        let (body, other) = (name(first), name(second));
+        match crossed.facets {
+            None => Crossing::Inside { body, other },
+            Some([first, second]) if body == other => Crossing::Within { first, second, body },
+            Some([first, second]) => Crossing::Between { first, body, second, other },
+        }
+    }
 }
 
 /// A body with points inside another body.

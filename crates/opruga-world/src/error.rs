@@ -1,6 +1,5 @@
 //! Errors of a world.
 
-use crate::crossed::Crossed;
 use crate::schema::MOST_SUBSTEPS;
 use opruga_core::error::{BuildError, StepError, what_was_left};
 use opruga_math::message::{AnyMessage, Message};
@@ -164,19 +163,6 @@ impl Part {
     /// A body by its name.
     pub fn body(name: &str) -> Part {
         Part::Body { name: name.into() }
-    }
-}
-
-impl Crossing {
-    /// What two bodies do, given their names.
-    pub fn of(crossed: &Crossed, name: impl Fn(usize) -> String) -> Crossing {
-        let [first, second] = crossed.bodies;
-        let (body, other) = (name(first), name(second));
-        match crossed.facets {
-            None => Crossing::Inside { body, other },
-            Some([first, second]) if body == other => Crossing::Within { first, second, body },
-            Some([first, second]) => Crossing::Between { first, body, second, other },
-        }
     }
 }
 

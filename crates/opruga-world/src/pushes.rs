@@ -93,6 +93,16 @@ impl<const D: usize> Respond<D> for Answers<'_, '_, D> {
     }
 }
 
+/// Whether the steps of bodies were repeated because they did not end where the impulses should have taken them.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Again {
+    No,
+    Yes,
+    /// The repeated steps end farther away than the first ones, and by more than the distance up to which surfaces count as close. The bodies then
+    /// respond so differently from the linear prediction that further rounds would move them ever farther.
+    Diverges,
+}
+
 impl<const D: usize> Meeting<D> {
     /// Begins a frame and discards the results of the previous one.
     pub(crate) fn begin(&mut self) {
@@ -145,7 +155,11 @@ impl<const D: usize> Meeting<D> {
             let agreed: &[_] = if self.touching.has_budget { &AGREED_IN_BUDGET } else { &AGREED };
             let agreed = agreed.iter().find(|(before, _)| round < *before);
             let enough = agreed.map_or(f64::INFINITY, |(_, part)| part * thickness);
-            if !self.step_again(islands, step, enough) {
+            let again = self.step_again(islands, step, enough);
+            if again == Again::Diverges {
+                return Ok(false);
+            }
+            if again == Again::No {
                 let nobody_pushes = (0..self.pushed.len()).all(|body| {
                     self.pushed[body].applied.is_empty() && self.touching.coupled.impulses_on(body).next().is_none()
                 });
@@ -166,18 +180,24 @@ impl<const D: usize> Meeting<D> {
         Ok(false)
     }
 
-    /// Repeats the steps of bodies that do not end where the impulses should take them; returns whether there are any.
-    fn step_again(&mut self, islands: &mut [&mut Island<D>], step: &Substep<'_, D>, enough: f64) -> bool {
+    /// The largest distance between the end positions of points and those to which the impulses should take them [m].
+    fn missed(&self, islands: &[&mut Island<D>]) -> f64 {
         let mut most: f64 = 0.0;
         for (body, Pushed { island, indices, .. }) in self.pushed.iter().enumerate() {
             let x = &islands[*island].system.state.x;
             most = self.touching.missed_by(body, indices.iter().map(|k| x.at(*k as usize))).larger(most);
         }
+        most
+    }
+
+    /// Repeats the steps of bodies that do not end where the impulses should take them.
+    fn step_again(&mut self, islands: &mut [&mut Island<D>], step: &Substep<'_, D>, enough: f64) -> Again {
+        let most = self.missed(islands);
         let as_before = (0..self.pushed.len()).all(|body| {
             self.touching.coupled.impulses_on(body).next().is_some() != self.pushed[body].applied.is_empty()
         });
         if most <= enough && (as_before || enough == f64::INFINITY) {
-            return false;
+            return Again::No;
         }
         // All bodies whose impulses have changed, because impulses act in pairs.
         for (body, pushed) in self.pushed.iter_mut().enumerate() {
@@ -192,7 +212,24 @@ impl<const D: usize> Meeting<D> {
             island.step_together(step.plan, step.number, &mut self.workspace);
             pushed.matrix = None;
         }
-        true
+        let now = self.missed(islands);
+        if now > most && now > self.touching.margin {
+            self.take_back_pushes(islands, step);
+            return Again::Diverges;
+        }
+        Again::Yes
+    }
+
+    /// Repeats the steps of pushed bodies without contact forces.
+    fn take_back_pushes(&mut self, islands: &mut [&mut Island<D>], step: &Substep<'_, D>) {
+        for pushed in self.pushed.iter_mut().filter(|pushed| !pushed.applied.is_empty()) {
+            let island = &mut islands[pushed.island];
+            island.system.pushes = Some(Vec::new());
+            island.rewind();
+            island.step_together(step.plan, step.number, &mut self.workspace);
+            pushed.applied.clear();
+            pushed.matrix = None;
+        }
     }
 
     /// Lets contact change velocities after the steps if steps and contact do not agree. If all bodies of the meeting have implicit integrators, they
