@@ -117,7 +117,7 @@ pub struct BodyPicture {
     pub cells: Vec<[u32; 3]>,
     /// The springs, drawn as lines.
     pub segments: Vec<[u32; 2]>,
-    /// The width with which the springs are drawn in three dimensions [m]; lines are never thinner than in a body without this width.
+    /// The width of the springs in three dimensions [m]. Springs are drawn as lines too, so that thin ones remain visible.
     pub spring_width: f64,
     /// One scalar per node, which determines its colour; may be empty.
     pub scalar: Vec<f64>,

@@ -59,6 +59,15 @@ impl<const D: usize> Pushed<D> {
         Pushed { island, indices, applied: Vec::new(), matrix: None }
     }
 
+    /// Repeats the step of the body without contact forces.
+    pub(crate) fn step_without(&mut self, island: &mut Island<D>, step: &Substep<'_, D>, workspace: &mut Workspace<D>) {
+        island.system.pushes = Some(Vec::new());
+        island.rewind();
+        island.step_together(step.plan, step.number, workspace);
+        self.applied.clear();
+        self.matrix = None;
+    }
+
     /// The forces of its impulses in a substep of h [s], by their index into the columns of its island [N].
     pub(crate) fn forces(&self, h: f64) -> Vec<(usize, [f64; D])> {
         let force = |(point, impulse): &(usize, [f64; D])| (self.indices[*point] as usize, impulse.map(|c| c / h));

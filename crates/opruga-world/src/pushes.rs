@@ -223,12 +223,7 @@ impl<const D: usize> Meeting<D> {
     /// Repeats the steps of pushed bodies without contact forces.
     fn take_back_pushes(&mut self, islands: &mut [&mut Island<D>], step: &Substep<'_, D>) {
         for pushed in self.pushed.iter_mut().filter(|pushed| !pushed.applied.is_empty()) {
-            let island = &mut islands[pushed.island];
-            island.system.pushes = Some(Vec::new());
-            island.rewind();
-            island.step_together(step.plan, step.number, &mut self.workspace);
-            pushed.applied.clear();
-            pushed.matrix = None;
+            pushed.step_without(islands[pushed.island], step, &mut self.workspace);
         }
     }
 
@@ -244,9 +239,7 @@ impl<const D: usize> Meeting<D> {
                 continue;
             }
             if back {
-                island.system.pushes = Some(Vec::new());
-                island.rewind();
-                island.step_together(step.plan, step.number, &mut self.workspace);
+                pushed.step_without(island, step, &mut self.workspace);
             } else {
                 let first = self.touching.coupled.points_of(body).start;
                 for (point, impulse) in &pushed.applied {

@@ -229,18 +229,19 @@ impl Painter<'_> {
     /// Draws the springs of a body as round wires.
     fn wires(&self, screen: &mut Screen, body: &BodyPicture, base: [u8; 3]) {
         let (map, of_nodes) = self.fractions(body);
+        let (mut positions, mut triangles, mut fractions) = (Vec::new(), Vec::new(), Vec::new());
         for nodes in &body.segments {
             let wire = shapes::wire(nodes.map(|node| body.positions[node as usize]), body.spring_width);
-            let half = wire.positions.len() / 2;
-            let mut fractions = Vec::new();
+            let (first, half) = (positions.len() as u32, wire.positions.len() / 2);
+            triangles.extend(wire.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
             if !of_nodes.is_empty() {
                 fractions.extend((0..wire.positions.len()).map(|k| of_nodes[nodes[usize::from(k >= half)] as usize]));
             }
-            let colouring =
-                if fractions.is_empty() { Colouring::Plain(base) } else { Colouring::mapped(map, &fractions) };
-            let surface = Surface { positions: &wire.positions, triangles: &wire.triangles, smooth: true };
-            shade::fill(screen, &self.camera, &self.light, &surface, &colouring);
+            positions.extend(wire.positions);
         }
+        let colouring = if fractions.is_empty() { Colouring::Plain(base) } else { Colouring::mapped(map, &fractions) };
+        let surface = Surface { positions: &positions, triangles: &triangles, smooth: true };
+        shade::fill(screen, &self.camera, &self.light, &surface, &colouring);
     }
 
     /// Draws a body without its nodes.
