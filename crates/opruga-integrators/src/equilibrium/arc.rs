@@ -206,7 +206,8 @@ fn directions<const D: usize>(
         contacting.hold(&workspace.u, 1.0, &workspace.pin_displacement, &workspace.x0, free, projectors, prescribed);
     let mixture = mixture(system, mass, balance, Definiteness::Exact, &rule.settings);
     linear.assemble(&mixture);
-    let contact_query = ContactQuery::new(system, balance, &workspace.x0, &workspace.u, workspace.extent);
+    let state = [&workspace.x0[..], &workspace.u, &workspace.pin_displacement];
+    let contact_query = ContactQuery::new(system, balance, state, workspace.extent);
     contacting.derivatives(&contact_query, false, &mut |node, block| linear.add_block(&mixture, node, &block));
     let filter = Filter { free, projectors };
     linear.factor(&filter)?;

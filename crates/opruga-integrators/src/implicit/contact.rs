@@ -72,6 +72,15 @@ const MOST_CHANGES: u8 = 4;
 /// Depths and slides below this fraction of the extent of a body count as zero.
 pub(crate) const SMALL: f64 = 1e-9;
 
+/// The least part of a direction that other held directions must leave free, so that it counts as a direction of its own.
+const INDEPENDENT: f64 = 1e-6;
+
+/// Whether pins alone determine the motion of a node along a normal. An obstacle then neither moves the node nor bears a force.
+pub(super) fn pins_decide<const D: usize>(pin_displacement: &[f64], normal: &[f64; D]) -> bool {
+    let free = |d: usize| if pin_displacement[d].is_nan() { normal[d] * normal[d] } else { 0.0 };
+    (0..D).map(free).sum::<f64>() < INDEPENDENT * INDEPENDENT
+}
+
 pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     let mut sum = 0.0;
     for d in 0..D {
@@ -146,7 +155,7 @@ impl<const D: usize> Contacting<D> {
     /// Depths below a billionth of the extent do not count. Nodes that hit a surface with friction are first assumed to stick,
     /// or to slide if `impacts_slide` is set.
     pub(crate) fn look(&mut self, contact_query: &ContactQuery<'_, D>, impacts_slide: bool) -> bool {
-        let ContactQuery { system, x0, u, theta, h, extent } = *contact_query;
+        let ContactQuery { system, x0, u, pin_displacement, theta, h, extent } = *contact_query;
         let Some(obstacles) = &system.contacts else {
             self.contacts.clear();
             return false;
@@ -171,7 +180,12 @@ impl<const D: usize> Contacting<D> {
             let reach = if old.is_empty() { small } else { 0.1 * extent };
             self.found.clear();
             let found = &mut self.found;
-            obstacles.touch(from, &to, time, h, reach, &mut |touch| found.push(touch));
+            let pins = &pin_displacement[node * D..(node + 1) * D];
+            obstacles.touch(from, &to, time, h, reach, &mut |touch| {
+                if !pins_decide(pins, &touch.normal) {
+                    found.push(touch);
+                }
+            });
             // If a fast node crossed a surface, its first contact comes from the crossing. From then on, the contact is found
             // where the node is near the surface.
             for contact in old {
@@ -276,7 +290,7 @@ impl<const D: usize> Contacting<D> {
                 }
                 let size = dot(&rest, &rest).sqrt();
                 // A direction is not added if it is already held, or nearly so.
-                if rank == D || size < 1e-6 {
+                if rank == D || size < INDEPENDENT {
                     return;
                 }
                 let missing = (distance - dot(direction, displacement)) / size;

@@ -9,6 +9,8 @@ pub(crate) struct ContactQuery<'a, const D: usize> {
     pub(crate) system: &'a System<D>,
     pub(crate) x0: &'a [f64],
     pub(crate) u: &'a [f64],
+    /// How far pinned axes have to move in the stage [m]; NaN for free axes.
+    pub(crate) pin_displacement: &'a [f64],
     pub(crate) theta: f64,
     pub(crate) h: f64,
     pub(crate) extent: f64,
@@ -18,10 +20,9 @@ impl<'a, const D: usize> ContactQuery<'a, D> {
     pub(crate) fn new(
         system: &'a System<D>,
         balance: &Balance,
-        x0: &'a [f64],
-        u: &'a [f64],
+        [x0, u, pin_displacement]: [&'a [f64]; 3],
         extent: f64,
     ) -> ContactQuery<'a, D> {
-        ContactQuery { system, x0, u, theta: balance.theta, h: balance.h, extent }
+        ContactQuery { system, x0, u, pin_displacement, theta: balance.theta, h: balance.h, extent }
     }
 }

@@ -95,6 +95,7 @@ pub(super) fn find_direction<const D: usize>(
         contacting,
         friction,
         u,
+        pin_displacement,
         x0,
         extent,
         rigid,
@@ -103,7 +104,7 @@ pub(super) fn find_direction<const D: usize>(
     } = workspace;
     let mixture = mixture(system, mass, balance, keep.definiteness(), settings);
     linear.assemble(&mixture);
-    let contact_query = ContactQuery::new(system, balance, x0, u, *extent);
+    let contact_query = ContactQuery::new(system, balance, [x0, u, pin_displacement], *extent);
     contacting
         .derivatives(&contact_query, keep != Keep::Exact, &mut |node, block| linear.add_block(&mixture, node, &block));
     if let Keep::Raised(part) = keep {

@@ -168,8 +168,9 @@ pub(super) fn end<R: Rule<D>, const D: usize>(
     for k in 0..workspace.memory.len() {
         workspace.memory[k] = rule.remembered(workspace, k, h);
     }
-    let Workspace { contacting, mass, residual, x0, v0, u1, v1, memory, struck, extent, .. } = workspace;
-    contacting.expel(system, x0, u1, residual, h, *extent);
+    let Workspace { contacting, mass, residual, x0, v0, u1, v1, pin_displacement, memory, struck, extent, .. } =
+        workspace;
+    contacting.expel(system, [x0, residual, pin_displacement], u1, h, *extent);
     let ending = Ending { mass, reaction: residual, x0, v0, balance, extent: *extent };
     contacting.end(system, &ending, v1, memory, struck);
 }

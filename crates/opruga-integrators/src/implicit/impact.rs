@@ -1,7 +1,7 @@
 //! The effect of obstacles at the end of a step: on nodes that are still inside, on velocities, and on the ledger.
 
 use super::balance::Balance;
-use super::contact::{Contact, Contacting, Hold, SMALL, dot, split};
+use super::contact::{Contact, Contacting, Hold, SMALL, dot, pins_decide, split};
 use opruga_core::contacts::Touch;
 use opruga_core::system::{System, Work8};
 use opruga_math::{Lane, WIDTH};
@@ -13,13 +13,12 @@ const MOVES_ALONG: f64 = 0.1;
 
 impl<const D: usize> Contacting<D> {
     /// Moves nodes that are still inside an obstacle to the surface of the obstacle, and records the energy that the nodes
-    /// gain. The residual on the nodes is `reaction` [N].
+    /// gain. The residual on the nodes is `reaction` [N]; pinned axes have a number in `pin_displacement`.
     pub(crate) fn expel(
         &self,
         system: &mut System<D>,
-        x0: &[f64],
+        [x0, reaction, pin_displacement]: [&[f64]; 3],
         u1: &mut [f64],
-        reaction: &[f64],
         h: f64,
         extent: f64,
     ) {
@@ -31,12 +30,13 @@ impl<const D: usize> Contacting<D> {
             let mut deepest: Option<Touch<D>> = None;
             obstacles.touch(from, &to, time, h, 0.0, &mut |touch| {
                 let deep = touch.gap < -(SMALL * extent + touch.rounding);
-                if deep && deepest.is_none_or(|other| touch.gap < other.gap) {
+                let moves = !pins_decide(&pin_displacement[at..at + D], &touch.normal);
+                if deep && moves && deepest.is_none_or(|other| touch.gap < other.gap) {
                     deepest = Some(touch);
                 }
             });
             if let Some(touch) = deepest {
-                for d in 0..D {
+                for d in (0..D).filter(|d| pin_displacement[at + d].is_nan()) {
                     u1[at + d] -= touch.gap * touch.normal[d];
                     system.work.correction[node % WIDTH] -= reaction[at + d] * touch.gap * touch.normal[d];
                 }

@@ -155,8 +155,8 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
         for keep in [Keep::Exact, Keep::Clamped].into_iter().skip(usize::from(!exact)) {
             let mixture = self.mixture(system, keep.definiteness());
             linear.assemble(&mixture);
-            let Workspace { contacting, x0, u, extent, free, projectors, .. } = &*self.workspace;
-            let query = ContactQuery::new(system, &self.balance, x0, u, *extent);
+            let Workspace { contacting, x0, u, pin_displacement, extent, free, projectors, .. } = &*self.workspace;
+            let query = ContactQuery::new(system, &self.balance, [x0, u, pin_displacement], *extent);
             contacting
                 .derivatives(&query, keep != Keep::Exact, &mut |node, block| linear.add_block(&mixture, node, &block));
             factored = linear.factor_positive(&Filter { free, projectors }).is_ok();

@@ -33,8 +33,8 @@ pub(crate) fn look<const D: usize>(
     balance: &Balance,
     impacts_slide: bool,
 ) -> bool {
-    let Workspace { contacting, x0, u, extent, .. } = workspace;
-    let contact_query = ContactQuery::new(system, balance, x0, u, *extent);
+    let Workspace { contacting, x0, u, pin_displacement, extent, .. } = workspace;
+    let contact_query = ContactQuery::new(system, balance, [x0, u, pin_displacement], *extent);
     contacting.look(&contact_query, impacts_slide)
 }
 
@@ -46,8 +46,8 @@ pub(crate) fn judge<const D: usize>(
     settings: &Settings,
     rule: SlipRule,
 ) -> Verdict {
-    let Workspace { contacting, reaction, x0, u, extent, linear, mass, .. } = workspace;
-    let contact_query = ContactQuery::new(system, balance, x0, u, *extent);
+    let Workspace { contacting, reaction, x0, u, pin_displacement, extent, linear, mass, .. } = workspace;
+    let contact_query = ContactQuery::new(system, balance, [x0, u, pin_displacement], *extent);
     let mixture = mixture(system, mass, balance, Definiteness::Clamped, settings);
     contacting.judge(reaction, &contact_query, rule, &|node| linear.size_at(&mixture, node) / D as f64)
 }

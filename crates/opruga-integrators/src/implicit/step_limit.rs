@@ -1,7 +1,7 @@
 //! Limits on corrections towards obstacles if there is no inertia.
 
 use super::balance::Balance;
-use super::contact::{Contact, Contacting};
+use super::contact::{Contact, Contacting, pins_decide};
 use super::contact_query::ContactQuery;
 use super::workspace::Workspace;
 use opruga_core::contacts::Touch;
@@ -93,7 +93,8 @@ pub(super) fn part_without_inertia<const D: usize>(
         return part;
     }
     let step: Vec<f64> = workspace.step.iter().map(|s| part * s).collect();
-    let contact_query = ContactQuery::new(system, balance, &workspace.x0, &workspace.u, workspace.extent);
+    let state = [&workspace.x0[..], &workspace.u, &workspace.pin_displacement];
+    let contact_query = ContactQuery::new(system, balance, state, workspace.extent);
     part * workspace.contacting.part_to_obstacles(&contact_query, &step)
 }
 
@@ -117,7 +118,7 @@ impl<const D: usize> Contacting<D> {
 
     /// Whether a fraction of a step moves a free node deeper into an obstacle.
     fn comes_in(&self, contact_query: &ContactQuery<'_, D>, step: &[f64], part: f64) -> bool {
-        let ContactQuery { system, x0, u, theta, h, extent } = *contact_query;
+        let ContactQuery { system, x0, u, pin_displacement, theta, h, extent } = *contact_query;
         let Some(obstacles) = &system.contacts else { return false };
         let time = system.time + h;
         let caught = CAUGHT * extent;
@@ -127,7 +128,8 @@ impl<const D: usize> Contacting<D> {
             let mut deep = None;
             obstacles.touch(from, &at(part), time, h, 0.0, &mut |touch| {
                 let is_active = |c: &Contact<D>| c.node == node && c.touch.surface == touch.surface && c.is_active();
-                if touch.gap < -caught && !self.contacts.iter().any(is_active) {
+                let pinned = pins_decide(&pin_displacement[node * D..(node + 1) * D], &touch.normal);
+                if touch.gap < -caught && !pinned && !self.contacts.iter().any(is_active) {
                     deep = Some(touch);
                 }
             });

@@ -4,7 +4,7 @@ use crate::common;
 use common::solid;
 use opruga_core::spec::Value;
 use opruga_mesh::Mesh;
-use opruga_world::blueprint::{Blueprint, ColliderBlueprint};
+use opruga_world::blueprint::{Blueprint, ColliderBlueprint, PinBlueprint, Selector};
 use opruga_world::{Options, World};
 
 const MATERIAL: [(&str, Value); 3] =
@@ -57,4 +57,24 @@ fn a_turntable_takes_nothing_by_friction_of_what_sticks_on_it() {
     let lost = after.loss_friction - before.loss_friction;
     assert!(after.kinetic > 20.0 && (ended - begun).abs() < 1e-3, "{begun} m, {ended} m: {after:?}");
     assert!(lost.abs() < 0.01, "{lost} J: {after:?}");
+}
+
+/// A block whose bottom pins pull 0.3 m below a floor, which holds all other nodes: only the pins do work, and they supply the energy of the block.
+#[test]
+fn an_obstacle_does_nothing_to_nodes_that_pins_lead_through_it() {
+    for rule in ["backward_euler", "bdf2", "implicit_midpoint", "newmark"] {
+        let mut block = solid(Mesh::<2>::grid([0.0; 2], [0.6; 2], [3; 2]).unwrap(), rule, &[], &MATERIAL);
+        block.time.substeps = 8;
+        block.bodies[0].pins.push(PinBlueprint {
+            select: Selector::Side("bottom".into()),
+            axes: [true; 2],
+            motion: vec![vec![0.0; 3], vec![0.5, 0.0, -0.3]],
+        });
+        let mut pulled = world(block, &[("normal", [0.0, 1.0].into()), ("friction", 0.5.into())]);
+        (0..60).for_each(|_| pulled.frame().unwrap());
+        let energy = pulled.energy();
+        assert!(energy.elastic > 1e3, "{rule}: {energy:?}");
+        assert!(energy.work_correction.abs() < 1e-3 * energy.elastic, "{rule}: {energy:?}");
+        assert!(energy.loss_numerical.abs() < 0.2 * energy.elastic, "{rule}: {energy:?}");
+    }
 }
