@@ -1,4 +1,4 @@
-//! Bodies whose models take seconds to prepare: progress on the terminal, and interruption by Ctrl-C.
+//! Work that can take long: its interruption by Ctrl-C, and the progress of a preparation on the terminal.
 
 use crate::interrupt::asked_to_stop;
 use opruga::BreakOff;

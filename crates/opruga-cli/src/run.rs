@@ -8,6 +8,7 @@ use crate::forecast::{Forecast, duration};
 use crate::interrupt;
 use crate::language::translation;
 use crate::outputs::Outputs;
+use crate::preparation::watched;
 use crate::recorder::Recorder;
 use crate::recordings;
 use crate::source::{Source, Whole, overrides};
@@ -220,28 +221,33 @@ impl Job<'_> {
         if call.check_contact {
             failure = crossed(&*world);
         }
-        while failure.is_none() && world.frames() < frames {
-            if stop.load(Ordering::Relaxed) {
-                failure = Some(Failure::Interrupted);
-                break;
+        // A request to stop ends a long frame too; the world is then at its last good frame.
+        watched(&self.world.break_off, || {
+            while failure.is_none() && world.frames() < frames {
+                if stop.load(Ordering::Relaxed) {
+                    failure = Some(Failure::Interrupted);
+                    break;
+                }
+                if let Err(error) = world.frame() {
+                    failure = Some(source.frame_error(&error, &*world, &self.reading));
+                    break;
+                }
+                looked_at = looked_at || world.look_at_steps_again();
+                world.warn_of_missing_contact();
+                if call.check_contact {
+                    failure = crossed(&*world);
+                }
+                let untaped = tape.as_mut().and_then(|tape| tape.push(&mut *world).err()).map(unrecorded);
+                if failure.is_none() {
+                    failure = untaped;
+                }
+                looking += recorder.record(&mut *world);
+                if let Some(failed) = keeper.write_if_due(&*world, &recorder.table) {
+                    progress.bar.suspend(|| print_warning(&failed));
+                }
+                progress.after_frame(&*world, frame);
             }
-            if let Err(error) = world.frame() {
-                failure = Some(source.frame_error(&error, &*world, &self.reading));
-                break;
-            }
-            looked_at = looked_at || world.look_at_steps_again();
-            world.warn_of_missing_contact();
-            if call.check_contact {
-                failure = crossed(&*world);
-            }
-            let untaped = tape.as_mut().and_then(|tape| tape.push(&mut *world).err()).map(unrecorded);
-            failure = failure.or(untaped);
-            looking += recorder.record(&mut *world);
-            if let Some(failed) = keeper.write_if_due(&*world, &recorder.table) {
-                progress.bar.suspend(|| print_warning(&failed));
-            }
-            progress.after_frame(&*world, frame);
-        }
+        });
         recorder.finish(&mut *world);
         let taped = tape.and_then(|tape| tape.finish(&mut *world).err()).map(unrecorded);
         failure = failure.or(taped);

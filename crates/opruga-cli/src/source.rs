@@ -139,8 +139,11 @@ impl Source {
         Failure::Run(Box::new(timed(scene_error, error, time)))
     }
 
-    /// An error that ends a run at a frame. If a command was refused, the error names the line of that command.
+    /// The failure of a run that an error ends at a frame. If a command was refused, the error names the line of that command.
     pub(crate) fn frame_error(&self, error: &WorldError, world: &dyn AnyWorld, options: &scene::Options) -> Failure {
+        if *error == (WorldError::BrokenOff {}) {
+            return Failure::Interrupted;
+        }
         let Some(command) = world.refused_command() else { return self.run_error(error, world.time()) };
         let scene_error = of_command(error, &command, (self.text(), self.file.as_str()), &options.overrides);
         Failure::Run(Box::new(timed(scene_error, error, world.time())))

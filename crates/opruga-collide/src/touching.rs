@@ -1,6 +1,7 @@
 //! Touching deformable bodies: the contact of their surfaces in a substep.
 
 use crate::body_pairs::{BodyPairs, Piece};
+use crate::counts::Counts;
 use crate::coupled::{Coupled, Respond};
 use crate::found::Found;
 use crate::gap::Gap;
@@ -15,8 +16,10 @@ use crate::surface::Surface;
 use crate::turns::Turns;
 use crate::vector::{dot, length, subtract};
 use crate::zones::Zones;
+use opruga_core::break_off::BreakOff;
 use opruga_core::contacts::Touch;
 use opruga_math::{Lane, Simd};
+use std::sync::Arc;
 
 /// The surfaces of bodies that may touch, and the state of their contacts.
 ///
@@ -77,6 +80,8 @@ pub struct Touching<const D: usize> {
     pub(crate) pieces: Vec<Piece>,
     /// The threads that may look for pairs; the bits of the results do not depend on them.
     pub threads: usize,
+    /// A request to end a long substep, which then ends with [`Trouble::BrokenOff`].
+    pub break_off: Arc<BreakOff>,
     pub(crate) found: Vec<Found<D>>,
     /// The laws that applied at the last search for candidates.
     found_for: Laws,
@@ -134,41 +139,6 @@ pub struct Touching<const D: usize> {
     pub counts: Counts,
 }
 
-/// The cost of contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Substeps.
-    pub steps: u64,
-    /// Searches for candidates.
-    pub searches: u64,
-    /// Candidates, summed over the substeps.
-    pub candidates: u64,
-    /// Pairs whose gap was computed.
-    pub pairs: u64,
-    /// Pairs that entered the solution.
-    pub contacts: u64,
-    /// The number of turns in which these were solved.
-    pub turns: u64,
-    /// The number of rounds, each of which computes gaps and solves for impulses. Every substep has one round, and another whenever contact pushes
-    /// points close to others that were out of reach, or pairs would still pass through one another.
-    pub rounds: u64,
-}
-
-impl Counts {
-    /// Returns the sums of these counts and other ones.
-    pub fn and(&self, other: &Counts) -> Counts {
-        Counts {
-            steps: self.steps + other.steps,
-            searches: self.searches + other.searches,
-            candidates: self.candidates + other.candidates,
-            pairs: self.pairs + other.pairs,
-            contacts: self.contacts + other.contacts,
-            turns: self.turns + other.turns,
-            rounds: self.rounds + other.rounds,
-        }
-    }
-}
-
 /// Why a step cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trouble {
@@ -184,6 +154,8 @@ pub enum Trouble {
         /// The bodies.
         bodies: [u32; 2],
     },
+    /// Somebody has asked the substep to end.
+    BrokenOff,
 }
 
 /// The contacts of a point with obstacles: a callback with the number of the point, its position at the start and the end of the
@@ -293,6 +265,9 @@ impl<const D: usize> Touching<D> {
         self.begin_search(h);
         let mut rounds = 0;
         loop {
+            if self.break_off.is_wanted() {
+                return Err(Trouble::BrokenOff);
+            }
             self.search()?;
             if std::mem::take(&mut self.looks_inside) {
                 self.find_began_inside();

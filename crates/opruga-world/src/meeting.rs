@@ -200,7 +200,7 @@ impl<const D: usize> Meeting<D> {
     pub(crate) fn in_scene(&self, trouble: Trouble) -> Trouble {
         let all = |bodies: [u32; 2]| bodies.map(|body| self.numbers[body as usize]);
         match trouble {
-            Trouble::TooMany => trouble,
+            Trouble::TooMany | Trouble::BrokenOff => trouble,
             Trouble::Meet { bodies } => Trouble::Meet { bodies: all(bodies) },
             Trouble::LedThrough { bodies } => Trouble::LedThrough { bodies: all(bodies) },
         }

@@ -17,6 +17,7 @@ use crate::meeting::{Meeting, Pushed, Substep};
 use opruga_collide::{Obstacles, Respond, Touching, Trouble};
 use opruga_core::system::Workspace;
 use opruga_math::{Lane, WIDTH};
+use std::sync::Arc;
 
 /// Each pair is a number of rounds and the tolerance that applies until this number is reached. Steps and contact agree if no point ends farther than
 /// the tolerance, relative to the thickness of surfaces, from the position that the impulses should give it. Exact steps reach the first tolerance in
@@ -105,8 +106,11 @@ enum Again {
 
 impl<const D: usize> Meeting<D> {
     /// Begins a frame and discards the results of the previous one.
-    pub(crate) fn begin(&mut self) {
+    pub(crate) fn begin(&mut self, islands: &[&mut Island<D>]) {
         self.touching.begin();
+        if let Some(island) = islands.first() {
+            self.touching.break_off = Arc::clone(&island.system.break_off);
+        }
         self.mixed.clear();
     }
 

@@ -171,6 +171,7 @@ impl<const D: usize> World<D> {
                 let most = scene.map_or(0, |scene| scene.most);
                 WorldError::TooManyContacts { found: most + 1, most, last: self.time() }
             }
+            Trouble::BrokenOff => WorldError::BrokenOff {},
             Trouble::Meet { mut bodies } => {
                 bodies.sort_unstable();
                 WorldError::Meet { first: name(bodies[0]), second: name(bodies[1]), time }

@@ -123,7 +123,7 @@ impl<const D: usize> Job<'_, D> {
                 let own = meeting.pushed.iter();
                 own.for_each(|pushed| islands[pushed.island].system.contacts = Some(Arc::clone(contacts)));
             }
-            meeting.begin();
+            meeting.begin(islands);
             meeting.recall(hands.memory, islands, plan.h);
             meeting.take(islands, plan.start);
         }

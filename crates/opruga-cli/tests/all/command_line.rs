@@ -247,30 +247,63 @@ fn an_interrupted_run_closes_its_files_and_says_so() {
     }
 }
 
-/// A frame of a million steps with 100,000 vertices takes minutes.
+/// Starts work on frames of a million steps with 100,000 vertices, each of which takes minutes. Returns when a file of the work exists.
 #[cfg(unix)]
-#[test]
-fn a_second_signal_ends_a_long_step_at_once() {
-    use std::io::{BufRead as _, BufReader};
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_opruga"))
-        .args(["run", "giant-ring", "--set", "time.substeps=1000000", "--out", "o", "--no-pictures"])
-        .current_dir(folder.path())
+fn in_a_long_frame(folder: &Path, arguments: &[&str], file: &str) -> std::process::Child {
+    let child = Command::new(env!("CARGO_BIN_EXE_opruga"))
+        .args(arguments)
+        .args(["--out", "o"])
+        .current_dir(folder)
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program runs");
-    let id = child.id().to_string();
-    let interrupt = || Command::new("kill").args(["-INT", &id]).status();
-    // Its table exists once it handles signals.
-    while !folder.path().join("o/diagnostics.csv").exists() {
+    while !folder.join("o").join(file).exists() {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
-    interrupt().expect("kill runs");
-    let mut lines = BufReader::new(child.stderr.take().expect("piped")).lines().map_while(Result::ok);
-    assert!(lines.any(|line| line.contains("a second interrupt")), "it says that it goes on");
-    interrupt().expect("kill runs");
-    assert_eq!(child.wait().expect("it ends").code(), Some(130));
-    assert!(!lines.any(|line| line.contains("the files are closed")), "it has not waited for its step");
+    child
+}
+
+#[cfg(unix)]
+fn interrupt(child: &std::process::Child) {
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_a_long_frame_of_a_run_and_keeps_the_frames_before() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let call = ["run", "giant-ring", "--set", "time.substeps=1000000", "--no-pictures"];
+    let child = in_a_long_frame(folder.path(), &call, "diagnostics.csv");
+    interrupt(&child);
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+    assert!(said(&output).contains("the files are closed"), "{}", said(&output));
+    let summary = std::fs::read(folder.path().join("o/summary.json")).expect("a summary");
+    let summary: Value = serde_json::from_slice(&summary).expect("JSON");
+    assert_eq!(summary["time"], 0.0, "the frame has not ended");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_second_signal_ends_a_long_frame_of_a_sweep_at_once() {
+    use std::io::{BufRead as _, BufReader};
+    let call = ["sweep", "giant-ring", "--set", "time.substeps=1000000,2000000", "--metric=energy_drift"];
+    // The first frame begins when the world is built, and nothing shows this.
+    for seconds in [1, 2, 4, 8, 16] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut child = in_a_long_frame(folder.path(), &call, "results.csv");
+        std::thread::sleep(std::time::Duration::from_secs(seconds));
+        interrupt(&child);
+        let mut lines = BufReader::new(child.stderr.take().expect("piped")).lines().map_while(Result::ok);
+        let goes_on = lines.any(|line| line.contains("a second interrupt"));
+        interrupt(&child);
+        assert_eq!(child.wait().expect("it ends").code(), Some(130));
+        assert!(!lines.any(|line| line.contains("points are done")), "it has not waited for its step");
+        if goes_on {
+            return;
+        }
+    }
+    panic!("it says that it goes on");
 }
 
 #[cfg(target_os = "linux")]

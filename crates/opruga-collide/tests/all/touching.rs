@@ -322,6 +322,16 @@ fn what_is_pushed_far_meets_edges_in_the_same_step() {
     assert!(pushed[0][0] + pushed[1][0] > 1.0, "{pushed:?}");
 }
 
+#[test]
+fn a_step_ends_early_when_somebody_asks() {
+    let wire = || Mesh::<2>::line([0.0, -1.0], [0.0, 1.0], 8).expect("a wire");
+    let mut toy = Toy::new(&[(wire(), [-0.05, 0.03], [1.0, 0.0]), (wire(), [0.05, 0.0], [0.0; 2])], law(0.0, 0.0));
+    toy.touching.break_off.ask(true);
+    assert_eq!(toy.touching.step(1e-3, None), Err(Trouble::BrokenOff));
+    toy.touching.break_off.ask(false);
+    assert_eq!(toy.touching.step(1e-3, None), Ok(()));
+}
+
 /// Two pinned wires that are moved through one another.
 #[test]
 fn what_is_led_through_is_refused() {

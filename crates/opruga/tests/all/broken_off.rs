@@ -36,6 +36,11 @@ fn world(integrator: &str, substeps: u32, at: u32) -> (World<2>, Arc<BreakOff>, 
     (world, break_off, asked)
 }
 
+/// A block that lies on the cantilever, for scenes with contact.
+const BLOCK: &str = "\n[contact]\nthickness = 1e-5\nRESPONSE\n[[body]]\nname = \"block\"\nmass = 0.1\n\
+     shape = { kind = \"grid\", corner = [0.55, 0.2001], size = [0.3, 0.2], cells = [2, 2] }\n\
+     models = [{ kind = \"fem\", youngs_modulus = 2000.0, poissons_ratio = 0.3 }]\n";
+
 #[test]
 fn a_frame_that_is_broken_off_leaves_the_last_good_one_and_is_made_again_to_the_bit() {
     for (rule, substeps) in [
@@ -47,6 +52,9 @@ fn a_frame_that_is_broken_off_leaves_the_last_good_one_and_is_made_again_to_the_
         ("kind = \"backward_euler\"\naccuracy = \"real_time\"", 4),
         ("kind = \"implicit_midpoint\"", 4),
         ("kind = \"equilibrium\"\nwhen_not_converged = \"halve\"", 1),
+        (&format!("kind = \"symplectic_euler\"{}", BLOCK.replace("RESPONSE", "")), 200),
+        (&format!("kind = \"backward_euler\"{}", BLOCK.replace("RESPONSE", "")), 4),
+        (&format!("kind = \"backward_euler\"{}", BLOCK.replace("RESPONSE", "response = \"barrier\"")), 4),
     ] {
         let (mut whole, _, asked) = world(rule, substeps, 0);
         // Statics has nothing to compute after its first frame.
