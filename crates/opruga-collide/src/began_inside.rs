@@ -50,7 +50,7 @@ impl<const D: usize> Touching<D> {
             let nearest = closed
                 .map(|facet| (square(facet), facet))
                 .reduce(|known, one| if one.0 < known.0 { one } else { known });
-            if !nearest.is_some_and(|(_, facet)| Gap::of_vertex_and_facet(surface, x, vertex, facet).gap < 0.0) {
+            if !nearest.is_some_and(|(_, facet)| Gap::of_vertex_and_facet(surface, &x[..], vertex, facet).gap < 0.0) {
                 continue;
             }
             // Facets of closed boundaries come first.

@@ -3,6 +3,7 @@
 use crate::close_bodies::CloseBodies;
 use crate::comparison::{Compared, Comparison, Comparisons, key};
 use crate::least_parts;
+use crate::lists;
 use crate::reach::{BodyReach, MOST_WIDTHS, Reach, SPARE, beyond};
 use crate::surface::Surface;
 use crate::vector::{Bounds, apart, length, subtract, wider};
@@ -36,10 +37,10 @@ pub(crate) struct BodyPairs<const D: usize> {
     /// For every body, the box within which all its neighbours are among the pairs of bodies [m].
     wide: Vec<Bounds<D>>,
     close_bodies: CloseBodies<D>,
-    /// The pairs of bodies before the present search for neighbours, and the lists before the present search for features.
+    /// The pairs of bodies before the present search for neighbours, and the pairs of features of two bodies before the present search for features,
+    /// with their bounds.
     before: Vec<BodyPair<D>>,
-    features_before: Vec<[u32; 2]>,
-    until_before: Vec<f64>,
+    known: Vec<([u32; 2], f64)>,
     /// The pairs of bodies whose features the present search compares.
     fresh: Vec<u32>,
     compared: Vec<Compared<D>>,
@@ -227,6 +228,7 @@ impl<const D: usize> BodyPairs<D> {
         self.close_bodies.find(surface, &self.wide, thickest.map(|distance| distance + SPARE * margin), meet);
         std::mem::swap(&mut self.all, &mut self.before);
         self.all.clear();
+        lists::reserve(&mut self.all, self.close_bodies.pairs.len());
         let mut known = self.before.iter().peekable();
         for bodies in &self.close_bodies.pairs {
             while known.next_if(|pair| pair.bodies < *bodies).is_some() {}
@@ -320,40 +322,67 @@ impl<const D: usize> BodyPairs<D> {
         true
     }
 
-    /// Puts the pairs of features that the present search has found into a list, and keeps the bounds of known pairs.
+    /// Puts the pairs of features that the present search has found into a list, and keeps the bounds of known pairs. The list is rewritten in place,
+    /// from its start. Its old content first moves towards the end, far enough that every part is read before it is overwritten.
     fn replace(&mut self, list: usize) {
-        std::mem::swap(&mut self.features[list], &mut self.features_before);
-        std::mem::swap(&mut self.until[list], &mut self.until_before);
-        let (features, until) = (&mut self.features[list], &mut self.until[list]);
-        features.clear();
-        until.clear();
+        let BodyPairs { all, fresh, parts, known, features, until, .. } = self;
+        let (features, until) = (&mut features[list], &mut until[list]);
         let of_part = |part: &Comparison<D>, k: usize| match k {
             0 => 0..part.ends[0][list],
             _ => part.ends[k - 1][list]..part.ends[k][list],
         };
-        let mut found =
-            self.parts.iter().flat_map(|part| (0..part.ends.len()).map(move |k| &part.pairs[list][of_part(part, k)]));
-        let mut fresh = self.fresh.iter().peekable();
-        for (k, pair) in self.all.iter_mut().enumerate() {
-            let (start, before) = (features.len(), pair.range(list));
-            if fresh.next_if(|fresh| **fresh as usize == k).is_some() {
-                let found = found.next().unwrap_or_default();
-                features.extend(found);
+        let found =
+            parts.iter().flat_map(|part| (0..part.ends.len()).map(move |k| &part.pairs[list][of_part(part, k)]));
+
+        let (mut end, mut end_before, mut offset) = (0, 0, 0);
+        let (mut next_found, mut next_fresh) = (found.clone(), fresh.iter().peekable());
+        for (k, pair) in all.iter().enumerate() {
+            let own = pair.range(list);
+            if next_fresh.next_if(|fresh| **fresh as usize == k).is_some() {
+                end += next_found.next().map_or(0, <[_]>::len);
+            } else if pair.is_known {
+                end += own.len();
+            }
+            if !own.is_empty() {
+                end_before = own.end;
+            }
+            offset = offset.max(end.saturating_sub(end_before));
+        }
+        let length = features.len();
+        lists::resize(features, length + offset, [0; 2]);
+        lists::resize(until, length + offset, 0.0);
+        features.copy_within(..length, offset);
+        until.copy_within(..length, offset);
+
+        let (mut next_found, mut next_fresh) = (found, fresh.iter().peekable());
+        let mut end = 0;
+        for (k, pair) in all.iter_mut().enumerate() {
+            let (start, own) = (end, pair.range(list));
+            let before = own.start + offset..own.end + offset;
+            if next_fresh.next_if(|fresh| **fresh as usize == k).is_some() {
                 // Bounds of a body and itself apply to the positions of the last search.
-                let kept = if pair.is_of_one_body() { 0..0 } else { before };
-                let mut known = self.features_before[kept.clone()].iter().zip(&self.until_before[kept]).peekable();
-                for features in found {
-                    while known.next_if(|(one, _)| key(one) < key(features)).is_some() {}
-                    let same = known.next_if(|(one, _)| *one == features);
-                    until.push(same.map_or(f64::NEG_INFINITY, |(_, until)| *until));
+                let before = if pair.is_of_one_body() { 0..0 } else { before };
+                known.clear();
+                known.extend(features[before.clone()].iter().copied().zip(until[before].iter().copied()));
+                let mut known = known.iter().peekable();
+                for pair in next_found.next().unwrap_or_default() {
+                    while known.next_if(|(one, _)| key(one) < key(pair)).is_some() {}
+                    let same = known.next_if(|(one, _)| one == pair);
+                    (features[end], until[end]) = (*pair, same.map_or(f64::NEG_INFINITY, |(_, until)| *until));
+                    end += 1;
                 }
                 pair.least[list] = f64::NEG_INFINITY;
             } else if pair.is_known {
-                features.extend(&self.features_before[before.clone()]);
-                until.extend(&self.until_before[before]);
+                end += own.len();
+                if before.start != start {
+                    features.copy_within(before.clone(), start);
+                    until.copy_within(before, start);
+                }
             }
-            pair.ranges[list] = [start as u32, features.len() as u32];
+            pair.ranges[list] = [start as u32, end as u32];
         }
+        features.truncate(end);
+        until.truncate(end);
     }
 
     /// Sets the limits of the bounds for this step.
@@ -365,26 +394,26 @@ impl<const D: usize> BodyPairs<D> {
         }
     }
 
-    /// Calls `visit` with those pairs of features of two bodies, in a part of a list, that may come closer than a distance beyond any contact
+    /// Calls `visit` with the indices of those pairs of features of two bodies, in a part of a list, that may come closer than a distance beyond any contact
     /// in this step [m], according to their bounds. Returns the smallest bound in this part [m].
     #[inline(always)]
     pub(crate) fn visit_unclear<P: Pack>(
         &self,
         (pair, list, part): (usize, usize, Range<usize>),
         beyond: f64,
-        mut visit: impl FnMut(usize, [u32; 2]),
+        mut visit: impl FnMut(usize),
     ) -> f64 {
         let (limit, least) = (self.all[pair].limit + beyond, self.all[pair].least[list]);
         if least > limit {
             return least;
         }
-        let (features, until) = (&self.features[list], &self.until[list]);
+        let until = &self.until[list];
         let (mut first, limits, mut least) = (part.start, P::splat(limit), P::splat(f64::INFINITY));
         while first + WIDTH <= part.end {
             let bounds = P::load(&until[first..]);
             least = bounds.smaller(least);
             if P::any(bounds.less_or_equal(limits)) {
-                (first..first + WIDTH).filter(|k| until[*k] <= limit).for_each(|k| visit(k, features[k]));
+                (first..first + WIDTH).filter(|k| until[*k] <= limit).for_each(&mut visit);
             }
             first += WIDTH;
         }
@@ -392,7 +421,7 @@ impl<const D: usize> BodyPairs<D> {
         for k in first..part.end {
             least = until[k].smaller(least);
             if until[k] <= limit {
-                visit(k, features[k]);
+                visit(k);
             }
         }
         least
@@ -426,9 +455,10 @@ impl<const D: usize> BodyPairs<D> {
 
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
-        let lists = self.features.iter().chain([&self.features_before]).map(Vec::capacity).sum::<usize>();
-        let bounds = self.until.iter().chain([&self.until_before]).map(Vec::capacity).sum::<usize>();
+        let lists = self.features.iter().map(Vec::capacity).sum::<usize>();
+        let bounds = self.until.iter().map(Vec::capacity).sum::<usize>();
         8 * (lists + bounds)
+            + 16 * self.known.capacity()
             + size_of::<BodyPair<D>>() * (self.all.capacity() + self.before.capacity())
             + 16 * D * (self.wide.capacity() + self.regions.capacity())
             + self.close_bodies.heap_bytes()

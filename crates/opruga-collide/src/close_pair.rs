@@ -22,11 +22,16 @@ pub(crate) struct ClosePair<const D: usize> {
 }
 
 impl<const D: usize> ClosePair<D> {
-    /// Returns its row, without masses.
+    /// Returns its row, without masses. Its nodes are added to `spread` if nodes carry its points.
     pub(crate) fn into_row(self, spread: &mut Spread, surface: &Surface<D>) -> Row<D> {
+        let nodes = spread.put(surface, (&self.points[..=D], &self.weights[..=D]));
+        self.into_row_on(nodes)
+    }
+
+    /// Returns its row, without masses, given the range of its nodes in [`Spread`].
+    pub(crate) fn into_row_on(self, nodes: [u32; 2]) -> Row<D> {
         let mut row = Row::new(self.id, (self.points, self.weights), self.normal, self.friction);
-        (row.gap, row.target, row.pair) = (self.gap, self.target, self.pair);
-        row.put_into(spread, surface);
+        (row.gap, row.target, row.pair, row.spread) = (self.gap, self.target, self.pair, nodes);
         row
     }
 }

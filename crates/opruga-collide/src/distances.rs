@@ -13,6 +13,8 @@ pub(crate) struct Distances<'a, const D: usize> {
     pub(crate) surface: &'a Surface<D>,
     pub(crate) x: &'a [[f64; D]],
     pub(crate) pairs: &'a mut [Unclear],
+    /// The features of all candidates of this kind.
+    pub(crate) features: &'a [[u32; 2]],
     /// Whether the pairs consist of a vertex and a facet.
     pub(crate) with_facet: bool,
 }
@@ -21,11 +23,11 @@ impl<const D: usize> Work for Distances<'_, D> {
     type Output = ();
     #[inline(always)]
     fn run<P: Pack>(self) {
-        let Distances { surface, x, pairs, with_facet } = self;
+        let Distances { surface, x, pairs, features, with_facet } = self;
         for eight in pairs.chunks_mut(WIDTH) {
             // Unused lanes repeat the last pair.
-            let mut own = [eight[eight.len() - 1].features; WIDTH];
-            own.iter_mut().zip(&*eight).for_each(|(own, pair)| *own = pair.features);
+            let mut own = [eight[eight.len() - 1].features(features); WIDTH];
+            own.iter_mut().zip(&*eight).for_each(|(own, pair)| *own = pair.features(features));
             let found = if with_facet {
                 let mut facet = [[P::zero(); D]; D];
                 for (k, corner) in facet.iter_mut().enumerate() {

@@ -9,6 +9,7 @@ use crate::gap::Gap;
 use crate::impact::{impact, meeting_time};
 use crate::last_impulse::number_of;
 use crate::law::PairLaw;
+use crate::lists;
 use crate::reach::SPARE;
 use crate::settle::OVERLAP;
 use crate::touching::Touching;
@@ -53,7 +54,9 @@ impl<const D: usize> Finder<'_, D> {
         self.found.notes.clear();
         self.found.last = NOT_SOUGHT;
         let mut edges = of_edges.iter().peekable();
-        for own in with_facets.chunk_by_mut(|a, b| (a.pair, a.features[0]) == (b.pair, b.features[0])) {
+        let vertices = &self.touching.pairs.features[0];
+        let vertex = |unclear: &Unclear| unclear.features(vertices)[0];
+        for own in with_facets.chunk_by_mut(|a, b| a.pair == b.pair && vertex(a) == vertex(b)) {
             while let Some(earlier) = edges.next_if(|edges| edges.pair < own[0].pair) {
                 self.take_gap_of_edges(earlier);
             }
@@ -79,27 +82,28 @@ impl<const D: usize> Finder<'_, D> {
                 for (k, features) in range.clone().zip(&known.features[0][range.clone()]) {
                     let all = *at_once || began_inside.binary_search(&features[0]).is_ok();
                     if all || !known.is_clear(*pair as usize, 0, k, 0.0) {
-                        vertices.push(Unclear { candidate: k, pair: *pair, features: *features, distance: 0.0 });
+                        lists::push(vertices, Unclear { candidate: k as u32, pair: *pair, distance: 0.0 });
                     }
                 }
             }
         }
         for (list, pairs) in unclear.iter_mut().enumerate() {
-            known.simd.run(Distances { surface, x, pairs, with_facet: list == 0 });
+            known.simd.run(Distances { surface, x, pairs, features: &known.features[list], with_facet: list == 0 });
         }
     }
 
     /// Computes the gaps of the candidates of one vertex that may touch.
     fn take_gaps_of_vertex(&mut self, unclear: &mut [Unclear]) {
-        let vertex = unclear[0].features[0];
+        let features = &self.touching.pairs.features[0];
+        let vertex = unclear[0].features(features)[0];
         self.found.around.clear();
         let close = self.found.close[0].len();
         let mut inside = false;
         let pair = unclear[0].pair;
         let kind = self.kind_of(pair, vertex);
-        for Unclear { features, distance, .. } in unclear.iter_mut() {
-            *distance = self.take_gap_of_vertex(&kind, features, 0.0, *distance);
-            inside |= *distance == f64::NEG_INFINITY;
+        for unclear in unclear.iter_mut() {
+            unclear.distance = self.take_gap_of_vertex(&kind, &unclear.features(features), 0.0, unclear.distance);
+            inside |= unclear.distance == f64::NEG_INFINITY;
         }
         if inside {
             // For a vertex inside a body, the nearest facet is needed, so all candidates are examined, whatever their bounds
@@ -140,8 +144,9 @@ impl<const D: usize> Finder<'_, D> {
     /// The range of all candidates of the same bodies that have the same vertex as some given ones.
     fn candidates_of(&self, some: &[Unclear]) -> Range<usize> {
         let all = self.touching.pairs.all[some[0].pair as usize].range(0);
-        let (vertices, vertex) = (&self.touching.pairs.features[0], some[0].features[0]);
-        let (mut first, mut end) = (some[0].candidate, some[some.len() - 1].candidate + 1);
+        let vertices = &self.touching.pairs.features[0];
+        let [vertex, _] = some[0].features(vertices);
+        let (mut first, mut end) = (some[0].candidate as usize, some[some.len() - 1].candidate as usize + 1);
         while first > all.start && vertices[first - 1][0] == vertex {
             first -= 1;
         }
@@ -153,7 +158,8 @@ impl<const D: usize> Finder<'_, D> {
 
     /// Computes the gap of a candidate of two edges.
     fn take_gap_of_edges(&mut self, unclear: &Unclear) {
-        let Unclear { pair: number, features: pair @ [a, b], distance, .. } = *unclear;
+        let Unclear { pair: number, distance, .. } = *unclear;
+        let pair @ [a, b] = unclear.features(&self.touching.pairs.features[1]);
         let edges = pair.map(|e| self.touching.surface.edges[e as usize]);
         let BodyPair { bodies, relative, .. } = self.touching.pairs.all[number as usize];
         let law = *self.touching.laws.of(bodies[0], bodies[1]);
@@ -164,8 +170,8 @@ impl<const D: usize> Finder<'_, D> {
         if self.touching.are_entangled(bodies) {
             return;
         }
-        self.found.close[1].push((pair, distance));
-        let Some(mut gap) = Gap::of_edges(&self.touching.surface, &self.touching.before[0], a, b) else { return };
+        lists::push(&mut self.found.close[1], (pair, distance));
+        let Some(mut gap) = Gap::of_edges(&self.touching.surface, &self.touching.before[0][..], a, b) else { return };
         if bodies[0] == bodies[1] && gap.gap < 0.0 {
             (gap.gap, gap.normal) = (-gap.gap, gap.normal.map(|n| -n));
         }
@@ -201,18 +207,18 @@ impl<const D: usize> Finder<'_, D> {
         for (close, meets) in around.drain(..) {
             let mut row = close.into_row(spread, surface);
             if !meets {
-                heads.push(row.head());
-                watched.push(row);
+                lists::push(heads, row.head());
+                lists::push(watched, close);
                 continue;
             }
             let pressed = last.binary_search_by_key(&row.id, |last| last.id);
             if starts_inactive && row.gap >= overlap && pressed.is_err() {
-                inactive.push(row);
+                lists::push(inactive, row);
             } else if row.can_move(spread, inverse_mass) {
                 if let Ok(k) = pressed {
                     (row.normal_impulse, row.friction_impulse) = (last[k].along, last[k].across);
                 }
-                rows.push(row);
+                lists::push(rows, row);
             }
         }
     }
@@ -285,9 +291,9 @@ impl<const D: usize> Finder<'_, D> {
         if apart > law.thickness + distance {
             return apart.larger(separation);
         }
-        let mut gap = Gap::of_vertex_and_facet(surface, x, *vertex, *facet);
+        let mut gap = Gap::of_vertex_and_facet(surface, &x[..], *vertex, *facet);
         if distance == 0.0 {
-            self.found.close[0].push((*features, gap.gap.abs()));
+            lists::push(&mut self.found.close[0], (*features, gap.gap.abs()));
         }
         if own == other && gap.gap < 0.0 {
             // Contact of a body with itself acts on both sides.
@@ -308,12 +314,9 @@ impl<const D: usize> Finder<'_, D> {
         let mut travel = gap.mean_change([x0, x1]);
         if gap.gap > law.thickness && !self.touching.at_once && self.goes_far(&gap, &travel, with_facet) {
             // The closest points at the start of the step are not those at the impact.
-            self.found.impact.resize(self.touching.surface.points(), [0.0; D]);
             let ends = [&x0[..], x1];
             let time = meeting_time(&self.touching.surface, ends, law.thickness, pair, with_facet);
-            match time
-                .and_then(|time| impact(&self.touching.surface, ends, &mut self.found.impact, time, pair, with_facet))
-            {
+            match time.and_then(|time| impact(&self.touching.surface, ends, time, pair, with_facet)) {
                 Some(then) => {
                     gap = then;
                     travel = gap.mean_change(ends);
@@ -414,7 +417,7 @@ impl<const D: usize> Finder<'_, D> {
                 continue;
             }
             let faces = size > 0.0 && dot(&outward, &normal(facet)) < FACING * size;
-            let gap = Gap::of_vertex_and_facet(&self.touching.surface, x, vertex, facet);
+            let gap = Gap::of_vertex_and_facet(&self.touching.surface, &x[..], vertex, facet);
             let is_better = |known: bool, least: f64| (faces, -gap.gap.abs()) > (known, -least.abs());
             match nearest.iter_mut().find(|(body, ..)| *body == other) {
                 Some(best) if is_better(best.1, best.3.gap) => *best = (other, faces, pair, gap),

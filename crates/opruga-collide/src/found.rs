@@ -12,7 +12,7 @@ pub(crate) struct Found<const D: usize> {
     /// The pieces of the lists of candidates.
     pub(crate) part: Range<usize>,
     pub(crate) rows: Vec<Row<D>>,
-    pub(crate) watched: Vec<Row<D>>,
+    pub(crate) watched: Vec<ClosePair<D>>,
     pub(crate) heads: Vec<[u32; 4]>,
     pub(crate) inactive: Vec<Row<D>>,
     pub(crate) spread: Spread,
@@ -30,8 +30,6 @@ pub(crate) struct Found<const D: usize> {
     pub(crate) keys: Vec<[u32; 3]>,
     /// The impulses of the present pair of bodies in the previous substep, as a range of all of them.
     pub(crate) last: Range<usize>,
-    /// Positions at an impact within a step.
-    pub(crate) impact: Vec<[f64; D]>,
 }
 
 impl<const D: usize> Found<D> {
@@ -41,13 +39,13 @@ impl<const D: usize> Found<D> {
             size_of::<([u32; 2], f64)>() * self.close[list].capacity()
                 + size_of::<Unclear>() * self.unclear[list].capacity()
         };
-        size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity() + self.inactive.capacity())
+        size_of::<Row<D>>() * (self.rows.capacity() + self.inactive.capacity())
+            + size_of::<ClosePair<D>>() * self.watched.capacity()
             + 16 * self.heads.capacity()
             + self.spread.heap_bytes()
             + lists(0)
             + lists(1)
             + 24 * self.notes.capacity()
             + 8 * self.least.capacity()
-            + 8 * D * self.impact.capacity()
     }
 }

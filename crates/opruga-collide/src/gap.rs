@@ -1,6 +1,7 @@
 //! The distance between two features, and the direction in which they separate.
 
 use crate::closest::{PARALLEL, closest_of_segments, closest_on_facet, facet_normal, mean};
+use crate::positions::Positions;
 use crate::surface::Surface;
 use crate::vector::{dot, length, scaled, subtract};
 use opruga_math::Lane;
@@ -34,10 +35,15 @@ impl<const D: usize> Gap<D> {
     ///
     /// # Source
     /// J. A. Bærentzen, H. Aanæs, Signed distance computation using the angle weighted pseudonormal, IEEE TVCG 11 (2005) 243–253.
-    pub fn of_vertex_and_facet(surface: &Surface<D>, x: &[[f64; D]], vertex: u32, facet: u32) -> Gap<D> {
+    pub fn of_vertex_and_facet(
+        surface: &Surface<D>,
+        x: &(impl Positions<D> + ?Sized),
+        vertex: u32,
+        facet: u32,
+    ) -> Gap<D> {
         let corners = surface.facets[facet as usize];
-        let at = corners.map(|p| x[p as usize]);
-        let p = x[vertex as usize];
+        let at = corners.map(|p| x.at(p));
+        let p = x.at(vertex);
         let weights = closest_on_facet(&p, &at);
         let between = subtract(&p, &mean(&weights, &at));
         let mut out = Gap { points: [vertex; 4], weights: [0.0; 4], gap: 0.0, normal: [0.0; D] };
@@ -56,9 +62,9 @@ impl<const D: usize> Gap<D> {
 
     /// The gap of two edges with the points at `x` [m]; `None` if a closest point is an end of its edge, or if the edges are parallel. Pairs of a
     /// vertex and a facet are sufficient in these cases.
-    pub fn of_edges(surface: &Surface<D>, x: &[[f64; D]], a: u32, b: u32) -> Option<Gap<D>> {
+    pub fn of_edges(surface: &Surface<D>, x: &(impl Positions<D> + ?Sized), a: u32, b: u32) -> Option<Gap<D>> {
         let (ea, eb) = (surface.edges[a as usize], surface.edges[b as usize]);
-        let (xa, xb) = (ea.map(|p| x[p as usize]), eb.map(|p| x[p as usize]));
+        let (xa, xb) = (ea.map(|p| x.at(p)), eb.map(|p| x.at(p)));
         let [s, t] = closest_of_segments(&xa, &xb);
         let inner = |s: f64| s > 0.0 && s < 1.0;
         let (da, db) = (subtract(&xa[1], &xa[0]), subtract(&xb[1], &xb[0]));
@@ -81,7 +87,7 @@ impl<const D: usize> Gap<D> {
             [(a, -1.0), (b, 1.0)].into_iter().all(|(edge, sign)| {
                 let mut beside = sides(edge).into_iter().filter(|side| *side != u32::MAX);
                 beside.all(|side| {
-                    let normal = facet_normal(&surface.facets[side as usize].map(|p| x[p as usize]));
+                    let normal = facet_normal(&surface.facets[side as usize].map(|p| x.at(p)));
                     sign * dot(&normal, &between) > 0.0
                 })
             })
@@ -91,7 +97,7 @@ impl<const D: usize> Gap<D> {
             let mut sum = [0.0; D];
             for (edge, sign) in [(a, -1.0), (b, 1.0)] {
                 for side in sides(edge).into_iter().filter(|side| *side != u32::MAX) {
-                    let n = unit(&facet_normal(&surface.facets[side as usize].map(|p| x[p as usize])));
+                    let n = unit(&facet_normal(&surface.facets[side as usize].map(|p| x.at(p))));
                     for d in 0..D {
                         sum[d] += sign * n[d];
                     }
@@ -171,12 +177,11 @@ fn unit<const D: usize>(a: &[f64; D]) -> [f64; D] {
 /// Whether a vector from the corner or edge with nonzero weights points to the outer side of all surrounding facets.
 fn lies_outside_of_all<const D: usize>(
     surface: &Surface<D>,
-    x: &[[f64; D]],
+    x: &(impl Positions<D> + ?Sized),
     (corners, weights): (&[u32; D], &[f64; D]),
     vector: &[f64; D],
 ) -> bool {
-    facets_around(surface, corners, weights)
-        .all(|facet| dot(&facet_normal(&facet.map(|p| x[p as usize])), vector) > 0.0)
+    facets_around(surface, corners, weights).all(|facet| dot(&facet_normal(&facet.map(|p| x.at(p))), vector) > 0.0)
 }
 
 /// The facets around the corner or edge with nonzero weights.
@@ -194,7 +199,7 @@ fn facets_around<'a, const D: usize>(
 /// The sum of the normals of all facets around the corner or edge with nonzero weights, each weighted by its angle there.
 fn normal_around<const D: usize>(
     surface: &Surface<D>,
-    x: &[[f64; D]],
+    x: &(impl Positions<D> + ?Sized),
     corners: &[u32; D],
     weights: &[f64; D],
 ) -> [f64; D] {
@@ -203,7 +208,7 @@ fn normal_around<const D: usize>(
     let corner = (0..D).filter(on).count() == 1;
     let mut sum = [0.0; D];
     for facet in facets_around(surface, corners, weights) {
-        let at = facet.map(|p| x[p as usize]);
+        let at = facet.map(|p| x.at(p));
         let mut angle = 1.0;
         if corner && D == 3 {
             let k = facet.iter().position(|p| *p == corners[first]).unwrap_or(0);

@@ -5,7 +5,7 @@ use crate::distances::Distances;
 use crate::impact::meeting_time;
 use crate::reach::SPARE;
 use crate::touching::{Touching, Trouble};
-use crate::unclear::{FindUnclear, Unclear};
+use crate::unclear::FindUnclear;
 use crate::vector::{dot, subtract};
 use opruga_math::Lane;
 
@@ -43,36 +43,35 @@ impl<const D: usize> Touching<D> {
         known.simd.run(FindUnclear { known, pieces, lists, beyond, unclear: found, least: &mut least });
         let mut any = false;
         for (list, pairs) in unclear.iter_mut().enumerate() {
-            let with_facet = list == 0;
+            let (with_facet, features) = (list == 0, &known.features[list][..]);
             pairs.retain(|pair| {
-                surface
-                    .points_of_features(&pair.features, with_facet)
-                    .into_iter()
-                    .flatten()
-                    .any(|p| reach.has_grown(*p))
+                let pair = pair.features(features);
+                let points = surface.points_of_features(&pair, with_facet);
+                points.into_iter().flatten().any(|p| reach.has_grown(*p))
             });
-            known.simd.run(Distances { surface, x, pairs, with_facet });
-            any |= pairs.iter().any(|pair| self.comes_within_reach(pair, with_facet, beyond));
+            known.simd.run(Distances { surface, x, pairs, features, with_facet });
+            let mut known = pairs.iter().map(|pair| (pair.features(features), pair.distance));
+            any |= known.any(|pair| self.comes_within_reach(pair, with_facet, beyond));
         }
         (self.found[0].unclear, self.found[0].least) = (unclear, least);
         any
     }
 
-    /// Whether a candidate may have come within reach, given its distance at the start of the step.
-    fn comes_within_reach(&self, pair: &Unclear, with_facet: bool, beyond: f64) -> bool {
+    /// Whether a pair of features may have come within reach, given its distance at the start of the step [m].
+    fn comes_within_reach(&self, (pair, distance): ([u32; 2], f64), with_facet: bool, beyond: f64) -> bool {
         let Touching { surface, reach, laws, .. } = self;
-        let points = surface.points_of_features(&pair.features, with_facet);
+        let points = surface.points_of_features(&pair, with_facet);
         let features = points.map(|points| (points, surface.body[points[0] as usize]));
         let [own, other] = features.map(|(_, body)| body);
         // A facet without an inner side has the same distance on both sides.
-        let has_inside = with_facet && own != other && surface.closed[pair.features[1] as usize];
-        let distance = if has_inside { pair.distance } else { pair.distance.abs() };
+        let has_inside = with_facet && own != other && surface.closed[pair[1] as usize];
+        let distance = if has_inside { distance } else { distance.abs() };
         let least = laws.of(own, other).thickness + beyond;
         let ends = [&self.before[0][..], &self.end];
         distance <= least + self.largest_relative_displacement(points)
             && reach.may_meet(distance, least, features, false)
             && !reach.may_meet(distance, least, features, true)
-            && (self.at_once || meeting_time(surface, ends, least, pair.features, with_facet).is_some())
+            && (self.at_once || meeting_time(surface, ends, least, pair, with_facet).is_some())
     }
 
     /// The largest displacement to the end of the step of a point of one feature relative to a point of the other [m]. The distance of the features

@@ -2,6 +2,7 @@
 
 use crate::ccd::{edge_meets_edge, vertex_meets_facet};
 use crate::gap::Gap;
+use crate::positions::Within;
 use crate::surface::Surface;
 
 /// The key of a pair of a vertex and a facet, or of two edges.
@@ -40,33 +41,20 @@ pub(crate) fn meeting_time<const D: usize>(
 /// ends at that time.
 pub(crate) fn impact<const D: usize>(
     surface: &Surface<D>,
-    [x0, x1]: [&[[f64; D]]; 2],
-    moved: &mut [[f64; D]],
+    ends: [&[[f64; D]]; 2],
     time: f64,
     [a, b]: [u32; 2],
     with_facet: bool,
 ) -> Option<Gap<D>> {
-    // The normals of corners and edges depend on the surrounding facets.
-    let mut go = |p: u32| {
-        let (from, to) = (&x0[p as usize], &x1[p as usize]);
-        moved[p as usize] = core::array::from_fn(|d| from[d] + time * (to[d] - from[d]));
-    };
-    let mut go_around = |p: u32| {
-        go(p);
-        let around = surface.facets_around(p).iter();
-        around.flat_map(|facet| surface.facets[*facet as usize]).for_each(&mut go);
-    };
+    let at_impact = Within { ends, time };
     let mut then = if with_facet {
-        go_around(a);
-        surface.facets[b as usize].into_iter().for_each(go_around);
-        Gap::of_vertex_and_facet(surface, moved, a, b)
+        Gap::of_vertex_and_facet(surface, &at_impact, a, b)
     } else {
-        [a, b].into_iter().flat_map(|edge| surface.edges[edge as usize]).for_each(go_around);
         // For edges that meet at an end, a vertex meets a facet too.
-        Gap::of_edges(surface, moved, a, b)?
+        Gap::of_edges(surface, &at_impact, a, b)?
     };
     // The features are apart at the start, so the gap at the start must not be negative.
-    then.gap = then.along(x0);
+    then.gap = then.along(ends[0]);
     if then.gap < 0.0 {
         (then.gap, then.normal) = (-then.gap, then.normal.map(|n| -n));
     }

@@ -3,6 +3,7 @@
 
 use crate::impact::{features_in, key};
 use crate::last_impulse::{LastImpulse, NO_BODIES, number_of};
+use crate::lists;
 use crate::row::OBSTACLE_BIT;
 use crate::touching::Touching;
 
@@ -76,7 +77,7 @@ impl<const D: usize> Touching<D> {
     pub(crate) fn keep_impulses(&mut self) {
         let nothing = LastImpulse { bodies: 0, id: 0, along: 0.0, across: [0.0; D] };
         self.last.clear();
-        self.last.resize(self.rows.len(), nothing);
+        lists::resize(&mut self.last, self.rows.len(), nothing);
         for (row, k) in self.rows.iter().zip(self.turns.order()) {
             // The list of pairs of bodies may have changed since the rows were made, so their indices in it do not count.
             let bodies = self.bodies_in(row.id);

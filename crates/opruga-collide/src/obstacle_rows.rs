@@ -1,8 +1,8 @@
 //! Contacts of points with obstacles, in addition to contacts between bodies.
 
 use crate::least_parts;
+use crate::lists;
 use crate::row::{OBSTACLE_BIT, Row};
-use crate::rows::append;
 use crate::touching::{Obstacles, Touching};
 use crate::vector::{length, subtract};
 use opruga_core::contacts::Touch;
@@ -35,7 +35,7 @@ impl<const D: usize> Touching<D> {
         threads::each_in_pool(parts.zip(of_parts.iter_mut()), |(range, rows)| {
             touching.asked[range].iter().for_each(|p| touching.hold_point(*p, h, obstacles, rows));
         });
-        of_parts.iter_mut().for_each(|rows| append(&mut self.rows, rows));
+        of_parts.iter_mut().for_each(|rows| lists::append(&mut self.rows, rows));
         self.obstacle_rows = lists;
     }
 
@@ -52,7 +52,7 @@ impl<const D: usize> Touching<D> {
             row.target = if row.gap > 0.0 { -row.gap / h } else { 0.0 };
             row.of_obstacle = true;
             if row.can_move(&self.spread, &self.inverse_mass) {
-                rows.push(row);
+                lists::push(rows, row);
             }
         });
     }

@@ -56,9 +56,9 @@ impl<const D: usize> Touching<D> {
         let start = if bodies[0] == bodies[1] {
             None
         } else if with_facet {
-            Some(Gap::of_vertex_and_facet(&self.surface, x0, a, b))
+            Some(Gap::of_vertex_and_facet(&self.surface, &x0[..], a, b))
         } else {
-            Gap::of_edges(&self.surface, x0, a, b)
+            Gap::of_edges(&self.surface, &x0[..], a, b)
         };
         // A pair that starts inside may leave.
         (!start.is_some_and(|start| start.gap < 0.0)).then_some(time)
@@ -98,7 +98,7 @@ impl<const D: usize> Touching<D> {
         if self.zones.hold(&self.points_of_pair(pair, with_facet)) {
             return false;
         }
-        let Some(gap) = impact(&self.surface, ends, &mut self.impact, time, pair, with_facet) else { return false };
+        let Some(gap) = impact(&self.surface, ends, time, pair, with_facet) else { return false };
         // A pair that touches at the start passes only if its gap at the end is negative.
         if time == 0.0 && gap.along(&self.end) >= -ROUNDING * h * (1.0 + gap.gap.abs()) {
             return false;
@@ -135,12 +135,12 @@ impl<const D: usize> Touching<D> {
             return;
         }
         let passing = &self.passing;
-        let passes = |row: &Row<D>| passing.binary_search_by_key(&row.id, |(id, _)| *id).is_ok();
-        self.rows.retain(|row| !passes(row));
-        let mut stay = self.watched.iter().map(|row| !passes(row));
+        let passes = |id: u64| passing.binary_search_by_key(&id, |(id, _)| *id).is_ok();
+        self.rows.retain(|row| !passes(row.id));
+        let mut stay = self.watched.iter().map(|close| !passes(close.id));
         self.heads.retain(|_| stay.next() == Some(true));
-        self.watched.retain(|row| !passes(row));
-        self.inactive.retain(|row| !passes(row));
+        self.watched.retain(|close| !passes(close.id));
+        self.inactive.retain(|row| !passes(row.id));
         for k in 0..self.passing.len() {
             let (id, gap) = self.passing[k];
             let (pair, with_facet) = features_in(id);

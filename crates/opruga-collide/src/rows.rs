@@ -7,6 +7,7 @@ use crate::gap::Gap;
 use crate::impact::key;
 use crate::law::PairLaw;
 use crate::least_parts;
+use crate::lists;
 use crate::spread::Spread;
 use crate::touching::Touching;
 use crate::unclear::Unclear;
@@ -74,16 +75,16 @@ impl<const D: usize> Touching<D> {
     fn take_in(&mut self, found: &mut Found<D>) {
         let first = self.spread.append(&mut found.spread);
         if first > 0 {
-            let rows = found.rows.iter_mut().chain(&mut found.watched).chain(&mut found.inactive);
+            let rows = found.rows.iter_mut().chain(&mut found.inactive);
             rows.for_each(|row| row.spread[0] += first);
             found.heads.iter_mut().for_each(|head| Spread::shift(head, first));
         }
-        append(&mut self.rows, &mut found.rows);
-        append(&mut self.watched, &mut found.watched);
-        append(&mut self.inactive, &mut found.inactive);
-        append(&mut self.heads, &mut found.heads);
+        lists::append(&mut self.rows, &mut found.rows);
+        lists::append(&mut self.watched, &mut found.watched);
+        lists::append(&mut self.inactive, &mut found.inactive);
+        lists::append(&mut self.heads, &mut found.heads);
         for list in 0..2 {
-            append(&mut self.close[list], &mut found.close[list]);
+            lists::append(&mut self.close[list], &mut found.close[list]);
         }
         for ((pair, list, range), least) in self.pieces[found.part.clone()].iter().zip(&found.least) {
             if *range == self.pairs.all[*pair as usize].range(*list) {
@@ -92,7 +93,7 @@ impl<const D: usize> Touching<D> {
         }
         for list in 0..2 {
             for Unclear { candidate, pair, distance, .. } in &found.unclear[list] {
-                self.pairs.note(&self.reach, *pair as usize, list, *candidate, *distance);
+                self.pairs.note(&self.reach, *pair as usize, list, *candidate as usize, *distance);
             }
         }
         for (pair, candidate, distance) in &found.notes {
@@ -124,14 +125,5 @@ impl<const D: usize> Touching<D> {
         let (thickness, friction) = (law.thickness, law.friction);
         let id = key(features, with_facet);
         ClosePair { id, pair, points, weights, normal, gap: own, thickness, friction, target }
-    }
-}
-
-/// Moves all entries of a list to the end of another one.
-pub(crate) fn append<T>(to: &mut Vec<T>, from: &mut Vec<T>) {
-    if to.is_empty() {
-        std::mem::swap(to, from);
-    } else {
-        to.append(from);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::impulses::part;
 use crate::least_parts;
+use crate::lists;
 use crate::touching::{Touching, acting};
 use crate::vector::{dot, subtract};
 use opruga_core::threads;
@@ -82,7 +83,7 @@ impl<const D: usize> Touching<D> {
             self.number[*p as usize] = k as u32;
         }
         self.losses.clear();
-        self.losses.resize(self.changed.len(), [0.0; 4]);
+        lists::resize(&mut self.losses, self.changed.len(), [0.0; 4]);
         self.find_stopped(h);
         for row in &self.rows {
             if row.normal_impulse == 0.0 {

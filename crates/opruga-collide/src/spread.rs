@@ -73,6 +73,12 @@ impl Spread {
         [first, count, 0, ELSEWHERE]
     }
 
+    /// The range in this list that a head represents, as the index of its first entry and the number of its entries; both are zero for a head that
+    /// contains points.
+    pub(crate) fn range_of(head: &[u32; 4]) -> [u32; 2] {
+        if Self::is_elsewhere(head) { [head[0], head[1]] } else { [0; 2] }
+    }
+
     /// The head of a contact that acts on nothing.
     pub(crate) const NOBODY: [u32; 4] = [0, 0, 0, ELSEWHERE];
 

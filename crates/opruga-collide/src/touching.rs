@@ -1,6 +1,7 @@
 //! Touching deformable bodies: the contact of their surfaces in a substep.
 
 use crate::body_pairs::{BodyPairs, Piece};
+use crate::close_pair::ClosePair;
 use crate::counts::Counts;
 use crate::coupled::{Coupled, Respond};
 use crate::found::Found;
@@ -8,6 +9,7 @@ use crate::gap::Gap;
 use crate::impulses::Problem;
 use crate::last_impulse::LastImpulse;
 use crate::law::Laws;
+use crate::lists;
 use crate::reach::Reach;
 use crate::reports::{self, Report};
 use crate::row::Row;
@@ -90,7 +92,7 @@ pub struct Touching<const D: usize> {
     /// The nodes on which contacts act if nodes carry their points.
     pub(crate) spread: Spread,
     /// Pairs that would not meet in the free motion, and their points; pairs that were activated leave an empty entry.
-    pub(crate) watched: Vec<Row<D>>,
+    pub(crate) watched: Vec<ClosePair<D>>,
     pub(crate) heads: Vec<[u32; 4]>,
     /// Pairs that would meet in the free motion but are left out at first. They join the rows only if they still approach too fast after the other
     /// rows have been solved.
@@ -106,8 +108,6 @@ pub struct Touching<const D: usize> {
     pub(crate) obstacle_rows: Vec<Vec<Row<D>>>,
     pub(crate) v: Vec<[f64; D]>,
     pub(crate) moved: Vec<[f64; D]>,
-    /// Positions at an impact within a step.
-    pub(crate) impact: Vec<[f64; D]>,
     /// The positions of the points at the end of the step [m].
     pub(crate) end: Vec<[f64; D]>,
     /// Pairs that would pass through one another, ascending, each with the gap that the solution uses.
@@ -256,7 +256,6 @@ impl<const D: usize> Touching<D> {
         }
         let points = self.surface.points();
         self.moved.resize(points, [0.0; D]);
-        self.impact.resize(points, [0.0; D]);
         self.number.resize(points, 0);
         for p in (0..self.coupled.count()).flat_map(|body| self.coupled.points_of(body)) {
             self.moved[p] = [0.0; D];
@@ -470,14 +469,17 @@ impl<const D: usize> Touching<D> {
     /// whether there are any.
     fn activate(&mut self) -> bool {
         let before = self.rows.len();
-        for (head, row) in self.heads.iter_mut().zip(&self.watched) {
+        for (head, close) in self.heads.iter_mut().zip(&self.watched) {
             let [v, free] = [&self.v, &self.after[1]];
             let points = self.spread.points_of::<D>(head);
             let pushed = points.iter().any(|p| v[*p as usize] != free[*p as usize]);
-            if pushed && dot(&subtract(&row.mean(&self.spread, v), &row.carry), &row.normal) < row.target {
-                let mut row = *row;
+            if !pushed {
+                continue;
+            }
+            let mut row = close.into_row_on(Spread::range_of(head));
+            if dot(&row.mean(&self.spread, v), &row.normal) < row.target {
                 if row.can_move(&self.spread, &self.inverse_mass) {
-                    self.rows.push(row);
+                    lists::push(&mut self.rows, row);
                 }
                 *head = Spread::NOBODY;
             }
@@ -490,7 +492,7 @@ impl<const D: usize> Touching<D> {
             if !holds {
                 let mut row = *row;
                 if row.can_move(spread, inverse_mass) {
-                    rows.push(row);
+                    lists::push(rows, row);
                 }
             }
             holds
@@ -500,7 +502,7 @@ impl<const D: usize> Touching<D> {
 
     /// Bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
-        let vectors = [&self.inverse_mass, &self.v, &self.moved, &self.impact, &self.end];
+        let vectors = [&self.inverse_mass, &self.v, &self.moved, &self.end];
         let vectors = vectors.map(Vec::capacity).iter().sum::<usize>();
         let states: usize = self.before.iter().chain(&self.after).map(Vec::capacity).sum();
         8 * D * (vectors + states)
@@ -508,12 +510,22 @@ impl<const D: usize> Touching<D> {
             + self.coupled.heap_bytes()
             + self.spread.heap_bytes()
             + self.pairs.heap_bytes()
-            + size_of::<Row<D>>() * (self.rows.capacity() + self.watched.capacity() + self.inactive.capacity())
+            + size_of::<Row<D>>() * (self.rows.capacity() + self.inactive.capacity())
+            + size_of::<ClosePair<D>>() * self.watched.capacity()
             + self.found.iter().map(Found::heap_bytes).sum::<usize>()
             + self.turns.heap_bytes()
             + self.reach.heap_bytes()
             + size_of::<([u32; 2], f64)>() * self.meeting.iter().chain(&self.close).map(Vec::capacity).sum::<usize>()
             + size_of::<Row<D>>() * self.obstacle_rows.iter().map(Vec::capacity).sum::<usize>()
+            + size_of::<LastImpulse<D>>() * self.last.capacity()
+            + self.known.capacity()
+            + self.asks.capacity()
+            + self.touched.capacity()
+            + self.stopped.capacity()
+            + 4 * (self.asked.capacity() + self.number.capacity() + self.changed.capacity())
+            + 16 * self.heads.capacity()
+            + 32 * self.losses.capacity()
+            + 8 * (self.wanted.capacity() + self.masses.capacity() + self.multipliers.capacity())
     }
 }
 

@@ -1,9 +1,11 @@
-//! Sets of contacts that points connect, and sweeps over one set.
+//! Sets of contacts that points connect.
 
 use crate::coupled::Coupled;
 use crate::least_parts;
+use crate::lists;
 use crate::row::Row;
 use crate::spread::Spread;
+use crate::sweeps::Sweeps;
 use crate::vector::{dot, length, subtract};
 use core::ops::Range;
 use core::sync::atomic::{AtomicU64, Ordering};
@@ -27,11 +29,11 @@ pub(crate) const COUPLED_TOLERANCE: f64 = 1e-9;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turns<const D: usize> {
     /// The turn in which the velocity of each point last changed.
-    stamps: Vec<u64>,
+    stamps: Vec<u32>,
     /// The points of each row, and the number of its last turn; 0 before the first turn. In a set whose points respond independently, a point is
     /// given by its index in this set.
-    heads: Vec<([u32; 4], u64)>,
-    now: u64,
+    heads: Vec<([u32; 4], u32)>,
+    now: u32,
     /// The points of all sets whose points respond independently, and the first point of every set.
     alone: Alone<D>,
     first_alone: Vec<u32>,
@@ -44,7 +46,6 @@ pub(crate) struct Turns<const D: usize> {
     joined: Vec<u32>,
     /// The position of every sorted row in the order of features.
     order: Vec<u32>,
-    sorted: Vec<Row<D>>,
     /// The points of every row that can move, in the order of features. Also whether a set has points that do not respond independently.
     movers: Vec<[u32; 4]>,
     mixed: Vec<bool>,
@@ -59,7 +60,7 @@ struct Alone<const D: usize> {
     points: Vec<(u32, bool)>,
     v: Vec<[f64; D]>,
     inverse_mass: Vec<[f64; D]>,
-    stamps: Vec<u64>,
+    stamps: Vec<u32>,
 }
 
 /// The mean approach velocity of the contacts of connected bodies [m/s]. Each set of connected bodies has its own mean, because
@@ -183,6 +184,7 @@ impl<const D: usize> Turns<D> {
     /// Lists the points of every row that can move. A row with fewer points repeats its first one.
     fn find_movers(&mut self, rows: &[Row<D>], inverse_mass: &[[f64; D]]) {
         self.movers.clear();
+        lists::reserve(&mut self.movers, rows.len());
         self.movers.extend(rows.iter().map(|row| moving_head(row, inverse_mass)));
     }
 
@@ -225,7 +227,7 @@ impl<const D: usize> Turns<D> {
     /// velocities of the rows must be known.
     pub(crate) fn join(
         &mut self,
-        rows: &mut Vec<Row<D>>,
+        rows: &mut [Row<D>],
         spread: &Spread,
         inverse_mass: &[[f64; D]],
         coupled: &Coupled<D>,
@@ -258,6 +260,8 @@ impl<const D: usize> Turns<D> {
                 coupled.followers(row.on(spread), |p| self.join_points(first, p));
             }
         }
+        self.stamps.fill(0);
+        self.now = 0;
         // Counting sort from the back.
         self.starts.clear();
         self.joined.clear();
@@ -291,10 +295,10 @@ impl<const D: usize> Turns<D> {
     }
 
     /// Puts the rows into the new order, and copies the points that respond independently.
-    fn sort(&mut self, rows: &mut Vec<Row<D>>, movers: &[[u32; 4]], inverse_mass: &[[f64; D]]) {
-        let Turns { heads, alone, first_alone, starts, number, order, mixed, sorted, .. } = self;
+    fn sort(&mut self, rows: &mut [Row<D>], movers: &[[u32; 4]], inverse_mass: &[[f64; D]]) {
+        let Turns { heads, alone, first_alone, starts, number, order, mixed, joined, .. } = self;
         heads.clear();
-        sorted.clear();
+        lists::reserve(heads, rows.len());
         alone.points.clear();
         first_alone.clear();
         for (ends, mixed) in starts.windows(2).zip(mixed) {
@@ -302,16 +306,14 @@ impl<const D: usize> Turns<D> {
             let first = alone.points.len() as u32;
             first_alone.push(first);
             if *mixed {
-                sorted.extend(own.iter().map(|k| rows[*k as usize]));
                 heads.extend(own.iter().map(|k| (movers[*k as usize], 0)));
                 continue;
             }
             own.iter().flat_map(|k| &movers[*k as usize]).for_each(|p| number[*p as usize] = u32::MAX);
             for k in own {
                 let row = &rows[*k as usize];
-                sorted.push(*row);
                 let (mut head, mut end) = ([0; 4], alone.points.len());
-                alone.points.resize(end + D + 1, (0, false));
+                lists::resize(&mut alone.points, end + D + 1, (0, false));
                 for k in 0..=D {
                     let (p, moves) = (row.points[k], moves(row, k, inverse_mass));
                     let known = number[p as usize];
@@ -325,11 +327,12 @@ impl<const D: usize> Turns<D> {
                 heads.push((head, 0));
             }
         }
-        std::mem::swap(rows, sorted);
+        lists::bring_into_order(rows, order, joined);
         first_alone.push(alone.points.len() as u32);
         alone.stamps.clear();
-        alone.stamps.resize(alone.points.len(), 0);
+        lists::resize(&mut alone.stamps, alone.points.len(), 0);
         alone.inverse_mass.clear();
+        lists::reserve(&mut alone.inverse_mass, alone.points.len());
         alone.inverse_mass.extend(alone.points.iter().map(|(p, _)| inverse_mass[*p as usize]));
     }
 
@@ -365,6 +368,7 @@ impl<const D: usize> Turns<D> {
         let Turns { heads, alone, first_alone, starts, approach, .. } = self;
         let Alone { points, v: own, inverse_mass, stamps } = alone;
         own.clear();
+        lists::reserve(own, points.len());
         own.extend(points.iter().map(|(p, _)| v[*p as usize]));
         let least = threads::part_size(rows.len(), threads, least_parts::CONTACTS);
         let (mut rows, mut heads) = (rows, &mut heads[..]);
@@ -411,7 +415,7 @@ impl<const D: usize> Turns<D> {
                     sweep += 1;
                 }
             }
-            turns.fetch_add(now, Ordering::Relaxed);
+            turns.fetch_add(u64::from(now), Ordering::Relaxed);
         });
         for ((p, moves), own) in points.iter().zip(&*own) {
             if *moves {
@@ -423,8 +427,9 @@ impl<const D: usize> Turns<D> {
 
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
-        8 * (self.stamps.capacity() + self.alone.stamps.capacity() + self.alone.points.capacity())
-            + 24 * self.heads.capacity()
+        4 * (self.stamps.capacity() + self.alone.stamps.capacity())
+            + 8 * self.alone.points.capacity()
+            + 20 * self.heads.capacity()
             + 16 * self.movers.capacity()
             + self.mixed.capacity()
             + 8 * D * (self.alone.v.capacity() + self.alone.inverse_mass.capacity())
@@ -433,7 +438,6 @@ impl<const D: usize> Turns<D> {
                 + self.starts.capacity()
                 + self.first_alone.capacity())
             + 4 * (self.joined.capacity() + self.order.capacity())
-            + size_of::<Row<D>>() * self.sorted.capacity()
     }
 }
 
@@ -441,86 +445,7 @@ impl<const D: usize> Turns<D> {
 struct Part<'a, const D: usize> {
     sets: Range<usize>,
     rows: &'a mut [Row<D>],
-    heads: &'a mut [([u32; 4], u64)],
+    heads: &'a mut [([u32; 4], u32)],
     v: &'a mut [[f64; D]],
-    stamps: &'a mut [u64],
-}
-
-/// Sweeps over the rows of one set.
-pub(crate) struct Sweeps<'a, const D: usize> {
-    pub(crate) rows: &'a mut [Row<D>],
-    pub(crate) heads: &'a mut [([u32; 4], u64)],
-    pub(crate) inverse_mass: &'a [[f64; D]],
-    pub(crate) v: &'a mut [[f64; D]],
-    stamps: &'a mut [u64],
-    /// The number of turns so far.
-    pub(crate) now: &'a mut u64,
-}
-
-impl<const D: usize> Sweeps<'_, D> {
-    /// Sweeps over rows whose points respond independently; returns whether any velocity changed by more than `enough` [m/s].
-    fn sweep_alone(&mut self, backward: bool, enough: f64) -> bool {
-        let turn = |_: &mut (), row: &mut Row<D>, points: &[u32; 4], inverse_mass: &[_], v: &mut [_]| {
-            row.solve(points, inverse_mass, v)
-        };
-        self.sweep(backward, enough, (&mut (), &Spread::default()), turn, |(), _, _| {}).0
-    }
-
-    /// Sweeps over rows with coupled or carried points; returns whether any velocity changed by more than `enough`, and the largest change [m/s].
-    pub(crate) fn sweep_coupled(
-        &mut self,
-        backward: bool,
-        enough: f64,
-        spread: &Spread,
-        coupled: &mut Coupled<D>,
-    ) -> (bool, f64) {
-        let turn = |coupled: &mut Coupled<D>, row: &mut Row<D>, _: &[u32; 4], inverse_mass: &[_], v: &mut [_]| {
-            if row.coupled || row.spread[1] > 0 {
-                return row.solve_coupled(spread, inverse_mass, coupled, v);
-            }
-            let points = row.points;
-            row.solve(&points, inverse_mass, v)
-        };
-        let followers = |coupled: &Coupled<D>, row: &Row<D>, visit: &mut dyn FnMut(u32)| {
-            if row.coupled {
-                coupled.followers(row.on(spread), visit);
-            }
-        };
-        self.sweep(backward, enough, (coupled, spread), turn, followers)
-    }
-
-    /// Sweeps over all rows by `turn`, which returns the change of the velocity of its row [m/s]. A row is skipped as long as no velocity of its
-    /// points has changed by more than `enough` since its last turn, so the cost of a sweep depends on the number of rows that still change.
-    /// `followers` visits the points that respond together with the points of the row. Returns whether any velocity changed by more than `enough`,
-    /// and the largest change [m/s].
-    #[inline(always)]
-    fn sweep<C>(
-        &mut self,
-        backward: bool,
-        enough: f64,
-        (others, spread): (&mut C, &Spread),
-        turn: impl Fn(&mut C, &mut Row<D>, &[u32; 4], &[[f64; D]], &mut [[f64; D]]) -> f64,
-        followers: impl Fn(&C, &Row<D>, &mut dyn FnMut(u32)),
-    ) -> (bool, f64) {
-        let Sweeps { rows, heads, inverse_mass, v, stamps, now } = self;
-        let (mut largest, mut changed): (f64, bool) = (0.0, false);
-        for k in 0..rows.len() {
-            let k = if backward { rows.len() - 1 - k } else { k };
-            let (head, last) = &mut heads[k];
-            let points = spread.points_of::<D>(head);
-            if *last > 0 && points.iter().all(|p| stamps[*p as usize] <= *last) {
-                continue;
-            }
-            **now += 1;
-            let change = turn(others, &mut rows[k], head, inverse_mass, v);
-            largest = change.larger(largest);
-            if change > enough {
-                changed = true;
-                points.iter().for_each(|p| stamps[*p as usize] = **now);
-                followers(others, &rows[k], &mut |p| stamps[p as usize] = **now);
-            }
-            *last = **now;
-        }
-        (changed, largest)
-    }
+    stamps: &'a mut [u32],
 }

@@ -1,17 +1,24 @@
 //! The candidates that may touch in a step according to the bounds on their distances.
 
 use crate::body_pairs::{BodyPairs, Piece};
+use crate::lists;
 use opruga_math::{Pack, Work};
 
 /// A candidate that may touch in a step according to the bound on its distance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Unclear {
     /// The index of the candidate in its list, and that of its pair of bodies.
-    pub(crate) candidate: usize,
+    pub(crate) candidate: u32,
     pub(crate) pair: u32,
-    pub(crate) features: [u32; 2],
     /// The distance at the start of the step, or a lower bound on it [m].
     pub(crate) distance: f64,
+}
+
+impl Unclear {
+    /// The features of the candidate, given those of its list.
+    pub(crate) fn features(&self, list: &[[u32; 2]]) -> [u32; 2] {
+        list[self.candidate as usize]
+    }
 }
 
 /// Lists the candidates that may come closer than a distance beyond any contact, according to the bounds on their distances.
@@ -39,8 +46,8 @@ impl<const D: usize> Work for FindUnclear<'_, D> {
                 continue;
             }
             let part = (*pair as usize, *list, range.clone());
-            self.least.push(self.known.visit_unclear::<P>(part, self.beyond, |candidate, features| {
-                own.push(Unclear { candidate, pair: *pair, features, distance: 0.0 });
+            self.least.push(self.known.visit_unclear::<P>(part, self.beyond, |candidate| {
+                lists::push(own, Unclear { candidate: candidate as u32, pair: *pair, distance: 0.0 });
             }));
         }
     }

@@ -230,7 +230,7 @@ fn edges_know_their_inner_side() {
         let mut candidates = Candidates::default();
         assert!(candidates.find(&surface, &boxes(&x, &x), [0.05; 2], 1000, |a, b| a != b));
         let gaps: Vec<Gap<3>> =
-            candidates.edge_edge.iter().filter_map(|[a, b]| Gap::of_edges(&surface, &x, *a, *b)).collect();
+            candidates.edge_edge.iter().filter_map(|[a, b]| Gap::of_edges(&surface, &x[..], *a, *b)).collect();
         let nearest = gaps.iter().fold(f64::INFINITY, |best, g| if g.gap.abs() < best.abs() { g.gap } else { best });
         assert!((nearest - lift).abs() < 1e-12, "{nearest} {lift}");
     }
