@@ -1,38 +1,52 @@
-//! Estimates the duration of a run. A long duration is reported once, with ways to make the run shorter.
+//! Estimates the duration of a run. A long duration is reported, with ways to make the run shorter.
 
 use crate::errors::{CallNote, Shorter};
 use opruga::core::spec::{Role, Value, Values};
 use opruga::math::words::rounded;
 use opruga::{AnyBody, AnyWorld};
 
-/// The time over which the first frames are measured [s].
+/// The least time over which frames are measured [s].
 const MEASURED: f64 = 2.0;
 /// Runs that take longer than this time are reported [s].
 const LONG: f64 = 30.0;
+/// If a run takes this many times as long as reported, it is reported again.
+const TOO_LOW: f64 = 3.0;
 /// The largest number of substeps that is suggested.
 const MANY_SUBSTEPS: f64 = 1000.0;
 
-/// Reports the duration once.
+/// Reports the duration, and again if it turns out to be much longer.
 #[derive(Default)]
 pub(crate) struct Forecast {
-    looked: bool,
+    /// The time and the frames at the end of the last measurement [s].
+    measured: (f64, u64),
+    /// The time at which the run should end according to the last report [s].
+    end: f64,
 }
 
 impl Forecast {
-    /// The remaining time of a run, if it is long: `wall` seconds were spent on `done` frames, and `left` frames remain.
+    /// The remaining time of a run, if it is long: `wall` seconds were spent on `done` frames, and `left` frames remain. Each measurement covers the
+    /// frames since the previous one, because later frames may take longer: bodies meet.
     pub(crate) fn of(&mut self, world: &dyn AnyWorld, done: u64, left: u64, wall: f64) -> Option<CallNote> {
-        if self.looked || wall < MEASURED || done == 0 {
+        let each = self.frame_time_if_too_low(done, left, wall)?;
+        let rest = each * left as f64;
+        Some(CallNote::TakesLong { duration: duration(rest), frames: left, each, shorter: shorter(world) })
+    }
+
+    /// The time of a frame, if the run takes long and much longer than reported.
+    fn frame_time_if_too_low(&mut self, done: u64, left: u64, wall: f64) -> Option<f64> {
+        let (before, first) = self.measured;
+        if wall - before < MEASURED || done == first {
             return None;
         }
-        self.looked = true;
-        let each = wall / done as f64;
+        self.measured = (wall, done);
+        let each = (wall - before) / (done - first) as f64;
         let rest = each * left as f64;
-        (rest > LONG).then(|| CallNote::TakesLong {
-            duration: duration(rest),
-            frames: left,
-            each,
-            shorter: shorter(world),
-        })
+        let expected = self.end - wall;
+        if rest <= LONG || rest <= TOO_LOW * expected {
+            return None;
+        }
+        self.end = wall + rest;
+        Some(each)
     }
 }
 
@@ -110,7 +124,21 @@ fn explicit_substeps(world: &dyn AnyWorld) -> Option<(&'static str, u32)> {
 
 #[cfg(test)]
 mod tests {
-    use super::duration;
+    use super::{Forecast, duration};
+
+    #[test]
+    fn a_run_is_reported_again_if_it_takes_much_longer_than_expected() {
+        let mut forecast = Forecast::default();
+        let mut at = |done, left, wall| forecast.frame_time_if_too_low(done, left, wall);
+        assert_eq!(at(10, 990, 1.0), None, "too early");
+        assert_eq!(at(20, 980, 2.0), Some(0.1), "98 s");
+        assert_eq!(at(40, 960, 6.0), None, "192 s are not much longer");
+        assert_eq!(at(50, 950, 11.0), Some(0.5), "475 s");
+        assert_eq!(at(60, 940, 21.0), None, "940 s are not much longer");
+        let mut forecast = Forecast::default();
+        assert_eq!(forecast.frame_time_if_too_low(20, 80, 2.0), None, "8 s are short");
+        assert_eq!(forecast.frame_time_if_too_low(22, 78, 6.0), Some(2.0), "156 s");
+    }
 
     #[test]
     fn durations_are_said_as_people_say_them() {
