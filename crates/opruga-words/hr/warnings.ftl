@@ -7,10 +7,25 @@ part-difference-Lost = premalo
 
 ## ErrorHint
 
-part-error_hint-Implicit = kod implicitnih pravila neobjašnjeno je što u jednadžbama ostaje van ravnoteže: manji `tolerance` ili `accuracy = "exact"`
+part-error_hint-RealTime = kod implicitnih pravila neobjašnjeno je što u jednadžbama ostaje van ravnoteže: `accuracy = "exact"` ili više podkoraka
+part-error_hint-Exact = kod implicitnih pravila neobjašnjeno je što u jednadžbama ostaje van ravnoteže: manji `tolerance` ili više podkoraka
 part-error_hint-Contact = tijela su udarila o prepreke, a ondje pada razmjerno koraku kod svakog pravila: više podkoraka
 part-error_hint-ContactOfOthers = tijela su udarila o prepreke, a ondje pada razmjerno koraku kod svakog pravila; najmanja je kod `verlet`
 part-error_hint-Explicit = s više podkoraka je manja, a manja je i kod pravila višeg reda
+
+## DampingHint
+
+part-damping_hint-Substeps = s više podkoraka je manje
+part-damping_hint-Undamped = s više podkoraka je manje, a `implicit_midpoint` i `newmark` sami uzimaju manje
+part-damping_hint-RealTime = s više podkoraka je manje, a `bdf2` sam uzima manje
+part-damping_hint-Radius = manje je s više podkoraka ili s većim `spectral_radius`
+part-damping_hint-Damped = s više podkoraka je manje, a `backward_euler` prigušuje što bi raslo
+
+## BudgetHint
+
+part-budget_hint-Stiff = tijelo je prekruto ili pretanko za korak: više podkoraka, `linear_solver = "cholesky"`, ili `accuracy = "exact"`
+part-budget_hint-Factored = tijelo je prekruto ili pretanko za korak: više podkoraka ili `accuracy = "exact"`
+part-budget_hint-Touching = dodir mijenja sile tijekom koraka, ili je tijelo prekruto ili pretanko za korak: više podkoraka, veći `iterations` ili `accuracy = "exact"`
 
 ## CellHint
 
@@ -61,14 +76,17 @@ limit-force-ForcesLimited = sile su skraćene na `world.largest_force`
 limit-velocity-VelocitiesLimited = brzine su skraćene na `world.largest_velocity`
 limit-drag-PullsLimited = vuče su skraćene na svoju `largest_force`, a gdje prizor šuti na silu opruge rastegnute za deset veličina tijela
 limit-distance-BodiesLost = tijela su otišla dalje od `world.largest_distance` i uklonjena su
-ledger-numerical_damping-TakenByRules = implicitna su pravila sama uzela { $energy } J, više od dvadesetine energije gibanja (`loss_numerical`): što je brzo za korak nestaje ili raste zbog pravila, a ne po zakonu fizike; s više podkoraka je manje, a `implicit_midpoint` i `newmark` sami uzimaju manje
-ledger-numerical_damping-MadeByRules = implicitna su pravila sama dodala { $energy } J, više od dvadesetine energije gibanja (`loss_numerical`): što je brzo za korak nestaje ili raste zbog pravila, a ne po zakonu fizike; s više podkoraka je manje, a `backward_euler` prigušuje što bi raslo
+ledger-numerical_damping-TakenByRules = implicitna su pravila sama uzela { $energy } J (`loss_numerical`), više od dvadesetine energije gibanja i više nego prigušenje, trenje i udari zajedno: što je brzo za korak nestaje zbog pravila, a ne po zakonu fizike
+    .hint = { $help }
+ledger-numerical_damping-MadeByRules = implicitna su pravila sama dodala { $energy } J (`loss_numerical`), više od dvadesetine energije gibanja: što je brzo za korak raste zbog pravila, a ne po zakonu fizike
+    .hint = { $help }
 ledger-closure-Unexplained = sličica je završila s više od desetine energije gibanja neobjašnjene (`closure`), do kraja { $energy } J { $difference }: pogreška integratora; { $help }
 step-not_converged-Accepted = korak je vrijedio iako nije konvergirao: `when_not_converged` je `"accept"`, ili se trenje uz barijeru nakon trideset krugova još mijenjalo za više od tisućinke
     .hint = više podkoraka
 step-halved-Halved = korak od { $h } s, u statici ono što on dodaje teretu i putovima pribadača, učinjen je u dvije polovice, a one opet gdje je trebalo, do { $shortest } s, dijela od 1/{ $parts }: Newtonova metoda nije konvergirala preko cijeloga, ili neki model ondje nema smisla (`when_not_converged = "halve"`, ili u stvarnom vremenu); rezultat je onaj tako kratkih koraka na tom mjestu, zbog toga nije lošiji, a trajao je dulje
     .hint = više podkoraka, u statici više `load_steps` ili sličica, štedi uzaludne pokušaje
-step-cut_off-CutOff = korak u stvarnom vremenu potrošio je svoje, ili toliko umnožaka da u sporim gibanjima može ostati mnogo: sile izvan ravnoteže koje bi pojedine čvorove pomaknule do { $left } m; tijelo je prekruto ili pretanko za korak: više podkoraka, `linear_solver = "cholesky"`, ili `accuracy = "exact"`
+step-cut_off-CutOff = korak u stvarnom vremenu potrošio je svoje, ili toliko umnožaka da u sporim gibanjima može ostati mnogo: sile izvan ravnoteže koje bi pojedine čvorove pomaknule do { $left } m
+    .hint = { $help }
 statics-blurred-Estimated = ravnoteža je nađena gdje su sile male kao njihovo zaokruživanje, iako bi ono što od njih ostaje još pomaknulo čvorove do { $error_estimate } m: položaji imaju šesnaest znamenki, a tijelo je tako vitko, ćelije tako tanke ili ishodište tako daleko da je to ono što one ostavljaju otvorenim; što je u rezultatu manje, slučajno je
     .hint = ćelije manje duge prema debljini, ili prizor u ishodištu
 conditioning-Conditioning = korak tijela tako krutog za svoju masu da zaokruživanje njegovih položaja, koji imaju šesnaest znamenki, stvara sile do { NUMBER($times, maximumSignificantDigits: 3) } puta veće od tereta čvora: njegovo gibanje kao cjeline uravnoteženo je zasebno i točno je, čvorovi su gdje pripadaju osim zadnje znamenke položaja, a naprezanja su slučajna

@@ -51,9 +51,16 @@ impl Energy {
         self.part_in_motion(self.loss_numerical + self.loss_integrator)
     }
 
-    /// Whether the numerical loss or gain of integrators is so large that a warning is due.
+    /// Whether the numerical loss or gain of integrators is so large that the frame is counted.
     pub(crate) fn is_damped_by_rules(&self) -> bool {
         self.part_in_motion(self.loss_numerical) > LARGEST_DAMPING
+    }
+
+    /// Whether the numerical loss changes what a user sees: integrators have removed more energy than damping, friction and impacts together, so most
+    /// motion has ended without a physical cause. Integrators never add energy for a physical reason.
+    pub(crate) fn rules_prevail(&self) -> bool {
+        let physical = self.loss_damping + self.loss_friction + self.loss_contact;
+        self.is_damped_by_rules() && (self.loss_numerical < 0.0 || self.loss_numerical > physical)
     }
 
     /// Whether every number is finite.
@@ -361,7 +368,7 @@ impl Flows {
         self.limited_velocities += work.limited_velocities;
         self.solver.add(&work.solver);
     }
-    /// Counts a frame that ended with this ledger, if a warning is due. The ledger of models without an energy does not close.
+    /// Counts a frame that ended with this ledger, if a warning may be due. The ledger of models without an energy does not close.
     pub(crate) fn count_frame(&mut self, energy: &Energy, has_energy: impl FnOnce() -> bool) {
         self.open_frames += u64::from(energy.closure > LARGEST_CLOSURE && has_energy());
         self.damped_frames += u64::from(energy.is_damped_by_rules());

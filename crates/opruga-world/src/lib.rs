@@ -26,6 +26,7 @@ pub mod error;
 mod faults;
 mod frame_hash;
 mod grouping;
+mod hints;
 mod inputs;
 mod inverted;
 mod island;

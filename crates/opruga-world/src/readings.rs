@@ -214,11 +214,11 @@ impl<const D: usize> World<D> {
         add(WorldWarning::PullsLimited {}, self.flows.limited_pulls);
         add(WorldWarning::BodiesLost {}, self.flows.lost_bodies);
         let by_rules = match self.energy.loss_numerical {
-            made if made < 0.0 => WorldWarning::MadeByRules { energy: -made },
-            energy => WorldWarning::TakenByRules { energy },
+            made if made < 0.0 => WorldWarning::MadeByRules { energy: -made, help: self.against_growth() },
+            energy => WorldWarning::TakenByRules { energy, help: self.against_damping() },
         };
         // A body that starts at rest has so little energy in motion in its first frames that any integrator dissipates a large part of it.
-        add(by_rules, if self.energy.is_damped_by_rules() { self.flows.damped_frames } else { 0 });
+        add(by_rules, if self.energy.rules_prevail() { self.flows.damped_frames } else { 0 });
         let (energy, difference) = match self.energy.loss_integrator {
             lost if lost < 0.0 => (-lost, Difference::Gained),
             lost => (lost, Difference::Lost),
@@ -226,8 +226,8 @@ impl<const D: usize> World<D> {
         // Contact begins and ends within steps, so an integrator of higher order does not reduce this error.
         let every = |of: &dyn Fn(&Island<D>) -> bool| self.islands.iter().all(of);
         let help = if every(&|island| island.integrator.measures_its_damping()) {
-            ErrorHint::Implicit
-        } else if self.energy.loss_contact + self.energy.loss_friction <= 0.0 {
+            if self.is_in_real_time() { ErrorHint::RealTime } else { ErrorHint::Exact }
+        } else if !self.has_lost_energy_in_contact() {
             ErrorHint::Explicit
         } else if every(&|island| island.integrator.makes_least_of_contact()) {
             ErrorHint::Contact
@@ -240,7 +240,7 @@ impl<const D: usize> World<D> {
         // A step is not halved more often than an integrator allows, so this does not overflow.
         let parts = 1u64 << solver.deepest.min(63);
         add(WorldWarning::Halved { h: self.h(), shortest: self.h() / parts as f64, parts }, solver.halved);
-        add(WorldWarning::CutOff { left: solver.left }, solver.cut_off);
+        add(WorldWarning::CutOff { left: solver.left, help: self.against_lack_of_budget() }, solver.cut_off);
         add(WorldWarning::Estimated { error_estimate: solver.error_estimate }, solver.estimated);
         add(WorldWarning::Conditioning { times: solver.conditioning }, solver.conditioned);
         add(WorldWarning::Disturbed {}, solver.disturbed);

@@ -13,6 +13,8 @@ use opruga_math::{messages, terms};
 pub const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     Difference::VARIANTS,
     ErrorHint::VARIANTS,
+    DampingHint::VARIANTS,
+    BudgetHint::VARIANTS,
     CellHint::VARIANTS,
     BendingHint::VARIANTS,
     UnfoldHint::VARIANTS,
@@ -83,10 +85,31 @@ terms! {
 terms! {
     /// What reduces the error of an integrator.
     pub enum ErrorHint = "part.error_hint" {
-        Implicit = "with implicit integrators, it comes from the residual of their equations; use a smaller `tolerance`, or `accuracy = \"exact\"`",
+        RealTime = "with implicit integrators, it comes from the residual of their equations; use `accuracy = \"exact\"`, or more substeps",
+        Exact = "with implicit integrators, it comes from the residual of their equations; use a smaller `tolerance`, or more substeps",
         Contact = "bodies met obstacles; at obstacles, this error is proportional to the step with every integrator, so use more substeps",
         ContactOfOthers = "bodies met obstacles; at obstacles, this error is proportional to the step with every integrator, but smallest with `verlet`",
         Explicit = "use more substeps, or an integrator of higher order",
+    }
+}
+
+terms! {
+    /// What reduces the energy that implicit integrators themselves remove or add.
+    pub enum DampingHint = "part.damping_hint" {
+        Substeps = "more substeps reduce this",
+        Undamped = "more substeps reduce this, and `implicit_midpoint` or `newmark` remove less",
+        RealTime = "more substeps reduce this, and `bdf2` removes less",
+        Radius = "more substeps or a larger `spectral_radius` reduce this",
+        Damped = "more substeps reduce this, and `backward_euler` damps motion that would grow",
+    }
+}
+
+terms! {
+    /// Why real-time steps used up their budget, and what helps.
+    pub enum BudgetHint = "part.budget_hint" {
+        Stiff = "the body is too stiff or too slender for the step; use more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`",
+        Factored = "the body is too stiff or too slender for the step; use more substeps, or `accuracy = \"exact\"`",
+        Touching = "contact changes the forces during the step, or a body is too stiff or too slender for the step; use more substeps, more `iterations`, or `accuracy = \"exact\"`",
     }
 }
 
@@ -162,11 +185,13 @@ messages! {
         "limit.distance" #[error("bodies went farther than `world.largest_distance` and were removed")]
         BodiesLost {},
         "ledger.numerical_damping"
-        #[error("the implicit integrators themselves removed {} J, more than a twentieth of the energy in motion (`loss_numerical`). Motion that is fast compared with the step decays or grows because of the integrator, not because of physics. More substeps reduce this, and `implicit_midpoint` or `newmark` remove less", number(*energy))]
-        TakenByRules { energy: f64 },
+        #[error("the implicit integrators themselves removed {} J (`loss_numerical`), more than a twentieth of the energy in motion, and more than damping, friction and impacts together. Motion that is fast compared with the step decays because of the integrator, not because of physics", number(*energy))]
+        #[hint("{help}")]
+        TakenByRules { energy: f64, help: DampingHint },
         "ledger.numerical_damping"
-        #[error("the implicit integrators themselves added {} J, more than a twentieth of the energy in motion (`loss_numerical`). Motion that is fast compared with the step decays or grows because of the integrator, not because of physics. More substeps reduce this, and `backward_euler` damps motion that would grow", number(*energy))]
-        MadeByRules { energy: f64 },
+        #[error("the implicit integrators themselves added {} J (`loss_numerical`), more than a twentieth of the energy in motion. Motion that is fast compared with the step grows because of the integrator, not because of physics", number(*energy))]
+        #[hint("{help}")]
+        MadeByRules { energy: f64, help: DampingHint },
         "ledger.closure"
         #[error("a frame ended with more than a tenth of the energy in motion unexplained (`closure`): {} J {difference} so far by the error of the integrator; {help}", number(*energy))]
         Unexplained { energy: f64, difference: Difference, help: ErrorHint },
@@ -178,8 +203,9 @@ messages! {
         #[hint("more substeps (in statics, more `load_steps` or frames) avoid the failed attempts")]
         Halved { h: f64, shortest: f64, parts: u64 },
         "step.cut_off"
-        #[error("a real-time step used up its budget, or needed so many products with the matrix that slow motions may have a large residual: the residual forces would move single nodes by up to {} m. The body is too stiff or too slender for the step; use more substeps, `linear_solver = \"cholesky\"`, or `accuracy = \"exact\"`", number(*left))]
-        CutOff { left: f64 },
+        #[error("a real-time step used up its budget, or needed so many products with the matrix that slow motions may have a large residual: the residual forces would move single nodes by up to {} m", number(*left))]
+        #[hint("{help}")]
+        CutOff { left: f64, help: BudgetHint },
         "statics.blurred"
         #[error("an equilibrium was found in which forces are as small as their rounding errors, but the residual could still move nodes by up to {} m. Positions have sixteen digits, which is too few for a body so slender, for cells so thin or for positions so far from the origin. Details of the result that are smaller than this are meaningless", number(*error_estimate))]
         #[hint("use cells that are shorter relative to their thickness, or move the scene to the origin")]

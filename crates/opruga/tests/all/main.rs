@@ -5,6 +5,7 @@ mod broken_off;
 mod chambers;
 mod closed_forms;
 mod common;
+mod contact_faults;
 mod drawings;
 mod energy_in_flight;
 mod examples;

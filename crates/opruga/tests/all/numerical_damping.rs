@@ -78,6 +78,73 @@ fn a_pendulum_that_the_rule_stops_is_told() {
     }
 }
 
+/// The advice of the warnings with a code.
+fn advice<const D: usize>(world: &World<D>, code: &str) -> Option<String> {
+    let warning = world.warnings().into_iter().find(|warning| warning.code == code)?;
+    warning.field("help")
+}
+
+/// A body that falls and comes to rest loses its energy by impacts, friction and damping. A smaller part that the integrator removes is no news; without
+/// damping and impacts, the integrator alone ends the motion.
+#[test]
+fn the_loss_of_the_rule_is_told_of_only_if_it_exceeds_all_physical_losses() {
+    let block = "[[body]]\nname = \"block\"\nshape = { kind = \"grid\", size = [0.4, 0.4], cells = [4, 4], corner = [0, 1] }\ndensity = 500\n\
+        models = [ { kind = \"fem\", youngs_modulus = 1e5, poissons_ratio = 0.3, damping = 0.02 } ]\n";
+    let text = tight(1.0 / 60.0, 4, -9.81, "backward_euler") + block + FLOOR;
+    let mut world = built(plane(&text));
+    frames(&mut world, 120);
+    let e = world.energy();
+    let physical = e.loss_damping + e.loss_friction + e.loss_contact;
+    assert!(e.loss_numerical > 0.06 * e.in_motion && e.loss_numerical < 0.8 * physical, "{e:?}");
+    assert!(!warns(&world, NUMERICAL), "{e:?}");
+
+    let mut free = built(plane(&(tight(0.05, 1, 0.0, "backward_euler") + &SPINNING.replace("MORE", ""))));
+    frames(&mut free, 100);
+    assert!(warns(&free, NUMERICAL), "{:?}", free.energy());
+}
+
+#[test]
+fn the_advice_against_damping_by_the_rule_names_nothing_that_the_scene_uses() {
+    // The rule, more settings, and what is advised.
+    let cases = [
+        ("backward_euler", "", "implicit_midpoint"),
+        ("backward_euler", "accuracy = \"real_time\"\n", "bdf2"),
+        ("newmark", "spectral_radius = 0.0\n", "spectral_radius"),
+    ];
+    for (rule, more, expected) in cases {
+        let text =
+            head(0.05, 1, 0.0, rule).replace("[world]", &format!("{more}[world]")) + &SPINNING.replace("MORE", "");
+        let mut world = built(plane(&text));
+        frames(&mut world, 100);
+        let advice = advice(&world, NUMERICAL).unwrap_or_else(|| panic!("{rule}: {:?}", world.energy()));
+        assert!(!advice.contains(&format!("`{rule}`")) && advice.contains(expected), "{rule}: {advice}");
+        assert_eq!(
+            advice.contains("midpoint"),
+            expected == "implicit_midpoint",
+            "steps in real time refuse it: {advice}"
+        );
+    }
+}
+
+/// With a tolerance of a tenth of the body, exact steps leave much of their equations unbalanced.
+#[test]
+fn the_advice_against_an_open_ledger_names_another_setting_than_the_one_in_use() {
+    for (accuracy, other) in [("exact", "tolerance"), ("real_time", "exact")] {
+        let settings =
+            format!("accuracy = \"{accuracy}\"\ntolerance = 0.1\niterations = 1\nwhen_not_converged = \"accept\"\n");
+        let text = head(0.1, 1, 0.0, "backward_euler").replace("[world]", &format!("{settings}[world]"));
+        let mut world = built(plane(&(text + &SPINNING.replace("MORE", ""))));
+        for _ in 0..60 {
+            frames(&mut world, 1);
+            if let Some(advice) = advice(&world, "ledger.closure") {
+                assert!(!advice.contains(accuracy) && advice.contains(other), "{advice}");
+                break;
+            }
+        }
+        assert!(warns(&world, "ledger.closure"), "{accuracy}: {:?}", world.energy());
+    }
+}
+
 const RING: &str = "[[body]]\nname = \"ball\"\nshape = { kind = \"ring\", radius = 0.5, vertices = 16, center = [0.0, 0.7] }\n\
     mass = 1.0\nvelocity = [1.5, -1.0]\nmodels = [ { kind = \"mass_spring\", stiffness = 800.0, damping = 1.0 }, GAS ]\n";
 

@@ -1,0 +1,65 @@
+//! Faults of a scene that are about contact are reported with the line of their cause, the value and what would help.
+
+use crate::common;
+use common::*;
+use opruga::blueprint::AnyBlueprint;
+use opruga::io::refusals::in_scene;
+use opruga::io::{SceneError, scene};
+use opruga::{Options, World, WorldError, catalogue};
+use std::sync::Arc;
+
+/// The errors of the reader.
+fn refusals(text: &str) -> Vec<SceneError> {
+    read(text).err().unwrap_or_default()
+}
+
+/// An error of a world, with its line in the scene.
+fn located(error: &WorldError, text: &str) -> SceneError {
+    in_scene(error.into(), text, "test.toml", &[])
+}
+
+/// All errors of a scene in the plane whose world cannot be built.
+fn problems(text: &str) -> Vec<SceneError> {
+    let problems = World::problems(&plane(text), &Options::default(), &Arc::default());
+    problems.iter().map(|error| located(error, text)).collect()
+}
+
+/// The number of the only line that begins with these words.
+fn line(text: &str, words: &str) -> Option<usize> {
+    assert_eq!(text.lines().filter(|line| line.starts_with(words)).count(), 1, "{words}");
+    text.lines().position(|line| line.starts_with(words)).map(|line| line + 1)
+}
+
+/// A block of four cells, with its lower left corner and more lines.
+fn block(name: &str, corner: [f64; 2], more: &str) -> String {
+    format!(
+        "[[body]]\nname = \"{name}\"\nshape = {{ kind = \"grid\", size = [1, 1], cells = [2, 2], corner = {corner:?} }}\ndensity = 100.0\n{more}\
+         models = [{{ kind = \"fem\", youngs_modulus = 1e4 }}]\n"
+    )
+}
+
+fn start(rule: &str, contact: &str) -> String {
+    head(0.01, 4, 0.0, rule) + &format!("[contact]\n{contact}")
+}
+
+/// Two bodies that are apart.
+fn two(rule: &str, contact: &str, more: &str) -> String {
+    start(rule, contact) + &block("a", [0.0, 0.0], "") + &block("b", [3.0, 0.0], more)
+}
+
+/// A clamped bar under a sudden weight, which one iteration leaves far out of balance, alone and beside a body that it may touch.
+#[test]
+fn a_step_that_used_up_its_budget_where_bodies_touch_is_not_blamed_on_stiffness_alone() {
+    let settings = "accuracy = \"real_time\"\niterations = 1\n";
+    let bar = "[[body]]\nname = \"bar\"\nshape = { kind = \"grid\", size = [1, 0.1], cells = [8, 2] }\ndensity = 1000.0\n\
+        pin = [{ select = { side = \"left\" }, axes = \"xy\" }]\nmodels = [{ kind = \"fem\", youngs_modulus = 1e6 }]\n";
+    let advice = |contact: &str| {
+        let text = head(1.0 / 60.0, 1, -50.0, "backward_euler").replace("[world]", &format!("{settings}[world]"));
+        let mut world = built(plane(&(text + contact + bar + &block("b", [0.0, 3.0], ""))));
+        frames(&mut world, 1);
+        let warning = world.warnings().into_iter().find(|warning| warning.code == "step.cut_off").expect("a warning");
+        warning.field("help").expect("advice")
+    };
+    assert!(advice("[contact]\n").contains("contact"), "{}", advice("[contact]\n"));
+    assert!(!advice("").contains("contact"), "{}", advice(""));
+}
