@@ -31,6 +31,7 @@ part-condition-Given = uz `{ $field }`
 part-condition-GivenOneOf = uz { $fields }
 part-condition-NotGiven = bez `{ $field }`
 part-condition-NotZero = gdje `{ $field }` nije 0
+part-condition-Lattice = za tijelo koje ispunjava rešetka
 part-condition-Section = u sceni s odjeljkom `[{ $section }]`
 
 ## ValueError

@@ -3,7 +3,7 @@
 use super::Cost;
 use super::body_list::Bodies;
 use super::copies::{Copies, copies, write_out};
-use super::errors::{BodyError, Part, SceneAllowed, SceneHint, Wanted};
+use super::errors::{BodyCondition, BodyError, Part, SceneAllowed, SceneHint, Wanted};
 use super::names::{Names, What};
 use super::reader::{Reader, join};
 use super::shape::{self, ShapeLocation};
@@ -415,6 +415,11 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
                 return None;
             }
         },
+    if mesh.skin.is_none()
+        && let Some(contact) = draft.node.get("contact")
+    {
+        reader.no_effect(contact, &join(&draft.path, "contact"), "surface", BodyCondition::Lattice {});
+    }
         // A body without a mass is an error; it gets some mass only so that the search for errors can continue.
         (mass, _) => mass.clone().unwrap_or(Mass::Node(1.0)),
     };

@@ -1,7 +1,7 @@
 //! Errors and warnings of the scene reader, by subject.
 
-use opruga_core::spec::{self, ConditionText};
-use opruga_math::message::{Field, IntoField};
+use opruga_core::spec;
+use opruga_math::message::{AnyMessage, Field, IntoField};
 use opruga_math::words::{counted, number};
 use opruga_math::{messages, terms};
 use opruga_mesh::MeshError;
@@ -115,6 +115,13 @@ messages! {
         HolesInside {},
     }
 
+    /// A property of a body that a field requires.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(crate) enum BodyCondition {
+        "part.condition" #[error("for a body that a lattice fills")]
+        Lattice {},
+    }
+
     /// What helps, if the message does not say it.
     #[derive(Clone, Debug, PartialEq)]
     pub(crate) enum SceneHint {
@@ -206,7 +213,7 @@ messages! {
         "scene.unknown_field" #[error("there is no field `{field}`")] #[value("{field}")]
         NoFieldInScene { field: String },
         "scene.no_effect" #[error("`{field}` has no effect here; it has an effect only {condition}")] #[value("{value}")]
-        NoEffect { field: &'static str, condition: ConditionText, value: String },
+        NoEffect { field: &'static str, condition: AnyMessage, value: String },
         "scene.format" #[error("the format is {value}")] #[value("{value}")] #[allowed("{readable}")]
         #[hint("this version reads opruga-1 only; another version of the program may read this scene")]
         Format { value: String, readable: String },
@@ -408,6 +415,7 @@ pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[
 impl Wanted {
     /// Whether a number would be accepted.
     pub(crate) fn takes_numbers(self) -> bool {
+    BodyCondition::VARIANTS,
         matches!(self, Wanted::Node | Wanted::Counts | Wanted::Body)
     }
 }

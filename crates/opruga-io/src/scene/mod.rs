@@ -39,7 +39,7 @@ pub(crate) use cost::{Cost, CostError, shown};
 pub(crate) use errors::MESSAGES;
 use errors::{Part, ReferenceError, SceneHint};
 use moments::Frames;
-use opruga_core::spec::{Values, nearest};
+use opruga_core::spec::{ConditionText, Values, nearest};
 use opruga_world::blueprint::{
     AnyBlueprint, Blueprint, ColliderBlueprint, ContactBlueprint, LoadBlueprint, Pictured, Surroundings, Time,
 };
@@ -284,7 +284,8 @@ fn contact<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies
     let Some(node) = root.get("contact") else {
         if let Some(Data::Array(bodies)) = root.get("body").map(|bodies| &bodies.data) {
             for (number, body) in bodies.iter().enumerate() {
-                reader.needs_section(body, &format!("body.{number}"), "contact");
+                let condition = ConditionText::Section { section: "contact" };
+                reader.no_effect(body, &format!("body.{number}"), "contact", condition);
             }
         }
         return None;

@@ -6,7 +6,8 @@ use crate::catalogue::{Catalogue, find};
 use crate::document::{Data, Entry, Location, Node};
 use crate::problem::{MOST_SHOWN, Notice, SceneError, visible};
 use crate::source::Source;
-use opruga_core::spec::{ChoiceError, ConditionText, Default, Spec, Values, nearest, quoted};
+use opruga_core::spec::{ChoiceError, Default, Spec, Values, nearest, quoted};
+use opruga_math::message::AnyMessage;
 use opruga_world::schema::{self, Child, Section};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -268,16 +269,16 @@ impl<'a> Reader<'a> {
             let Some(field) = spec.fields.iter().find(|field| field.name == entry.key) else { continue };
             let Some(condition) = field.without_effect(values, self.dimension) else { continue };
             let (field, value) = (field.name, entry.value.shown());
-            let about = FieldError::NoEffect { field, condition: condition.text(), value };
+            let about = FieldError::NoEffect { field, condition: condition.text().into(), value };
             let about = SceneError::of(about).path(join(path, field));
             self.notice(entry.location, about);
         }
     }
 
-    /// Reports a field that has no effect because the scene has no section with its name.
-    pub(crate) fn needs_section(&mut self, node: &Node, path: &str, field: &'static str) {
+    /// Reports a field, if it is given, that has an effect only under a condition that does not hold.
+    pub(crate) fn no_effect(&mut self, node: &Node, path: &str, field: &'static str, condition: impl Into<AnyMessage>) {
         let Some(entry) = node.entry(field) else { return };
-        let (condition, value) = (ConditionText::Section { section: field }, entry.value.shown());
+        let (condition, value) = (condition.into(), entry.value.shown());
         let about = FieldError::NoEffect { field, condition, value };
         self.notice(entry.location, SceneError::of(about).path(join(path, field)));
     }

@@ -47,6 +47,23 @@ fn two(rule: &str, contact: &str, more: &str) -> String {
     start(rule, contact) + &block("a", [0.0, 0.0], "") + &block("b", [3.0, 0.0], more)
 }
 
+/// The reading of a scene gives its notices.
+#[test]
+fn a_choice_of_surface_without_a_lattice_is_reported_and_with_a_lattice_it_is_not() {
+    let options = scene::Options { files: opruga::scenes::files(), ..scene::Options::default() };
+    let told = |text: &str| {
+        let (_, notices) = scene::read(text.as_bytes(), "test.toml", &catalogue(), &options).expect("a scene");
+        notices
+            .into_iter()
+            .any(|notice| notice.about.code == "scene.no_effect" && notice.about.path.ends_with("surface"))
+    };
+    let cells = "contact = { surface = \"cells\" }\n";
+    assert!(told(&two("verlet", "", cells)));
+    let filled = "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\n[integrator]\nkind = \"verlet\"\n[contact]\n[[body]]\nname = \"b\"\n\
+        shape = { kind = \"icosphere\", radius = 1.0, subdivisions = 1, filling = \"lattice\", spacing = 0.5 }\ndensity = 100.0\n";
+    assert!(!told(&format!("{filled}{cells}")));
+}
+
 /// A clamped bar under a sudden weight, which one iteration leaves far out of balance, alone and beside a body that it may touch.
 #[test]
 fn a_step_that_used_up_its_budget_where_bodies_touch_is_not_blamed_on_stiffness_alone() {
