@@ -326,6 +326,12 @@ scene-duplicate_name-TwoProbes = dvije sonde zovu se `{ $name }`{ $line ->
     }
 scene-duplicate_name-AlikeBodies = imena dvaju tijela izgledaju jednako i razlikuju se samo normalizacijom Unicodea, ovdje { $here ->
         [none] ništa
+scene-conflict-SamePair = par skupina `{ $first }` i `{ $second }` već je zadan{ $line ->
+        [none] {""}
+       *[other] , prvo u retku { $line }
+    }
+    .allowed = najviše jedan par istih dviju skupina, bilo kojim redom
+    .hint = stavi sve vrijednosti tih skupina u jedan `[[contact.pair]]`
        *[other] { $here }
     }, ondje { $there ->
         [none] ništa

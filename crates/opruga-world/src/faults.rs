@@ -58,6 +58,9 @@ messages! {
         SelectsNothing { body: String },
         "scene.unknown_name" #[error("no body is in the group `{group}`")] #[value("{group}")] #[allowed("{known}")]
         NoMember { group: String, known: String },
+        "scene.conflict" #[error("a pair of the groups `{first}` and `{second}` was given before{}", first_in(line))]
+        #[value("{first}, {second}")] #[allowed("at most one pair of the same two groups, in either order")] #[hint("put all values for these groups into one `[[contact.pair]]`")]
+        SamePair { first: String, second: String, line: Option<usize> },
         "scene.unknown_name" #[error("there is no body {index}")] #[value("{index}")] #[allowed("0 to {last}")]
         NoBody { index: usize, last: usize },
         "scene.unknown_name" #[error("there is no body {index}")] #[value("{index}")] #[allowed("the scene has no bodies")]

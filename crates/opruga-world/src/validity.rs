@@ -8,7 +8,7 @@ use crate::blueprint::{
 use crate::error::{Part, WorldError};
 use crate::schema::{self, Section};
 use opruga_core::error::BuildError;
-use opruga_core::spec::{Allowed, Value, ValueError};
+use opruga_core::spec::{Allowed, Value, ValueError, Values};
 use opruga_math::message::AnyMessage;
 use opruga_mesh::outline::OutlineError;
 use std::collections::BTreeSet;
@@ -212,9 +212,17 @@ pub(crate) fn body<const D: usize>(body: &BodyBlueprint<D>) -> Result<(), WorldE
     mesh(body).and_then(|()| numbers(body)).map_err(|fault| fault.at(Part::body(&body.name)))
 }
 
-/// Refuses pairs of groups without bodies.
+/// The two groups of a pair of contact in alphabetical order, which are the same for pairs of the same groups.
+pub fn groups_of_pair(pair: &Values) -> [&str; 2] {
+    let mut groups = ["first", "second"].map(|field| pair.text(field).unwrap_or(""));
+    groups.sort_unstable();
+    groups
+}
+
+/// Refuses pairs of groups without bodies, and several pairs of the same groups.
 fn contact<const D: usize>(scene: &Blueprint<D>, bodies: &[&BodyBlueprint<D>]) -> Result<(), WorldError> {
     let groups: BTreeSet<&str> = bodies.iter().map(|body| body.contact_group()).collect();
+    let mut known = BTreeSet::new();
     for (k, pair) in scene.contact.iter().flat_map(|contact| contact.pairs.iter().enumerate()) {
         for field in ["first", "second"] {
             let group = pair.text(field).unwrap_or("");
@@ -223,6 +231,11 @@ fn contact<const D: usize>(scene: &Blueprint<D>, bodies: &[&BodyBlueprint<D>]) -
                 let fault = Fault::new(field, BlueprintFault::NoMember { group: group.into(), known });
                 return Err(fault.at(Part::Pair { index: k }));
             }
+        }
+        if !known.insert(groups_of_pair(pair)) {
+            let [first, second] = groups_of_pair(pair).map(String::from);
+            let fault = Fault::new("second", BlueprintFault::SamePair { first, second, line: None });
+            return Err(fault.at(Part::Pair { index: k }));
         }
     }
     Ok(())

@@ -9,7 +9,7 @@ use super::reader::{Reader, join};
 use super::shape::{self, ShapeLocation};
 use super::velocities::{self, Velocities};
 use super::{location_of, pins, selectors};
-use crate::document::{Data, Location, Node};
+use crate::document::{Data, Node};
 use crate::problem::{SceneError, visible};
 use crate::shapes::Loaded;
 use opruga_core::spec::{Role, Values};
@@ -266,12 +266,8 @@ fn duplicate_names<const D: usize>(reader: &mut Reader<'_>, drafts: &[Draft<'_, 
     let mut names = Names::of(What::Bodies);
     for draft in drafts.iter().filter(|draft| !draft.name.is_empty()) {
         let location = location_of(draft.node, "name");
-        let source = reader.source;
-        let line = |first: &Location| match first {
-            Location::Bytes(at, _) => Some(source.position(*at).0),
-            Location::Override(_) => None,
-        };
-        if let Some(error) = names.take(&draft.name, location, line) {
+        let known = names.take(&draft.name, location, |first| reader.line_of(*first));
+        if let Some(error) = known {
             let error = error.path(join(&draft.path, "name"));
             reader.report(location, error.advice(SceneHint::OwnName {}));
         }

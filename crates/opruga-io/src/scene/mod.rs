@@ -291,8 +291,9 @@ fn contact<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies
         return None;
     };
     let values = reader.fields(node, "contact", &schema::CONTACT, None);
-    let mut pairs = Vec::new();
+    let (mut pairs, mut lines) = (Vec::new(), BTreeMap::new());
     for (item, path) in reader.list(node, "contact", "pair") {
+        let before = reader.count();
         let pair = reader.fields(item, &path, &schema::CONTACT_PAIR, None);
         // The name may mean a body that has an error.
         for field in ["first", "second"].into_iter().filter(|_| bodies.broken.is_empty()) {
@@ -302,6 +303,18 @@ fn contact<const D: usize>(reader: &mut Reader<'_>, root: &Node, bodies: &Bodies
                 let closest = nearest(pair.text(field).unwrap_or(""), groups());
                 let error = SceneError::of(about).path(join(&path, field)).nearest(closest);
                 reader.report(location_of(item, field), error);
+            }
+        }
+        if reader.count() == before {
+            let at = location_of(item, "second");
+            let groups = validity::groups_of_pair(&pair).map(String::from);
+            match lines.get(&groups) {
+                None => drop(lines.insert(groups, reader.line_of(at))),
+                Some(line) => {
+                    let [first, second] = groups.map(|group| visible(&group));
+                    let about = BlueprintFault::SamePair { first, second, line: *line };
+                    reader.report(at, SceneError::of(about).path(join(&path, "second")));
+                }
             }
         }
         pairs.push(pair);

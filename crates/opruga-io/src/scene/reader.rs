@@ -123,6 +123,14 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The line of a location; none if it is an override.
+    pub(crate) fn line_of(&self, location: Location) -> Option<usize> {
+        match location {
+            Location::Bytes(start, _) => Some(self.source.position(start).0),
+            Location::Override(_) => None,
+        }
+    }
+
     fn located(&self, location: Location, error: SceneError) -> SceneError {
         if !error.file.is_empty() {
             return error; // it has a location in another file

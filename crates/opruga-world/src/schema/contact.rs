@@ -82,7 +82,7 @@ pub const CONTACT_PAIR: Section = Section {
         "contact.pair",
         "What happens where two groups of bodies touch",
         "A body belongs to the group that its `contact` names. If it names none, the group has the name of the body, and all copies of the body \
-share it. If there are several entries for two groups, the last one applies.",
+share it. Two groups have at most one entry.",
         &[
             Field::new("first", Allowed::Text, "", Default::Required, "A group."),
             Field::new(

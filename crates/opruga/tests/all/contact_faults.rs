@@ -47,6 +47,30 @@ fn two(rule: &str, contact: &str, more: &str) -> String {
     start(rule, contact) + &block("a", [0.0, 0.0], "") + &block("b", [3.0, 0.0], more)
 }
 
+#[test]
+fn two_pairs_of_the_same_groups_are_refused_at_the_second() {
+    let pair = |first: &str, second: &str, friction: f64| {
+        format!("[[contact.pair]]\nfirst = \"{first}\"\nsecond = \"{second}\"\nfriction = {friction:?}\n")
+    };
+    for (first, second) in [("a", "b"), ("b", "a")] {
+        let pairs = pair("a", "b", 0.1) + &pair("a", "a", 0.2) + &pair(first, second, 0.3);
+        let text = two("verlet", &pairs, "");
+        let found = refusals(&text);
+        let [error] = found.as_slice() else { panic!("{found:?}") };
+        let entries: Vec<usize> =
+            (1..).zip(text.lines()).filter(|(_, l)| l.starts_with("second = ")).map(|e| e.0).collect();
+        assert_eq!((error.code, error.line), ("scene.conflict", Some(entries[2])), "{error}");
+        assert!(error.message.contains(&format!("line {}", entries[0])), "{error}");
+        assert!(error.value.is_some() && error.allowed.is_some() && error.hint.is_some(), "{error}");
+    }
+    // A program gets the same error.
+    let mut scene = plane(&two("verlet", &pair("a", "b", 0.1), ""));
+    let contact = scene.contact.as_mut().expect("contact");
+    contact.pairs.push(contact.pairs[0].clone());
+    let error = World::new(scene, Options::default()).expect_err("two pairs of the same groups");
+    assert_eq!(error.code(), "scene.conflict");
+}
+
 /// The reading of a scene gives its notices.
 #[test]
 fn a_choice_of_surface_without_a_lattice_is_reported_and_with_a_lattice_it_is_not() {
