@@ -81,6 +81,8 @@ fn path_of(error: &WorldError) -> String {
             let around = match part {
                 Part::Body { name } => match source.kind.as_str() {
                     _ if source.code() == "contact.unfold" => return "world.unfold".into(),
+                    // The body uses the integrator of the scene.
+                    "contact" if source.code() == "contact.implicit" => return "integrator".into(),
                     // Fields such as the position, the pins and the integrator belong to the body, not to a model.
                     kind if is_field_of_body(kind) => {
                         return format!("{}.{}", body(name), valued(source).unwrap_or(kind.into()));

@@ -138,7 +138,10 @@ impl<const D: usize> Builder<'_, D> {
             None => Arc::clone(self.integrator),
         };
         let refuse = |source| WorldError::Build { part: Part::body(&first.name), source };
-        self.check_choices(&seats, &system, &*integrator).map_err(refuse)?;
+        for body in &seats.bodies {
+            contact_laws::check(self.blueprint, body, &*integrator)?;
+        }
+        self.check_choices(first, &system, &*integrator).map_err(refuse)?;
         system.equip(&*integrator);
         if self.blueprint.surroundings.unfold {
             system.history.add(&unfold::channels(), system.index_count());
@@ -241,17 +244,13 @@ impl<const D: usize> Builder<'_, D> {
         Ok(())
     }
 
-    /// Refuses contact laws, models and an integrator that cannot be combined.
+    /// Refuses models and an integrator that cannot be combined.
     fn check_choices(
         &self,
-        seats: &Seats<'_, D>,
+        first: &BodyBlueprint<D>,
         system: &System<D>,
         integrator: &dyn Integrator<D>,
     ) -> Result<(), BuildError> {
-        let first = seats.bodies[0];
-        for body in &seats.bodies {
-            contact_laws::check(self.blueprint, body, integrator)?;
-        }
         self.check_cells(first)?;
         // Only the models are checked, because loads always provide their derivatives.
         for member in &system.members[..first.models.len()] {

@@ -1,6 +1,7 @@
 //! The contact laws of pairs of bodies, from `[contact]` and the settings of the bodies.
 
 use crate::blueprint::{Blueprint, BodyBlueprint, ContactBlueprint};
+use crate::error::{Part, WorldError};
 use crate::refusals::Refusal;
 use opruga_collide::{Laws, PairLaw};
 use opruga_core::error::BuildError;
@@ -148,18 +149,39 @@ pub(crate) fn is_barrier(contact: &ContactBlueprint) -> bool {
 }
 
 /// Refuses bodies at rest whose contact is of a kind that statics does not support.
-fn check_rest<const D: usize>(scene: &Blueprint<D>, own: &dyn Integrator<D>) -> Result<(), BuildError> {
+fn check_rest<const D: usize>(
+    scene: &Blueprint<D>,
+    body: &BodyBlueprint<D>,
+    own: &dyn Integrator<D>,
+) -> Result<(), WorldError> {
     let is_static =
         |body: &BodyBlueprint<D>| body.integrator.as_ref().unwrap_or(&scene.integrator).spec().has_role(Role::Statics);
     let integrator = own.name();
-    let refuse = |why| Err(BuildError::of("contact", why));
     if let Some(other) = scene.bodies.iter().find(|body| body.touches() && is_static(body) != own.is_static()) {
-        return refuse(Refusal::RestBesideMotion { integrator, other: other.name.clone() });
+        // The error belongs to a body that has its own integrator, because that integrator differs from the others.
+        return Err(match (&body.integrator, &other.integrator) {
+            (None, Some(differs)) => {
+                let refusal = Refusal::RestBesideMotion { integrator: differs.kind(), other: body.name.clone() };
+                refused(other, "integrator", refusal)
+            }
+            _ => refused(body, "integrator", Refusal::RestBesideMotion { integrator, other: other.name.clone() }),
+        });
     }
     if own.is_static() && !own.takes_pushes() {
-        return refuse(Refusal::RestInParts { integrator });
+        return Err(refused(body, cause(body), Refusal::RestInParts { integrator }));
     }
     Ok(())
+}
+
+/// The refusal of a field of a body.
+fn refused<const D: usize>(body: &BodyBlueprint<D>, field: &str, why: Refusal) -> WorldError {
+    WorldError::Build { part: Part::body(&body.name), source: BuildError::of(field, why) }
+}
+
+/// The field to which a refusal belongs that depends on the integrator of a body: the integrator of its own or, if the body uses the integrator of
+/// the scene, its contact.
+fn cause<const D: usize>(body: &BodyBlueprint<D>) -> &'static str {
+    if body.integrator.is_some() { "integrator" } else { "contact" }
 }
 
 /// Refuses a thickness that a body cannot have: its surface would be in contact with itself at rest, or the body is thinner.
@@ -167,11 +189,11 @@ fn check_thickness<const D: usize>(
     contact: &ContactBlueprint,
     body: &BodyBlueprint<D>,
     shortest: impl Fn() -> f64,
-) -> Result<(), BuildError> {
+) -> Result<(), WorldError> {
     let own = body.contact.as_ref();
     let given = own.and_then(|own| own.number("thickness")).or_else(|| contact.values.number("thickness"));
     let Some(thickness) = given.filter(|_| body.touches()) else { return Ok(()) };
-    let refuse = |why: Refusal| Err(BuildError::of("contact", why));
+    let refuse = |why: Refusal| Err(refused(body, "contact", why));
     let shortest = shortest();
     // The edges of a wire in space touch only where they cross, so its neighbours do not push one another apart.
     let has_facets = !body.touching_surface().facets.is_empty();
@@ -202,24 +224,24 @@ pub(crate) fn check<const D: usize>(
     scene: &Blueprint<D>,
     body: &BodyBlueprint<D>,
     integrator: &dyn Integrator<D>,
-) -> Result<(), BuildError> {
+) -> Result<(), WorldError> {
     let Some(contact) = &scene.contact else { return Ok(()) };
     if body.touches() {
-        check_rest(scene, integrator)?;
+        check_rest(scene, body, integrator)?;
     }
     if body.touches() && is_barrier(contact) && !integrator.takes_pushes() {
-        return Err(BuildError::of("contact", Refusal::NoBarrier { integrator: integrator.name() }));
+        return Err(refused(body, cause(body), Refusal::NoBarrier { integrator: integrator.name() }));
     }
     let shortest = || edges_of(&body.touching_surface(), &body.mesh).shortest;
     let reach = contact.values.number("reach").filter(|_| is_barrier(contact));
     if let Some((reach, shortest)) =
         reach.map(|reach| (reach, shortest())).filter(|(reach, shortest)| reach >= shortest)
     {
-        return Err(BuildError::of("contact", Refusal::Reach { reach, shortest }));
+        return Err(refused(body, "contact", Refusal::Reach { reach, shortest }));
     }
     check_thickness(contact, body, shortest)?;
     if scene.surroundings.unfold {
-        return Err(BuildError::of("contact", Refusal::Unfold {}));
+        return Err(refused(body, "contact", Refusal::Unfold {}));
     }
     Ok(())
 }

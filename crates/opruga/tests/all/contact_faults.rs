@@ -71,6 +71,25 @@ fn two_pairs_of_the_same_groups_are_refused_at_the_second() {
     assert_eq!(error.code(), "scene.conflict");
 }
 
+#[test]
+fn an_integrator_that_contact_refuses_is_refused_at_its_own_line() {
+    let own = |kind: &str, more: &str| format!("integrator = {{ kind = \"{kind}\"{more} }}\n");
+    let at = |text: &str, code: &str, words: &str| {
+        let error = World::new(plane(text), Options::default()).expect_err("refused");
+        let error = located(&error, text);
+        assert_eq!((error.code, error.line), (code, line(text, words)), "{error}");
+        assert!(error.allowed.is_some() && error.hint.is_some(), "{error}");
+    };
+    let barrier = "response = \"barrier\"\n";
+    at(&two("backward_euler", barrier, &own("verlet", "")), "contact.barrier", "integrator = ");
+    at(&two("verlet", barrier, ""), "contact.barrier", "response");
+    at(&two("verlet", "", &own("equilibrium", "")), "contact.implicit", "integrator = ");
+    at(&two("equilibrium", "", &own("verlet", "")), "contact.implicit", "integrator = ");
+    at(&two("equilibrium", "", &own("equilibrium", ", load_steps = 2")), "contact.implicit", "integrator = ");
+    let parts = two("equilibrium", "", "").replace("\"equilibrium\"", "\"equilibrium\"\nload_steps = 2");
+    at(&parts, "contact.implicit", "load_steps");
+}
+
 /// The reading of a scene gives its notices.
 #[test]
 fn a_choice_of_surface_without_a_lattice_is_reported_and_with_a_lattice_it_is_not() {
