@@ -108,6 +108,9 @@ part-scene_hint-BeginFormat = započni datoteku s format = "{ $format }"
 part-scene_hint-Section = napiši [{ $name }]
 part-scene_hint-Sections = napiši [[{ $name }]]
 part-scene_hint-Inline = napiši { $name } = [ {"{"} … {"}"} ]
+part-scene_hint-PassThrough = uz `contact = {"{"} touch = false {"}"}` tijelo prolazi kroz sva druga, uz `contact = {"{"} self = false {"}"}` kroz sebe; uz `[[contact.pair]]` s `touch = false` dvije skupine prolaze jedna kroz drugu
+part-scene_hint-KeepApart = odjeljak `[contact]` drži sva tijela razdvojenima; vrijednosti u `contact = {"{"} … {"}"}` tijela zamjenjuju njegove
+part-scene_hint-NoSection = bez odjeljka `[contact]` tijela prolaze jedno kroz drugo
 part-scene_hint-KindSet = `{ $table }.kind` je postavljen na `{ $kind }`, a druga su polja ostala; --set { $table }={ $kind } uzima njegove zadane vrijednosti
 part-scene_hint-KindSetWith = `{ $table }.kind` je postavljen na `{ $kind }`, a druga su polja ostala; --set '{ $table }={"{"}kind="{ $kind }"{ $needed }{"}"}' ih zamjenjuje
 part-scene_hint-Copies = `{ $name }` ima kopija: { $count }: `{ $name }[0]` … `{ $name }[{ $last }]`

@@ -141,6 +141,12 @@ messages! {
         Sections { name: String },
         "part.scene_hint" #[error("write {name} = [ {{ … }} ]")]
         Inline { name: String },
+        "part.scene_hint" #[error("`contact = {{ touch = false }}` lets the body pass through all others, `contact = {{ self = false }}` through itself; `[[contact.pair]]` with `touch = false` lets two groups pass through one another")]
+        PassThrough {},
+        "part.scene_hint" #[error("a section `[contact]` keeps all bodies apart; values in `contact = {{ … }}` of a body replace those of the section")]
+        KeepApart {},
+        "part.scene_hint" #[error("leave out the section `[contact]`, and bodies pass through one another")]
+        NoSection {},
         "part.scene_hint" #[error("`{table}.kind` was set to `{kind}`, but the other fields were kept; --set {table}={kind} uses the defaults of this kind")]
         KindSet { table: String, kind: &'static str },
         "part.scene_hint" #[error("`{table}.kind` was set to `{kind}`, but the other fields were kept; --set '{table}={{kind=\"{kind}\"{needed}}}' replaces them")]

@@ -199,9 +199,13 @@ impl<'a> Reader<'a> {
         let mut values = Values::defaults(section.spec, self.dimension);
         if !matches!(node.data, Data::Table(_)) {
             self.wrong_type(node, path, Wanted::Table);
-            let is_section = !path.contains('.') && matches!(node.data, Data::Array(_));
-            if let Some(error) = self.errors.last_mut().filter(|_| is_section) {
-                *error = error.clone().advice(SceneHint::Section { name: path.into() });
+            let hint = match node.data {
+                Data::Array(_) if !path.contains('.') => Some(SceneHint::Section { name: path.into() }),
+                Data::Boolean(touches) => contact_hint(section, touches),
+                _ => None,
+            };
+            if let (Some(hint), Some(error)) = (hint, self.errors.last_mut()) {
+                *error = error.clone().advice(hint);
             }
             return values;
         }
@@ -426,6 +430,17 @@ impl<'a> Reader<'a> {
             error = error.advice(SceneHint::NoQuotes {});
         }
         self.report(node.location, error);
+    }
+}
+
+/// What helps if a truth value is written instead of a table of contact.
+fn contact_hint(section: &Section, touches: bool) -> Option<SceneHint> {
+    match (section.spec.kind, touches) {
+        ("body.contact", false) => Some(SceneHint::PassThrough {}),
+        ("body.contact", true) => Some(SceneHint::KeepApart {}),
+        ("contact", true) => Some(SceneHint::Section { name: "contact".into() }),
+        ("contact", false) => Some(SceneHint::NoSection {}),
+        _ => None,
     }
 }
 

@@ -72,6 +72,23 @@ fn two_pairs_of_the_same_groups_are_refused_at_the_second() {
 }
 
 #[test]
+fn a_truth_value_instead_of_contact_settings_gets_a_hint_with_the_right_field() {
+    let hint = |text: &str| {
+        let found = refusals(text);
+        let [error] = found.as_slice() else { panic!("{found:?}") };
+        assert_eq!((error.code, error.line.is_some()), ("scene.type", true), "{error}");
+        error.hint.clone().unwrap_or_default()
+    };
+    let of_body = |value: &str| hint(&two("verlet", "", &format!("contact = {value}\n")));
+    assert!(of_body("false").contains("contact = { touch = false }"));
+    assert!(of_body("true").contains("[contact]"));
+    let of_scene =
+        |value: &str| hint(&format!("contact = {value}\n{}", two("verlet", "", "").replace("[contact]\n", "")));
+    assert!(of_scene("true").contains("[contact]"));
+    assert!(of_scene("false").contains("leave out"));
+}
+
+#[test]
 fn an_integrator_that_contact_refuses_is_refused_at_its_own_line() {
     let own = |kind: &str, more: &str| format!("integrator = {{ kind = \"{kind}\"{more} }}\n");
     let at = |text: &str, code: &str, words: &str| {
