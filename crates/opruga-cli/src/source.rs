@@ -139,12 +139,21 @@ impl Source {
         Failure::Run(Box::new(timed(scene_error, error, time)))
     }
 
-    /// The failure of a run that an error ends at a frame. If a command was refused, the error names the line of that command.
+    /// The failure of a run that an error ends at a frame. If a command was refused, or a pin or an obstacle leads a body through another, the error
+    /// names its line.
     pub(crate) fn frame_error(&self, error: &WorldError, world: &dyn AnyWorld, options: &scene::Options) -> Failure {
         if *error == (WorldError::BrokenOff {}) {
             return Failure::Interrupted;
         }
-        let Some(command) = world.refused_command() else { return self.run_error(error, world.time()) };
+        let Some(command) = world.refused_command() else {
+            return match error {
+                // The path of a pin or of an obstacle in the scene is the cause.
+                WorldError::LedThrough { .. } | WorldError::LedThroughObstacle { .. } => {
+                    Failure::Run(Box::new(timed(self.locate(error, options), error, world.time())))
+                }
+                _ => self.run_error(error, world.time()),
+            };
+        };
         let scene_error = of_command(error, &command, (self.text(), self.file.as_str()), &options.overrides);
         Failure::Run(Box::new(timed(scene_error, error, world.time())))
     }

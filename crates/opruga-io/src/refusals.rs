@@ -108,6 +108,7 @@ fn path_of(error: &WorldError) -> String {
         | WorldError::NotConverged { body: name, .. }
         | WorldError::Meet { first: name, .. }
         | WorldError::LedThrough { first: name, .. } => body(name),
+        WorldError::LedThroughObstacle { collider, .. } => format!("collider.{collider}"),
         WorldError::Path { path, .. } => path.clone(),
         WorldError::Cross { .. } => "contact.response".into(),
         WorldError::Snapshot { .. }

@@ -391,7 +391,9 @@ part-crossing-Within = strane { $first } i { $second } tijela `{ $body }` sijeku
 part-crossing-Between = strana { $first } tijela `{ $body }` i strana { $second } tijela `{ $other }` sijeku se
 part-crossing-Inside = od tijela `{ $body }` i `{ $other }` jedno leži u drugome
 contact-led_through-LedThrough = učvršćenja i prepreke vode `{ $first }` kroz `{ $second }` u t = { $time } s; svijet je na zadnjoj dobroj sličici
-    .hint = drugi put onoga što ih vodi, ili `touch = false` za taj par
+    .hint = drugi put učvršćenja tih tijela i prepreka uz njih, ili tijela koja prolaze jedno kroz drugo (`touch = false` u `[[contact.pair]]`)
+contact-led_through-LedThroughObstacle = prepreka { $collider } ({ $kind }) i tijelo `{ $body }` prolaze jedno kroz drugo u t = { $time } s, jer ih tako vode prepreka, učvršćenja tijela ili druge prepreke; svijet je na zadnjoj dobroj sličici
+    .hint = drugi put prepreke ili učvršćenja, ili više mjesta između te prepreke i drugih; uz `contact = {"{"} touch = false {"}"}` bridovi i vrhovi prepreka prolaze kroz tijelo, a prepreke dodiruju samo njegove čvorove
 run-broken_off-BrokenOff = sličica je prekinuta; svijet je na zadnjoj dobroj sličici
 path-unknown-Path = `{ $path }`: { $about }
     .allowed = { ALLOWED($about) }

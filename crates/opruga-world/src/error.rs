@@ -144,8 +144,15 @@ messages! {
         /// Pins and obstacles move a body through another body, itself, or an obstacle. Contains the time at the end of the substep \[s\].
         "contact.led_through"
         #[error("pins and obstacles move `{first}` through {} at t = {} s; the world is at its last good frame", other(first, second), number(*time))]
-        #[hint("use another path for these pins or obstacles, or `touch = false` for the pair")]
+        #[parameters("pin", "fixed")]
+        #[hint("use another path for the pins of these bodies and for the obstacles at them, or let the bodies pass through one another (`touch = false` in a `[[contact.pair]]`)")]
         LedThrough { first: String, second: String, time: f64 },
+        /// A pin or another obstacle moves a body through a face, an edge or a corner of an obstacle, or the obstacle moves through the body. Contains
+        /// the number and the kind of the obstacle, and the time at the end of the substep \[s\].
+        "contact.led_through"
+        #[error("obstacle {collider} ({kind}) and body `{body}` are moved through one another by the obstacle, by pins of the body or by other obstacles, at t = {} s; the world is at its last good frame", number(*time))]
+        #[hint("use another path for the obstacle or for the pins, or leave room between this obstacle and others; with `contact = {{ touch = false }}`, edges and corners of obstacles pass through the body, and only its nodes touch obstacles")]
+        LedThroughObstacle { body: String, collider: usize, kind: String, time: f64 },
         /// The frame was cancelled from outside ([`crate::Options::break_off`]).
         "run.broken_off" #[error("the frame was interrupted; the world is at its last good frame")]
         BrokenOff {},

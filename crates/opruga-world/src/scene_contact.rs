@@ -126,12 +126,17 @@ impl<const D: usize> SceneContact<D> {
 
     /// The name of a body or an obstacle.
     pub(crate) fn name_of(&self, number: u32, blueprint: &Blueprint<D>) -> String {
-        let number = number as usize;
-        match (self.bodies.get(number), self.outlines.get(number.saturating_sub(self.bodies.len()))) {
+        match (self.bodies.get(number as usize), self.collider(number)) {
             (Some(body), _) => blueprint.bodies[*body].name.clone(),
-            (None, Some(outline)) => format!("collider {}", outline.collider),
+            (None, Some(collider)) => format!("collider {collider}"),
             (None, None) => String::new(),
         }
+    }
+
+    /// The index of an obstacle in the scene; `None` for a body.
+    pub(crate) fn collider(&self, number: u32) -> Option<usize> {
+        let number = (number as usize).checked_sub(self.bodies.len())?;
+        self.outlines.get(number).map(|outline| outline.collider)
     }
 
     /// Whether a body touches itself.

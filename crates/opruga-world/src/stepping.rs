@@ -179,6 +179,18 @@ impl<const D: usize> World<D> {
             Trouble::LedThrough { mut bodies } => {
                 // Obstacles have the highest numbers, so a body is named first.
                 bodies.sort_unstable();
+                let collider = scene.and_then(|scene| scene.collider(bodies[1]));
+                if let Some(collider) = collider {
+                    let kind = self.blueprint.colliders[collider].values.kind().into();
+                    return WorldError::LedThroughObstacle { body: name(bodies[0]), collider, kind, time };
+                }
+                // The body that pins move is named first.
+                let is_led = |number: &u32| {
+                    let body = scene.and_then(|scene| scene.bodies.get(*number as usize));
+                    let pins = body.map_or(&[][..], |body| &self.blueprint.bodies[*body].pins);
+                    (pins.iter().any(|pin| !pin.motion.is_empty()), !pins.is_empty())
+                };
+                bodies.sort_by_key(|number| std::cmp::Reverse(is_led(number)));
                 WorldError::LedThrough { first: name(bodies[0]), second: name(bodies[1]), time }
             }
         }

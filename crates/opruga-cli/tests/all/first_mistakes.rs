@@ -67,6 +67,36 @@ fn a_body_that_begins_inside_an_obstacle_is_told_of() {
     );
 }
 
+/// A pin that pulls a body through a wall ends the run with the line of the wall. A pin that pulls a body through another one ends it with the line of
+/// the pin.
+#[test]
+fn what_is_led_through_an_obstacle_or_a_body_ends_the_run_at_a_line_of_the_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let block = |name: &str, x: f64, more: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nshape = {{ kind = \"grid\", size = [1, 1], cells = [2, 2], corner = [{x:?}, 0] }}\n\
+             models = [{{ kind = \"fem\", youngs_modulus = 1e4 }}]\n{more}"
+        )
+    };
+    let head = "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1\nsubsteps = 4\n[integrator]\nkind = \"backward_euler\"\n[contact]\n";
+    let led = |select: &str| {
+        format!(
+            "density = 100\n[[body.pin]]\nselect = {{ {select} }}\naxes = \"xy\"\nmotion = [[0, 0, 0], [1, 4, 0]]\n"
+        )
+    };
+    let wall = "[[collider]]\nkind = \"box\"\nmin = [1.5, -3.0]\nmax = [1.7, 3.0]\n";
+    let through_wall = format!("{head}{}{wall}", block("a", 0.0, &led("side = \"right\"")));
+    let through_body = format!("{head}{}{}", block("b", 1.5, "fixed = true\n"), block("a", 0.0, &led("all = true")));
+    for (text, cause) in [(through_wall, "[[collider]]"), (through_body, "[[body.pin]]")] {
+        write(folder.path(), &text);
+        let output = opruga(folder.path(), &["run", "s.toml", "--no-pictures", "--out", "led", "--force"]);
+        let line = text.lines().position(|line| line == cause).expect("the cause") + 1;
+        assert_ne!(code(&output), 0, "{}", said(&output));
+        assert!(said(&output).contains(&format!("s.toml:{line}:")), "{cause} in line {line}: {}", said(&output));
+        assert!(said(&output).contains("error[contact.led_through]"), "{}", said(&output));
+    }
+}
+
 /// The displacement frees a body from any obstacle: inside a box, in the corner of a room, across a ball, in a convex block.
 #[test]
 fn the_shift_out_of_an_obstacle_frees_the_body() {

@@ -107,6 +107,24 @@ fn an_integrator_that_contact_refuses_is_refused_at_its_own_line() {
     at(&parts, "contact.implicit", "load_steps");
 }
 
+/// A ball between a pin that pulls it and the corners of an obstacle.
+#[test]
+fn an_obstacle_that_a_pin_leads_a_body_through_is_named_with_its_kind_and_line() {
+    let pin = "pin = [{ select = { side = \"right\" }, axes = \"xy\", motion = [[0, 0, 0], [1, 4, 0]] }]\n";
+    let wall = "[[collider]]\nkind = \"box\"\nmin = [1.5, -3.0]\nmax = [1.7, 3.0]\n";
+    let text = start("backward_euler", "") + &block("a", [0.0, 0.0], pin) + wall;
+    let mut world = built(plane(&text));
+    let error = loop {
+        if let Err(error) = world.frame() {
+            break error;
+        }
+        assert!(world.time() < 1.0, "the pin is beyond the wall");
+    };
+    let error = located(&error, &text);
+    assert_eq!((error.code, error.line), ("contact.led_through", line(&text, "[[collider]]")), "{error}");
+    assert!(error.message.contains("0 (box)") && error.message.contains("`a`"), "{error}");
+}
+
 /// The reading of a scene gives its notices.
 #[test]
 fn a_choice_of_surface_without_a_lattice_is_reported_and_with_a_lattice_it_is_not() {
