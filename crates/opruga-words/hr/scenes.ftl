@@ -195,6 +195,9 @@ scene-range-MadeVast = `{ $field }` ga čini prevelikim: umnošci takvih duljina
 scene-missing-WireWidth = `density` žice treba njezinu širinu, ovdje `thickness`
     .allowed = broj > 0
     .hint = ili zadaj `mass` cijelog tijela
+scene-missing-WallThickness = tijelo je šuplje, a `density` šupljeg tijela treba debljinu stijenke, `thickness`
+    .allowed = broj > 0
+    .hint = ili zadaj `mass` cijelog tijela, ili ga ispuni: poljem `filling` oblika ili oblikom `grid`
 scene-missing-SheetThickness = `density` opne treba njezin `thickness`
     .allowed = broj > 0
     .hint = ili zadaj `mass` cijelog tijela
@@ -323,18 +326,18 @@ scene-duplicate_name-TwoBodies = dva tijela zovu se `{ $name }`{ $line ->
         [none] {""}
        *[other] , prvo u retku { $line }
     }
-scene-duplicate_name-TwoProbes = dvije sonde zovu se `{ $name }`{ $line ->
-        [none] {""}
-       *[other] , prva u retku { $line }
-    }
-scene-duplicate_name-AlikeBodies = imena dvaju tijela izgledaju jednako i razlikuju se samo normalizacijom Unicodea, ovdje { $here ->
-        [none] ništa
 scene-conflict-SamePair = par skupina `{ $first }` i `{ $second }` već je zadan{ $line ->
         [none] {""}
        *[other] , prvo u retku { $line }
     }
     .allowed = najviše jedan par istih dviju skupina, bilo kojim redom
     .hint = stavi sve vrijednosti tih skupina u jedan `[[contact.pair]]`
+scene-duplicate_name-TwoProbes = dvije sonde zovu se `{ $name }`{ $line ->
+        [none] {""}
+       *[other] , prva u retku { $line }
+    }
+scene-duplicate_name-AlikeBodies = imena dvaju tijela izgledaju jednako i razlikuju se samo normalizacijom Unicodea, ovdje { $here ->
+        [none] ništa
        *[other] { $here }
     }, ondje { $there ->
         [none] ništa

@@ -310,8 +310,8 @@ the origin of its own coordinates, and then moved to `position`.",
                 Allowed::POSITIVE,
                 "m",
                 Default::Number(1.0),
-                "In 2D, the depth out of the plane, also for gas, loads and bending. In 3D, the thickness of a sheet or the width of a square wire; \
-only `density` uses it. `density` requires `thickness` for sheets in 3D, and for wires in 2D and 3D.",
+                "In 2D, the depth out of the plane, also for gas, loads and bending. In 3D, the thickness of a sheet or of the wall of a hollow body, or the \
+width of a square wire; only `density` uses it. `density` requires `thickness` for sheets and hollow bodies in 3D, and for wires in 2D and 3D.",
             ),
             Field::new(
                 "position",

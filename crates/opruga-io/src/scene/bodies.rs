@@ -394,6 +394,7 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
     // One metre is a sensible depth for the plane, but not for the thickness of a cloth or the width of a wire.
     let thin = match mesh.measure() {
         Ok(Measure::Length(_)) => Some(BodyError::WireWidth {}),
+        Ok(Measure::Area(_)) if D == 3 && !mesh.facets.is_empty() => Some(BodyError::WallThickness {}),
         Ok(Measure::Area(_)) if D == 3 => Some(BodyError::SheetThickness {}),
         _ => None,
     };
@@ -411,14 +412,14 @@ fn build<const D: usize>(reader: &mut Reader<'_>, draft: &Draft<'_, D>) -> Optio
                 return None;
             }
         },
+        // A body without a mass is an error; it gets some mass only so that the search for errors can continue.
+        (mass, _) => mass.clone().unwrap_or(Mass::Node(1.0)),
+    };
     if mesh.skin.is_none()
         && let Some(contact) = draft.node.get("contact")
     {
         reader.no_effect(contact, &join(&draft.path, "contact"), "surface", BodyCondition::Lattice {});
     }
-        // A body without a mass is an error; it gets some mass only so that the search for errors can continue.
-        (mass, _) => mass.clone().unwrap_or(Mass::Node(1.0)),
-    };
     let body = BodyBlueprint {
         name: draft.name.clone(),
         mesh: Arc::new(mesh),

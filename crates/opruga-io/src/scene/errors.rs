@@ -264,6 +264,9 @@ messages! {
         "scene.missing" #[error("`density` of a sheet needs its `thickness`")] #[allowed("a number > 0")]
         #[hint("or give the `mass` of the whole body")]
         SheetThickness {},
+        "scene.missing" #[error("the body is hollow, and `density` of a hollow body needs the `thickness` of its wall")] #[allowed("a number > 0")]
+        #[hint("or give the `mass` of the whole body, or fill it: with a `filling` of its shape, or as a `grid`")]
+        WallThickness {},
         "scene.shape" #[error("a coordinate of the shape is {value}")] #[allowed("finite coordinates")]
         NotFiniteShape { value: f64 },
         "shape.flipped" #[error("the points of `{body}` run clockwise")] #[hint("the edges of the outline run counter-clockwise, against the order of the points")]
@@ -412,6 +415,7 @@ pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[
     Part::VARIANTS,
     SceneAllowed::VARIANTS,
     SceneHint::VARIANTS,
+    BodyCondition::VARIANTS,
     FieldError::VARIANTS,
     BodyError::VARIANTS,
     CommandError::VARIANTS,
@@ -421,7 +425,6 @@ pub(crate) const MESSAGES: &[&[opruga_math::message::Variant]] = &[
 impl Wanted {
     /// Whether a number would be accepted.
     pub(crate) fn takes_numbers(self) -> bool {
-    BodyCondition::VARIANTS,
         matches!(self, Wanted::Node | Wanted::Counts | Wanted::Body)
     }
 }

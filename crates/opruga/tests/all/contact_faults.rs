@@ -107,6 +107,19 @@ fn an_integrator_that_contact_refuses_is_refused_at_its_own_line() {
     at(&parts, "contact.implicit", "load_steps");
 }
 
+#[test]
+fn the_density_of_a_hollow_box_asks_for_the_thickness_of_its_wall() {
+    let text = "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\n[integrator]\nkind = \"verlet\"\n[[body]]\nname = \"b\"\n\
+        shape = { kind = \"box\", size = [1, 1, 1], cells = [2, 2, 2]FILLING }\ndensity = 100.0\n\
+        models = [{ kind = \"mass_spring\", stiffness = 100.0 }]\n";
+    let found = refusals(&text.replace("FILLING", ""));
+    let [error] = found.as_slice() else { panic!("{found:?}") };
+    assert!(!error.message.contains("sheet") && error.message.contains("hollow"), "{error}");
+    assert!(error.hint.as_deref().is_some_and(|hint| hint.contains("filling")), "{error}");
+    let filled = text.replace("FILLING", ", filling = \"lattice\", spacing = 0.5");
+    assert!(refusals(&filled).is_empty(), "{:?}", refusals(&filled));
+}
+
 /// A ball between a pin that pulls it and the corners of an obstacle.
 #[test]
 fn an_obstacle_that_a_pin_leads_a_body_through_is_named_with_its_kind_and_line() {
