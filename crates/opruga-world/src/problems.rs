@@ -80,10 +80,13 @@ impl<const D: usize> World<D> {
     }
 }
 
-/// Whether two errors of different bodies have the same cause in `[contact]`.
+/// Whether two errors of different bodies have the same cause in the scene, which does not depend on the shapes of the bodies.
 fn is_same_setting(a: &WorldError, b: &WorldError) -> bool {
+    const OF_SHAPES: [&str; 2] = ["contact.thickness", "contact.reach"];
     match (a, b) {
-        (WorldError::Build { source: a, .. }, WorldError::Build { source: b, .. }) => a.kind == "contact" && a == b,
+        (WorldError::Build { source: a, .. }, WorldError::Build { source: b, .. }) => {
+            a.kind == "contact" && a == b && !OF_SHAPES.contains(&a.code())
+        }
         _ => false,
     }
 }

@@ -108,6 +108,18 @@ fn an_integrator_that_contact_refuses_is_refused_at_its_own_line() {
 }
 
 #[test]
+fn every_body_that_is_too_fine_for_the_thickness_is_listed() {
+    let body = |k: usize| block(["a", "b", "c"][k], [3.0 * k as f64, 0.0], "");
+    let text = start("verlet", "thickness = 0.6\n") + &body(0) + &body(1) + &body(2);
+    let found = problems(&text);
+    assert_eq!(found.len(), 3, "{found:?}");
+    for (error, name) in found.iter().zip(["`a`", "`b`", "`c`"]) {
+        assert_eq!((error.code, error.line), ("contact.thickness", line(&text, "thickness")), "{error}");
+        assert!(error.message.contains(name), "{error}");
+    }
+}
+
+#[test]
 fn the_density_of_a_hollow_box_asks_for_the_thickness_of_its_wall() {
     let text = "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\n[integrator]\nkind = \"verlet\"\n[[body]]\nname = \"b\"\n\
         shape = { kind = \"box\", size = [1, 1, 1], cells = [2, 2, 2]FILLING }\ndensity = 100.0\n\
