@@ -126,8 +126,14 @@ fn valued(error: &BuildError) -> Option<String> {
 /// Converts a warning of a world to an error, for callers that want no warnings.
 impl From<&Warning> for SceneError {
     fn from(warning: &Warning) -> SceneError {
-        const CODES: [&str; 5] =
-            ["units.sag", "step.no_stable_step", "step.unstable", "contact.starts_inside", "contact.starts_across"];
+        const CODES: [&str; 6] = [
+            "units.sag",
+            "step.no_stable_step",
+            "step.unstable",
+            "contact.starts_inside",
+            "contact.starts_across",
+            "contact.starts_overlapping",
+        ];
         let code = CODES.into_iter().find(|code| *code == warning.code).unwrap_or("world.warning");
         let path = warning
             .field("body")

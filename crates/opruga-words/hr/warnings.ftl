@@ -102,6 +102,8 @@ units-sag-Sag = tijelo `{ $body }` od { $mass } kg ulegnulo bi se pod svojom te�
 contact-starts_inside-StartsInside = tijelo `{ $body }` počinje u prepreci { $collider } ({ $kind }), čvorova: { $nodes }, najdublji je čvor { $deepest }, { $depth } m; { $remedy }
 contact-starts_across-StartsAcross = tijelo `{ $body }` počinje preko prepreke { $collider } ({ $kind }), koja nema unutrašnjost: svaki čvor ostaje na strani na kojoj počinje, pa prepreka stišće tijelo
     .hint = pomaknite tijelo ili prepreku
+contact-starts_overlapping-StartsOverlapping = tijela počinju jedno u drugome ili jedno preko drugoga, parova: { $pairs }, prva dva su `{ $body }` i `{ $other }`, kod ({ $near }) m
+    .hint = razmakni tijela; dodir polako razmiče puna tijela (`recovery_speed`), a otvorene plohe i žice ostavlja prekriženima
 contact-none-NoContact = u t = { $time } s tijela prolaze jedna kroz druga, parova: { $pairs }, prva dva su `{ $first }` i `{ $second }`
     .hint = odjeljak `[contact]` drži tijela razdvojenima
 contact-mixed-Mixed = u t = { $time } s tijelo `{ $first }` ({ $first_rule }) dodiruje tijelo `{ $second }` ({ $second_rule }): dodir se rješava za oba zajedno, ali svako korača po svojem pravilu, pa za par ne vrijede ni red ni prigušenje nijednoga; broji se po sličici i paru tijela

@@ -1,5 +1,7 @@
 //! Whether surfaces of a world cross: a check that shares no code with the detection of contact.
 
+mod at_start;
+
 use crate::contact_laws::laws;
 use crate::error::Crossing;
 use crate::warnings::{Warning, WorldWarning};
@@ -63,9 +65,19 @@ impl<const D: usize> World<D> {
     ///
     /// The check is exact for the given coordinates. Wires in space are not checked.
     pub fn crossed_surfaces(&self) -> Vec<Crossed> {
+        self.crossed_among(|_| true, |surfaces| surfaces).0
+    }
+
+    /// Surfaces that cross, among the pairs of bodies that `asked` accepts, and the surfaces as `changed` returns them.
+    fn crossed_among(
+        &self,
+        asked: impl Fn([usize; 2]) -> bool,
+        changed: impl FnOnce(Surfaces<D>) -> Surfaces<D>,
+    ) -> (Vec<Crossed>, Surfaces<D>) {
         let (bodies, laws) = self.kept_apart();
         let index = |body: usize| bodies.binary_search(&body).unwrap_or(0) as u32;
-        let meet = |a: usize, b: usize| laws.as_ref().map_or(a != b, |laws| laws.meet(index(a), index(b)));
+        let touch = |a: usize, b: usize| laws.as_ref().map_or(a != b, |laws| laws.meet(index(a), index(b)));
+        let meet = |a: usize, b: usize| asked([a, b]) && touch(a, b);
         // Most bodies are far from all others, so a sweep along x keeps only the boxes that overlap the present x.
         let bounds: Vec<[[f64; D]; 2]> = bodies.iter().map(|body| self.bounds_of(*body)).collect();
         let mut order: Vec<usize> = (0..bodies.len()).collect();
@@ -83,7 +95,7 @@ impl<const D: usize> World<D> {
         }
         let close: Vec<usize> =
             bodies.iter().zip(&is_close).filter(|(_, close)| **close).map(|(body, _)| *body).collect();
-        let surfaces = self.surfaces(&close);
+        let surfaces = changed(self.surfaces(&close));
         let mut found: Vec<Crossed> = Vec::new();
         for [first, second] in surfaces.crossings().pairs {
             let (mut a, mut b) = (surfaces.origin[first as usize], surfaces.origin[second as usize]);
@@ -97,7 +109,7 @@ impl<const D: usize> World<D> {
         found.extend(surfaces.nested().into_iter().filter(|crossed| meet(crossed.bodies[0], crossed.bodies[1])));
         found.sort_by_key(|crossed| (crossed.bodies, crossed.facets.is_none()));
         found.dedup_by_key(|crossed| crossed.bodies);
-        found
+        (found, surfaces)
     }
 
     /// The bodies that contact keeps apart, and the laws of their pairs. Without a section `[contact]`, these are all bodies, and there are no laws.

@@ -100,6 +100,7 @@ impl<const D: usize> World<D> {
         world.refuse_what_meets()?;
         world.warn_of_buried_bodies();
         world.warn_of_pinched_bodies();
+        world.warn_of_overlapping_bodies();
         world.warn_of_slender_cells();
         // The ledger starts here.
         world.flows.start = 0.0;

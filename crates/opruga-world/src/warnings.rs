@@ -238,6 +238,10 @@ messages! {
         #[error("body `{body}` begins across obstacle {collider} ({kind}), which has no inside: every node stays on the side where it begins, so the obstacle pinches the body")]
         #[hint("move the body or the obstacle")]
         StartsAcross { body: String, collider: usize, kind: String },
+        "contact.starts_overlapping"
+        #[error("{} inside or across one another, near ({near}) m", overlapping(*pairs, body, other))]
+        #[hint("move the bodies apart; contact separates solids slowly (`recovery_speed`), and leaves open surfaces and wires crossed")]
+        StartsOverlapping { body: String, other: String, pairs: u64, near: String },
         "contact.none"
         #[error("at t = {} s, {} through one another (first: `{first}` and `{second}`)", number(*time), if *pairs == 1 { "two bodies pass".into() } else { format!("{pairs} pairs of bodies pass") })]
         #[hint("a section `[contact]` keeps bodies apart")]
@@ -280,6 +284,15 @@ messages! {
 
 fn cells_are(count: u64) -> String {
     if count == 1 { "1 cell is".into() } else { format!("{count} cells are") }
+}
+
+fn overlapping(pairs: u64, body: &str, other: &str) -> String {
+    match pairs {
+        1 => format!("the bodies `{body}` and `{other}` begin"),
+        _ => format!(
+            "{pairs} pairs of bodies begin inside or across one another; the first, `{body}` and `{other}`, begin"
+        ),
+    }
 }
 
 fn at_rest(count: u64, body: &str) -> String {

@@ -150,6 +150,65 @@ fn an_obstacle_that_a_pin_leads_a_body_through_is_named_with_its_kind_and_line()
     assert!(error.message.contains("0 (box)") && error.message.contains("`a`"), "{error}");
 }
 
+/// The warnings at the start.
+fn at_the_start(text: &str) -> Vec<(String, String)> {
+    let AnyBlueprint::Plane(blueprint) = read(text).unwrap_or_else(|errors| panic!("{errors:?}")) else {
+        return built(space(text)).warnings().into_iter().map(|warning| (warning.code, warning.message)).collect();
+    };
+    built(blueprint).warnings().into_iter().map(|warning| (warning.code, warning.message)).collect()
+}
+
+#[test]
+fn bodies_that_begin_inside_one_another_are_reported_once_with_both_names_and_the_position() {
+    let scene = |corners: &[[f64; 2]]| {
+        let bodies = corners.iter().zip(["a", "b", "c"]).map(|(corner, name)| block(name, *corner, ""));
+        start("verlet", "") + &bodies.collect::<String>()
+    };
+    let overlapping = at_the_start(&scene(&[[0.0, 0.0], [0.9, 0.1], [3.0, 0.0]]));
+    let [(code, message)] = overlapping.as_slice() else { panic!("{overlapping:?}") };
+    assert_eq!(code, "contact.starts_overlapping");
+    assert!(message.contains("`a` and `b`") && message.contains("near ("), "{message}");
+    // Three bodies at one position are three pairs.
+    let heap = at_the_start(&scene(&[[0.0, 0.0], [0.9, 0.1], [0.45, 0.8]]));
+    assert!(heap.len() == 1 && heap[0].1.contains("3 pairs"), "{heap:?}");
+    // A body that lies inside another one crosses no surface.
+    let inner = "[[body]]\nname = \"inner\"\nshape = { kind = \"ring\", radius = 0.1, vertices = 8, center = [0.5, 0.5] }\nmass = 1.0\n";
+    let nested = at_the_start(&(start("verlet", "") + &block("outer", [0.0, 0.0], "") + inner));
+    assert!(nested.len() == 1 && nested[0].1.contains("`outer` and `inner`"), "{nested:?}");
+    // Bodies that only touch, even to rounding errors, or that pass through one another.
+    for corner in [[1.0, 0.0], [1.0 - 1e-12, 0.3], [1.0, 1.0]] {
+        assert_eq!(at_the_start(&scene(&[[0.0, 0.0], corner])), []);
+    }
+    let apart = two("verlet", "", "contact = { touch = false }\nposition = [-2.5, 0.0]\n");
+    assert_eq!(at_the_start(&apart), []);
+}
+
+#[test]
+fn solids_in_space_that_begin_inside_one_another_are_reported_and_stacked_ones_are_not() {
+    let cube = |name: &str, corner: [f64; 3]| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nshape = {{ kind = \"grid\", size = [1, 1, 1], cells = [2, 2, 2], corner = {corner:?} }}\ndensity = 100.0\n\
+             models = [{{ kind = \"fem\", youngs_modulus = 1e5 }}]\n"
+        )
+    };
+    let head = "format = \"opruga-1\"\ndimension = 3\n[time]\nseconds = 1\nsubsteps = 40\n[integrator]\nkind = \"verlet\"\n[contact]\n";
+    for (height, told) in [(0.95, true), (1.0, false), (1.5, false)] {
+        let found = at_the_start(&(head.to_string() + &cube("a", [0.0; 3]) + &cube("b", [0.0, 0.0, height])));
+        assert_eq!(found.iter().any(|(code, _)| code == "contact.starts_overlapping"), told, "{height}: {found:?}");
+    }
+}
+
+#[test]
+fn no_shipped_scene_begins_with_bodies_inside_one_another() {
+    for name in opruga::scenes::names() {
+        let text = opruga::scenes::find(name).expect("a scene");
+        if text.contains("\n[contact]") {
+            let found = at_the_start(text);
+            assert!(found.iter().all(|(code, _)| code != "contact.starts_overlapping"), "{name}: {found:?}");
+        }
+    }
+}
+
 /// The reading of a scene gives its notices.
 #[test]
 fn a_choice_of_surface_without_a_lattice_is_reported_and_with_a_lattice_it_is_not() {
