@@ -29,6 +29,7 @@ mod recordings;
 mod registered;
 mod robust;
 mod said_by_scenes;
+mod scenes_in_pages;
 mod seams;
 mod shipped_measures;
 mod shipped_shapes;
