@@ -102,7 +102,7 @@ units-sag-Sag = tijelo `{ $body }` od { $mass } kg ulegnulo bi se pod svojom te�
 contact-starts_inside-StartsInside = tijelo `{ $body }` počinje u prepreci { $collider } ({ $kind }), čvorova: { $nodes }, najdublji je čvor { $deepest }, { $depth } m; { $remedy }
 contact-starts_across-StartsAcross = tijelo `{ $body }` počinje preko prepreke { $collider } ({ $kind }), koja nema unutrašnjost: svaki čvor ostaje na strani na kojoj počinje, pa prepreka stišće tijelo
     .hint = pomaknite tijelo ili prepreku
-contact-starts_overlapping-StartsOverlapping = tijela počinju jedno u drugome ili jedno preko drugoga, parova: { $pairs }, prva dva su `{ $body }` i `{ $other }`, kod ({ $near }) m
+contact-starts_overlapping-StartsOverlapping = tijela počinju jedno u drugome ili jedno preko drugoga, parova: { $pairs }, prva dva su `{ $body }` i `{ $other }`, kod ({ $position }) m
     .hint = razmakni tijela; dodir polako razmiče puna tijela (`recovery_speed`), a otvorene plohe i žice ostavlja prekriženima
 contact-none-NoContact = u t = { $time } s tijela prolaze jedna kroz druga, parova: { $pairs }, prva dva su `{ $first }` i `{ $second }`
     .hint = odjeljak `[contact]` drži tijela razdvojenima

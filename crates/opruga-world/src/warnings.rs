@@ -239,9 +239,9 @@ messages! {
         #[hint("move the body or the obstacle")]
         StartsAcross { body: String, collider: usize, kind: String },
         "contact.starts_overlapping"
-        #[error("{} inside or across one another, near ({near}) m", overlapping(*pairs, body, other))]
+        #[error("{} inside or across one another, near ({position}) m", overlapping(*pairs, body, other))]
         #[hint("move the bodies apart; contact separates solids slowly (`recovery_speed`), and leaves open surfaces and wires crossed")]
-        StartsOverlapping { body: String, other: String, pairs: u64, near: String },
+        StartsOverlapping { body: String, other: String, pairs: u64, position: String },
         "contact.none"
         #[error("at t = {} s, {} through one another (first: `{first}` and `{second}`)", number(*time), if *pairs == 1 { "two bodies pass".into() } else { format!("{pairs} pairs of bodies pass") })]
         #[hint("a section `[contact]` keeps bodies apart")]

@@ -19,8 +19,8 @@ impl<const D: usize> World<D> {
         let (crossed, surfaces) = self.crossed_among(|[a, b]| a != b, Surfaces::shrunk);
         let Some(first) = crossed.first() else { return };
         let [body, other] = first.bodies.map(|body| self.blueprint.bodies[body].name.clone());
-        let near = self.center_of(first, &surfaces).map(|x| rounded(x, 3)).join(", ");
-        let warning = WorldWarning::StartsOverlapping { body, other, pairs: crossed.len() as u64, near };
+        let position = self.center_of(first, &surfaces).map(|x| rounded(x, 3)).join(", ");
+        let warning = WorldWarning::StartsOverlapping { body, other, pairs: crossed.len() as u64, position };
         self.warnings.push(Warning::new(warning, 1));
     }
 
