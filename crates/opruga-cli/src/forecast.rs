@@ -85,7 +85,7 @@ fn shorter(world: &dyn AnyWorld) -> Shorter {
         if has_real_time(world, integrator) {
             out.push(Shorter::RealTime {});
         }
-        if let Some((integrator, substeps)) = explicit_substeps(world) {
+        if let Some((integrator, substeps)) = explicit_substeps(world).filter(|_| world.is_implicit(integrator)) {
             out.push(Shorter::Explicit { integrator, substeps });
         }
         if time.substeps > 1 {
