@@ -135,6 +135,7 @@ impl<const D: usize> Meeting<D> {
             has_budget,
             converged: true,
             stretch: 1.0,
+            by_obstacles: 0.0,
             sticking: 1.0,
             staying,
         };

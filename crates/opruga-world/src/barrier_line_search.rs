@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-12;
 impl<const D: usize> Search<'_, '_, D> {
     /// The slope of the sum of all energies along the correction, minus the work of the obstacles.
     pub(crate) fn slope(&mut self, gradient: &[f64]) -> f64 {
-        let mut slope = 0.0;
+        let mut slope = self.slope_of_obstacles() - self.by_obstacles;
         for open in &mut self.opened {
             let given = open.step.given();
             let range = open.range();
@@ -59,7 +59,7 @@ impl<const D: usize> Search<'_, '_, D> {
         let start = std::mem::take(&mut self.x);
         let moved = self.moved.clone();
         let before = self.energy();
-        let given: f64 = self.opened.iter_mut().map(|open| open.step.given()).sum();
+        let given = self.by_obstacles + self.opened.iter_mut().map(|open| open.step.given()).sum::<f64>();
         let rounding: f64 = self.opened.iter().map(|open| open.step.rounding(&self.islands[open.island].system)).sum();
         let between = |part: f64| {
             let at = |(a, b): (&[f64; D], &[f64; D])| std::array::from_fn(|d| a[d] + part * (b[d] - a[d]));

@@ -122,6 +122,9 @@ pub(crate) struct Search<'a, 'b, const D: usize> {
     pub(crate) converged: bool,
     /// The factor by which the next correction is lengthened.
     pub(crate) stretch: f64,
+    /// The work that the motion of obstacles is expected to do along the correction, with the forces at its end [J]. Like the work of pins and of
+    /// friction on obstacles, it raises the sum of the energies without being a reason to shorten the correction.
+    pub(crate) by_obstacles: f64,
     /// The factor by which sticking is stiffer than at first.
     pub(crate) sticking: f64,
     /// The terms that keep bodies at rest near their present positions during a correction; `None` for moving bodies.
@@ -406,6 +409,23 @@ impl<const D: usize> Search<'_, '_, D> {
         out
     }
 
+    /// The slope of B + D along the remaining motion of obstacles [J].
+    pub(crate) fn slope_of_obstacles(&self) -> f64 {
+        let along = |p: u32, w: f64, force: &[f64; D]| w * dot(&self.ahead[p as usize], force);
+        let of_pair = |points: &[u32; 4], weights: &[f64; 4], force: &[f64; D]| -> f64 {
+            points.iter().zip(weights).map(|(p, w)| along(*p, *w, force)).sum()
+        };
+        let mut slope = 0.0;
+        for pair in &self.pressed {
+            slope += of_pair(&pair.points, &pair.weights, &scaled(&pair.normal, -pair.force));
+            slope += pair.points.iter().zip(&pair.fading).map(|(p, fading)| along(*p, 1.0, fading)).sum::<f64>();
+        }
+        for rub in &self.rubbing {
+            slope -= of_pair(&rub.points, &rub.weights, &rub.force(&rub.slip(&self.moved)));
+        }
+        slope
+    }
+
     /// Finds the residual. `first` is its largest norm so far; `most` is the largest residual, relative to the forces, at which bodies at rest count
     /// as being in equilibrium.
     fn find_residual(&mut self, first: &mut f64, most: f64) -> Residual {
@@ -466,6 +486,12 @@ impl<const D: usize> Search<'_, '_, D> {
             let Some(more) = self.solve(&whole, LEFT.larger(linear)) else { break };
             step.iter_mut().zip(&more).for_each(|(s, more)| *s += more);
         }
+        let mut whole = vec![0.0; self.length];
+        for open in &mut self.opened {
+            let range = open.range();
+            whole[range].copy_from_slice(open.step.correction());
+        }
+        self.by_obstacles = self.slope_of_obstacles() + self.stiffness.work_on_obstacles(&whole);
         Some(self.slope(gradient))
     }
 

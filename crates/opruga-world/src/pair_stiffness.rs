@@ -64,22 +64,41 @@ impl<const D: usize> PairStiffness<D> {
         }
     }
 
+    /// The work of the forces S G x on the motion of obstacles, which is part of G x [J].
+    pub(crate) fn work_on_obstacles(&self, x: &[f64]) -> f64 {
+        let (mut first, mut work) = (0, 0.0);
+        for pair in &self.pairs {
+            let nodes = &self.nodes[first..pair.end as usize];
+            first = pair.end as usize;
+            let force = pair.force(nodes, x, true);
+            (0..D).for_each(|d| work += pair.obstacles[d] * force[d]);
+        }
+        work
+    }
+
     /// y += Gᵀ S G x; `with_obstacles` includes the motion of obstacles.
     pub(crate) fn multiply(&self, x: &[f64], with_obstacles: bool, y: &mut [f64]) {
         let mut first = 0;
         for pair in &self.pairs {
             let nodes = &self.nodes[first..pair.end as usize];
             first = pair.end as usize;
-            let mut motion = if with_obstacles { pair.obstacles } else { [0.0; D] };
-            for (at, weight) in nodes {
-                let x = &x[*at as usize..*at as usize + D];
-                (0..D).for_each(|d| motion[d] += weight * x[d]);
-            }
-            let force: [f64; D] = core::array::from_fn(|i| (0..D).map(|j| pair.matrix[i][j] * motion[j]).sum::<f64>());
+            let force = pair.force(nodes, x, with_obstacles);
             for (at, weight) in nodes {
                 let y = &mut y[*at as usize..*at as usize + D];
                 (0..D).for_each(|d| y[d] += weight * force[d]);
             }
         }
+    }
+}
+
+impl<const D: usize> Pair<D> {
+    /// S G x for the pair with these nodes; `with_obstacles` includes the motion of obstacles.
+    fn force(&self, nodes: &[(u32, f64)], x: &[f64], with_obstacles: bool) -> [f64; D] {
+        let mut motion = if with_obstacles { self.obstacles } else { [0.0; D] };
+        for (at, weight) in nodes {
+            let x = &x[*at as usize..*at as usize + D];
+            (0..D).for_each(|d| motion[d] += weight * x[d]);
+        }
+        core::array::from_fn(|i| (0..D).map(|j| self.matrix[i][j] * motion[j]).sum::<f64>())
     }
 }

@@ -198,7 +198,9 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
         self.workspace.linear.solve_positive(x, 1);
     }
     fn follow(&mut self, system: &System<D>, forces: &[f64], tolerance: f64, out: &mut [f64]) -> bool {
-        if !self.workspace.contacting.any() {
+        // Pins that move their nodes do work along the correction too.
+        let leads = self.workspace.prescribed.iter().any(|displacement| *displacement != 0.0);
+        if !leads && !self.workspace.contacting.any() {
             self.workspace.reaction.fill(0.0);
             return false;
         }

@@ -389,3 +389,44 @@ fn gas_rings_with_implicit_steps_and_friction_stay_together() {
         }
     }
 }
+
+/// A scene in space, with the callback after every frame until the given time [s].
+fn in_space(text: &str, seconds: f64, mut look: impl FnMut(&World<3>)) -> World<3> {
+    let read = scene::read(text.as_bytes(), "robust", &catalogue(), &scene::Options::default());
+    let (AnyBlueprint::Space(blueprint), _) = read.expect("a scene") else { panic!("the scene is in space") };
+    let mut world = World::new(blueprint, Options::default()).expect("a world");
+    while world.time() < seconds {
+        world.frame().expect("a frame");
+        look(&world);
+    }
+    world
+}
+
+/// The mean position of the nodes of a body [m].
+fn middle(world: &World<3>, body: usize) -> [f64; 3] {
+    let nodes = world.node_count(body);
+    let sum = (0..nodes).map(|node| world.position(body, node as u32));
+    sum.fold([0.0; 3], |sum, x| std::array::from_fn(|d| sum[d] + x[d] / nodes as f64))
+}
+
+/// The line search of a barrier must allow for the work of obstacles that move, because this work raises the energy along every correction.
+#[test]
+fn plates_grip_and_lift_a_block_under_a_barrier() {
+    let text = include_str!("../robust/gripper-barrier.toml");
+    let world = in_space(text, 1.3, |world| assert_eq!(world.crossed_surfaces(), [], "at {} s", world.time()));
+    let (energy, height) = (world.energy(), middle(&world, 0)[1]);
+    assert!((height - 0.25).abs() < 0.002, "{height} m");
+    // The weight of the block times the lift; pressing the block takes less than the rest.
+    assert!((0.98..1.5).contains(&energy.work_user), "{energy:?}");
+    assert!(energy.closure < 0.01, "{energy:?}");
+}
+
+/// The same is true of pins that move.
+#[test]
+fn a_finger_that_pins_lead_pushes_a_ball_under_a_barrier() {
+    let text = include_str!("../robust/finger-barrier.toml");
+    let world = in_space(text, 1.0, |world| assert_eq!(world.crossed_surfaces(), [], "at {} s", world.time()));
+    let (energy, pushed) = (world.energy(), middle(&world, 1)[0]);
+    assert!(pushed > 0.1, "{pushed} m");
+    assert!(energy.closure < 0.01, "{energy:?}");
+}
