@@ -177,6 +177,17 @@ impl<const D: usize> Search<'_, '_, D> {
         for rub in &rubbing {
             enter(&rub.points, &rub.weights, &rub.force(&rub.slip(&moved)), 1);
         }
+        // The work that moving obstacles do on the bodies, against the barrier and by friction.
+        let mut by_obstacles = [0.0; 2];
+        for (_, losses) in losses.iter().enumerate().filter(|(p, _)| surface.is_of_obstacle(*p as u32)) {
+            by_obstacles.iter_mut().zip(losses).for_each(|(sum, own)| *sum += own);
+        }
+        if let Some(Opened { island, .. }) = opened.first().filter(|_| moves) {
+            let work = &mut islands[*island].system.work;
+            work.user[0] += by_obstacles[0] + by_obstacles[1];
+            work.contact[0] += by_obstacles[0];
+            work.friction[0] += by_obstacles[1];
+        }
         touching.after[0].copy_from_slice(&x);
         touching.take_pressed(h, &pressed, &rubbing, &moved);
         for (body, Opened { island, first, step }) in opened.into_iter().enumerate() {

@@ -1,7 +1,7 @@
 //! The forces of models, obstacles and pins on the nodes of a body.
 
 use crate::world::World;
-use opruga_core::contacts::{Contacts, Moved};
+use opruga_core::contacts::Moved;
 use opruga_core::potential::Account;
 use opruga_core::state::Columns;
 use opruga_integrators::accelerations;
@@ -56,6 +56,11 @@ impl<const D: usize> World<D> {
 
     fn obstacle_forces(&mut self, body: usize) -> Vec<[f64; D]> {
         let Some(colliders) = self.colliders.clone().filter(|_| self.handle(body).is_some()) else { return Vec::new() };
+        // Where faces of obstacles touch a body like faces of bodies, their forces are among those of bodies.
+        let meetings = self.clusters.iter().flat_map(|clusters| clusters.meetings());
+        let without_faces =
+            meetings.filter(|meeting| meeting.bodies.contains(&body)).find_map(|meeting| meeting.without_faces.clone());
+        let contacts = without_faces.unwrap_or_else(|| colliders.into_contacts());
         let (h, time, (island, lane)) = (self.h(), self.time(), self.locations[body]);
         let system = &mut self.islands[island].system;
         let Ok(forces) = system.forces(true) else { return Vec::new() };
@@ -72,7 +77,7 @@ impl<const D: usize> World<D> {
         }
         let free = v.clone();
         let [mut normal, mut friction, mut work, mut correction] = [[0.0; WIDTH]; 4];
-        colliders.resolve(
+        contacts.resolve(
             system.simd,
             &mut Moved {
                 range: 0..index_count,

@@ -221,3 +221,49 @@ fn whole_obstacles_have_the_same_bits() {
         assert_eq!(run(1), run(3), "{kind}");
     }
 }
+
+/// A block of 4.9 N on a box, which may move.
+fn block_on_a_shelf(rule: &str, response: &str, motion: &[[f64; 4]]) -> World<3> {
+    let mesh = Mesh::<3>::grid([-0.05, 0.002, -0.05], [0.1; 3], [2; 3]).expect("a block");
+    let fem = model::<3>("fem", &[("youngs_modulus", 1e5), ("poissons_ratio", 0.3), ("damping", 0.01)]);
+    let block = BodyBlueprint::new("block", mesh, Mass::Total(0.5), vec![fem]);
+    let numbers = |x: [f64; 3]| Value::Numbers(x.to_vec());
+    let mut fields = vec![("min", numbers([-0.3, -0.1, -0.3])), ("max", numbers([0.3, 0.0, 0.3]))];
+    if !motion.is_empty() {
+        fields.push(("motion", Value::Rows(motion.iter().map(|row| row.to_vec()).collect())));
+    }
+    let mut scene = scene(rule, block, collider::<3>("box", &fields));
+    scene.surroundings.gravity[1] = -9.81;
+    scene.time = Time { seconds: 10.0, frame: 1.0 / 60.0, substeps: if rule == "symplectic_euler" { 60 } else { 4 } };
+    let contact = &mut scene.contact.as_mut().expect("contact").values;
+    contact.set(CONTACT.spec, "response", Value::Text(response.into()), 3).expect("a response");
+    World::new(scene, Options::default()).expect("a world")
+}
+
+/// The contact forces on the nodes of a block at rest support it, whether the face of the box constrains nodes or touches facets.
+#[test]
+fn the_contact_forces_on_a_block_at_rest_on_a_box_are_its_weight() {
+    let responses = [
+        ("symplectic_euler", "constraint"),
+        ("backward_euler", "constraint"),
+        ("newmark", "constraint"),
+        ("backward_euler", "barrier"),
+    ];
+    for (rule, response) in responses {
+        let mut world = block_on_a_shelf(rule, response, &[]);
+        (0..60).for_each(|_| world.frame().expect("a frame"));
+        let force: f64 = world.contact_forces(0).iter().map(|force| force[1]).sum();
+        assert!((force / (0.5 * 9.81) - 1.0).abs() < 0.05, "{rule}, {response}: {force} N");
+    }
+}
+
+/// A box that sets off at 1 m/s, lifts a block by 0.5 m and stops does the work m g Δh + m v², half of which the impact at the beginning takes.
+#[test]
+fn a_box_that_lifts_a_block_by_a_barrier_does_work_on_it() {
+    let motion = [[0.0; 4], [0.3, 0.0, 0.0, 0.0], [0.8, 0.0, 0.5, 0.0]];
+    let mut world = block_on_a_shelf("backward_euler", "barrier", &motion);
+    (0..72).for_each(|_| world.frame().expect("a frame"));
+    let (energy, work) = (world.energy(), 0.5 * (9.81 * 0.5 + 1.0));
+    assert!((energy.work_user / work - 1.0).abs() < 1e-3, "{work} J: {energy:?}");
+    assert!(energy.loss_contact.abs() < 0.05 * work, "{work} J: {energy:?}");
+}
