@@ -36,7 +36,8 @@ impl<const D: usize> World<D> {
         (0..system.nodes as u32).filter(|node| pinned.contains(&system.layout.index(*node as usize, lane))).collect()
     }
     /// The contact forces on the nodes of a body [N]. The forces of obstacles are the forces in the coming substep, f = m (v' − v*)/h. The forces of
-    /// bodies, and of corners and edges of obstacles, come from the last substep: the impulse divided by h.
+    /// bodies, of corners and edges of obstacles, and of faces of obstacles on bodies with implicit integrators in scenes with contact come from the
+    /// last substep: the impulse divided by h.
     ///
     /// v* is the velocity that the present forces would give a node within h without obstacles, and v' is the velocity with obstacles. The force
     /// consists of the normal force and friction; in an impact, it is the impulse over h. Pinned nodes have no contact force, because the pin takes
