@@ -253,12 +253,14 @@ impl Outputs<'_> {
             if e.loss_integrator < 0.0 { "gained" } else { "lost" },
             by_the_rule,
         );
-        world
-            .warnings_at_the_end()
-            .into_iter()
-            .filter(|warning| !early.contains(warning))
-            .for_each(|warning| print_warning(&warning));
+        self.print_warnings(world, early);
         self.print_paths();
+    }
+
+    /// Prints the warnings of a run that were not reported early.
+    pub(crate) fn print_warnings(&self, world: &dyn AnyWorld, early: &[Warning]) {
+        let warnings = world.warnings_at_the_end().into_iter();
+        warnings.filter(|warning| !early.contains(warning)).for_each(|warning| print_warning(&warning));
     }
 
     /// Prints the folder of the output, and which files in it are pictures.

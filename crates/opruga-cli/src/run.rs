@@ -266,7 +266,9 @@ impl Job<'_> {
         // The results up to a failure are written too, because they show how the failure came about.
         let summary = outputs.write(&*world, recorder, &mut keeper)?;
         if let Some(failure) = failure {
+            // Warnings often say why a run failed.
             if !call.json {
+                outputs.print_warnings(&*world, &early);
                 outputs.print_paths();
             }
             return Err(failure);
