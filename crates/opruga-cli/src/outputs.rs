@@ -238,7 +238,7 @@ impl Outputs<'_> {
         };
         let by_the_rule = match e.loss_numerical {
             0.0 => String::new(),
-            made if made < 0.0 => format!(", {} J added by the damping of its integrator", number(-made)),
+            made if made < 0.0 => format!(", {} J added by the steps of its integrator", number(-made)),
             taken => format!(", {} J removed by the damping of its integrator", number(taken)),
         };
         eprintln!(

@@ -20,6 +20,7 @@ part-damping_hint-Undamped = s više podkoraka je manje, a `implicit_midpoint` i
 part-damping_hint-RealTime = s više podkoraka je manje, a `bdf2` sam uzima manje
 part-damping_hint-Radius = manje je s više podkoraka ili s većim `spectral_radius`
 part-damping_hint-Damped = s više podkoraka je manje, a `backward_euler` prigušuje što bi raslo
+part-damping_hint-Exact = `accuracy = "exact"` to sprečava; s više podkoraka koraci u stvarnom vremenu mogu dodati i više
 
 ## BudgetHint
 

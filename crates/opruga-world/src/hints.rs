@@ -32,6 +32,10 @@ impl<const D: usize> World<D> {
 
     /// What reduces the energy that integrators add.
     pub(crate) fn against_growth(&self) -> DampingHint {
+        // The residual of steps in real time is what adds energy, and every step has one.
+        if self.is_in_real_time() {
+            return DampingHint::Exact;
+        }
         self.unless_in_use(DampingHint::Damped)
     }
 

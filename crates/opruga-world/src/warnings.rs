@@ -101,6 +101,7 @@ terms! {
         RealTime = "more substeps reduce this, and `bdf2` removes less",
         Radius = "more substeps or a larger `spectral_radius` reduce this",
         Damped = "more substeps reduce this, and `backward_euler` damps motion that would grow",
+        Exact = "`accuracy = \"exact\"` prevents this; with more substeps, steps in real time may add more",
     }
 }
 

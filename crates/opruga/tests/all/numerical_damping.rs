@@ -248,3 +248,24 @@ fn changes_of_the_scene_are_no_damping() {
         "{start}: {e:?}"
     );
 }
+
+/// Steps in real time have a residual, and more of them add more energy where a block slides on a slab.
+#[test]
+fn the_advice_against_energy_that_steps_in_real_time_add_is_exact_steps() {
+    let fem =
+        "models = [{ kind = \"fem\", youngs_modulus = 5e5, poissons_ratio = 0.3, damping = 0.002 }]\ndensity = 500.0\n";
+    let text = format!(
+        "format = \"opruga-1\"\ndimension = 2\n[time]\nseconds = 1.0\nsubsteps = 16\n[world]\ngravity = [4.39, -8.77]\n\
+         [integrator]\nkind = \"backward_euler\"\naccuracy = \"real_time\"\n[contact]\nfriction = 0.3\n\
+         [[body]]\nname = \"slab\"\npin = [{{ select = {{ side = \"bottom\" }} }}]\n\
+         shape = {{ kind = \"grid\", size = [4.0, 0.2], cells = [40, 2], corner = [-0.5, -0.2] }}\n{fem}\
+         [[body]]\nname = \"block\"\n\
+         shape = {{ kind = \"grid\", size = [0.2, 0.1], cells = [4, 2], corner = [-0.2, 0.0005] }}\n{fem}"
+    );
+    let mut world = built(plane(&text));
+    frames(&mut world, 60);
+    assert!(world.energy().loss_numerical < -10.0, "{:?}", world.energy());
+    let warnings = world.warnings();
+    let warning = warnings.iter().find(|warning| warning.code == NUMERICAL).expect("a warning");
+    assert!(warning.message.contains("accuracy = \"exact\""), "{}", warning.message);
+}
