@@ -253,14 +253,8 @@ impl Outputs<'_> {
             if e.loss_integrator < 0.0 { "gained" } else { "lost" },
             by_the_rule,
         );
-        self.print_warnings(world, early);
+        print_late_warnings(world, early);
         self.print_paths();
-    }
-
-    /// Prints the warnings of a run that were not reported early.
-    pub(crate) fn print_warnings(&self, world: &dyn AnyWorld, early: &[Warning]) {
-        let warnings = world.warnings_at_the_end().into_iter();
-        warnings.filter(|warning| !early.contains(warning)).for_each(|warning| print_warning(&warning));
     }
 
     /// Prints the folder of the output, and which files in it are pictures.
@@ -272,6 +266,12 @@ impl Outputs<'_> {
             eprintln!("  results: {}", there.join(", "));
         }
     }
+}
+
+/// Prints the warnings of a run that were not reported early.
+pub(crate) fn print_late_warnings(world: &dyn AnyWorld, early: &[Warning]) {
+    let warnings = world.warnings_at_the_end().into_iter();
+    warnings.filter(|warning| !early.contains(warning)).for_each(|warning| print_warning(&warning));
 }
 
 /// Stress, von Mises stress and J of every node of a body. A row has no numbers if none of the cells at its node

@@ -7,7 +7,7 @@ use crate::failure::{Failure, print_data, print_note, print_warning};
 use crate::forecast::{Forecast, duration};
 use crate::interrupt;
 use crate::language::translation;
-use crate::outputs::Outputs;
+use crate::outputs::{Outputs, print_late_warnings};
 use crate::preparation::watched;
 use crate::recorder::Recorder;
 use crate::recordings;
@@ -268,7 +268,7 @@ impl Job<'_> {
         if let Some(failure) = failure {
             // Warnings often say why a run failed.
             if !call.json {
-                outputs.print_warnings(&*world, &early);
+                print_late_warnings(&*world, &early);
                 outputs.print_paths();
             }
             return Err(failure);

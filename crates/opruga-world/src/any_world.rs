@@ -218,7 +218,7 @@ pub trait AnyWorld: core::fmt::Debug + Send {
     fn node_mass(&self, body: usize, node: u32) -> f64;
     /// The forces on the nodes of a body [N] from the models that belong to one account of the ledger, or from all models. Every call computes them.
     fn forces(&mut self, body: usize, account: Option<Account>) -> Vec<[f64; 3]>;
-    /// The forces of obstacles on the nodes of a body in the coming substep [N]. Every call computes them.
+    /// The contact forces on the nodes of a body [N], as [`World::contact_forces`] gives them. Every call computes them.
     fn contact_forces(&mut self, body: usize) -> Vec<[f64; 3]>;
     /// The nodes of a body that are pinned now.
     fn pinned_now(&self, body: usize) -> Vec<u32>;

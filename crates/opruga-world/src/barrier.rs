@@ -179,8 +179,8 @@ impl<const D: usize> Search<'_, '_, D> {
         }
         // The work that moving obstacles do on the bodies, against the barrier and by friction.
         let mut by_obstacles = [0.0; 2];
-        for (_, losses) in losses.iter().enumerate().filter(|(p, _)| surface.is_of_obstacle(*p as u32)) {
-            by_obstacles.iter_mut().zip(losses).for_each(|(sum, own)| *sum += own);
+        for p in (0..x.len()).filter(|p| surface.is_of_obstacle(*p as u32)) {
+            (0..2).for_each(|account| by_obstacles[account] += losses[p][account]);
         }
         if let Some(Opened { island, .. }) = opened.first().filter(|_| moves) {
             let work = &mut islands[*island].system.work;
