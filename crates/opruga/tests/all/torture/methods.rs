@@ -215,7 +215,8 @@ fn bodies_of_the_other_methods_come_back_or_opruga_says_why_not() {
 #[test]
 #[ignore = "a sweep: cargo test -- --ignored whole_sweep"]
 fn bodies_of_the_other_methods_come_back_or_opruga_says_why_not_whole_sweep() {
-    come_back(|number| number % 12 != 0);
+    // Two in five, because all of them take minutes; five has no common divisor with the numbers of shapes.
+    come_back(|number| number % 12 != 0 && number % 5 < 2);
 }
 
 /// The cases with selected numbers.
