@@ -336,6 +336,11 @@ impl<const D: usize> Touching<D> {
     /// Makes all points respond independently for the rest of the substep, because contact and the balance of forces disagree.
     pub fn part_coupled(&mut self) {
         self.coupled.apart = true;
+        self.start_without_impulses();
+    }
+
+    /// Discards the impulses found so far, because bodies repeat their steps without them.
+    pub fn start_without_impulses(&mut self) {
         self.passing.clear();
         self.last.clear();
     }

@@ -110,6 +110,8 @@ pub struct System<const D: usize> {
     /// The forces of other bodies on nodes throughout the step, by index [N]; `None` if no body is touched. Implicit integrators include these forces
     /// in the balance; explicit ones ignore them.
     pub pushes: Option<Vec<(usize, [f64; D])>>,
+    /// Whether integrators with a budget of iterations make exact steps, because their results do not agree with contact.
+    pub exact: bool,
     /// The limits of the thesis.
     pub stabilisers: Stabilisers,
     /// The energy that entered and left the system, and the work of the solver.
@@ -167,6 +169,7 @@ impl<const D: usize> System<D> {
             pins: Vec::new(),
             contacts: None,
             pushes: None,
+            exact: false,
             stabilisers: Stabilisers::default(),
             work: Work8::default(),
             history: History::default(),

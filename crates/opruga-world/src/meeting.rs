@@ -87,7 +87,7 @@ pub(crate) struct Substep<'a, const D: usize> {
 
 impl<const D: usize> Substep<'_, D> {
     /// Runs a computation with a function that finds the obstacles that a single point touches in this substep.
-    fn with_obstacles<R>(&self, work: impl FnOnce(Option<Obstacles<'_, D>>) -> R) -> R {
+    pub(crate) fn with_obstacles<R>(&self, work: impl FnOnce(Option<Obstacles<'_, D>>) -> R) -> R {
         let Some(obstacles) = self.obstacles else { return work(None) };
         let (time, h) = (self.time, self.plan.h);
         work(Some(&|_, from, to, reach, visit| obstacles.touch(from, to, time, h, reach, visit)))
@@ -281,7 +281,7 @@ impl<const D: usize> Meeting<D> {
         let h = step.plan.h;
         self.touching.begin_step();
         let agreed = step.with_obstacles(|touch| self.iterate_with_contact(islands, step, touch))?;
-        if !agreed {
+        if !agreed && !self.repeat_exactly(islands, step)? {
             self.part(islands, step);
             if islands.iter().any(|island| island.outcome.is_err()) {
                 return Ok(());

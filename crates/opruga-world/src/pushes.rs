@@ -184,6 +184,33 @@ impl<const D: usize> Meeting<D> {
         Ok(false)
     }
 
+    /// Repeats the substep with exact steps if steps with a budget do not agree with contact; returns whether exact steps agree.
+    ///
+    /// The residual that a budget leaves would otherwise create energy without limit
+    /// (`fingers_that_press_hard_in_real_time_do_not_cross_the_ring`).
+    pub(crate) fn repeat_exactly(
+        &mut self,
+        islands: &mut [&mut Island<D>],
+        step: &Substep<'_, D>,
+    ) -> Result<bool, Trouble> {
+        if !self.touching.has_budget {
+            return Ok(false);
+        }
+        let Meeting { touching, pushed, workspace, .. } = &mut *self;
+        for pushed in pushed.iter_mut() {
+            let island = &mut islands[pushed.island];
+            island.system.exact = true;
+            pushed.step_without(island, step, workspace);
+        }
+        touching.has_budget = false;
+        touching.start_without_impulses();
+        self.take(islands, step.time);
+        let agreed = step.with_obstacles(|touch| self.iterate_with_contact(islands, step, touch));
+        self.touching.has_budget = true;
+        self.pushed.iter().for_each(|pushed| islands[pushed.island].system.exact = false);
+        agreed
+    }
+
     /// The largest distance between the end positions of points and those to which the impulses should take them [m].
     fn missed(&self, islands: &[&mut Island<D>]) -> f64 {
         let mut most: f64 = 0.0;

@@ -32,24 +32,13 @@ impl<const D: usize> Minimiser<D> for RealTime {
         workspace: &mut Workspace<D>,
         balance: &Balance,
     ) -> Result<Solved, StepError> {
-        let settings = &self.0;
-        let (cut_off, left) = (system.work.solver.cut_off, system.work.solver.left);
-        let outcome = iterate(system, workspace, balance, settings);
-        let spent = match &outcome {
-            Ok((solved, Trust::Always)) => return Ok(*solved),
-            Ok((solved, Trust::IfNoGain)) if !has_risen(system, workspace, balance)? => {
-                return Ok(Solved { doubtful: true, ..*solved });
-            }
-            Ok((solved, Trust::IfDownhill)) if !has_risen(system, workspace, balance)? => return Ok(*solved),
-            Ok((solved, _)) => *solved,
-            // A model has no value in the state that the iteration reached.
-            Err(StepError::Model { .. }) => Solved::default(),
-            Err(_) => return outcome.map(|(solved, _)| solved),
+        let spent = match self.with_few_iterations(system, workspace, balance)? {
+            Outcome::Accepted(solved) => return Ok(solved),
+            Outcome::Refused(spent) => spent,
         };
-        (system.work.solver.cut_off, system.work.solver.left) = (cut_off, left);
         mark_stale(system);
         begin_anew(system, workspace, balance);
-        let mut solved = Newton(exactly(settings)).minimise(system, workspace, balance)?;
+        let mut solved = Newton(exactly(&self.0)).minimise(system, workspace, balance)?;
         solved.iterations += spent.iterations;
         solved.products += spent.products;
         Ok(solved)
@@ -78,6 +67,43 @@ impl<const D: usize> Minimiser<D> for RealTime {
     }
     fn same_bits_everywhere(&self, system: &System<D>) -> bool {
         !self.0.solver.is_direct_in_real_time(system)
+    }
+}
+
+/// The result of few iterations.
+enum Outcome {
+    Accepted(Solved),
+    /// The result was refused after this work.
+    Refused(Solved),
+}
+
+impl RealTime {
+    /// Makes few iterations, unless the step has to be exact.
+    fn with_few_iterations<const D: usize>(
+        &self,
+        system: &mut System<D>,
+        workspace: &mut Workspace<D>,
+        balance: &Balance,
+    ) -> Result<Outcome, StepError> {
+        if system.exact {
+            return Ok(Outcome::Refused(Solved::default()));
+        }
+        let (cut_off, left) = (system.work.solver.cut_off, system.work.solver.left);
+        let spent = match iterate(system, workspace, balance, &self.0) {
+            Ok((solved, Trust::Always)) => return Ok(Outcome::Accepted(solved)),
+            Ok((solved, Trust::IfNoGain)) if !has_risen(system, workspace, balance)? => {
+                return Ok(Outcome::Accepted(Solved { doubtful: true, ..solved }));
+            }
+            Ok((solved, Trust::IfDownhill)) if !has_risen(system, workspace, balance)? => {
+                return Ok(Outcome::Accepted(solved));
+            }
+            Ok((solved, _)) => solved,
+            // A model has no value in the state that the iteration reached.
+            Err(StepError::Model { .. }) => Solved::default(),
+            Err(error) => return Err(error),
+        };
+        (system.work.solver.cut_off, system.work.solver.left) = (cut_off, left);
+        Ok(Outcome::Refused(spent))
     }
 }
 
