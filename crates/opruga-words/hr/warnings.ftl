@@ -9,8 +9,8 @@ part-difference-Lost = premalo
 
 part-error_hint-RealTime = kod implicitnih pravila neobjašnjeno je što u jednadžbama ostaje van ravnoteže: `accuracy = "exact"` ili više podkoraka
 part-error_hint-Exact = kod implicitnih pravila neobjašnjeno je što u jednadžbama ostaje van ravnoteže: manji `tolerance` ili više podkoraka
-part-error_hint-Contact = tijela su udarila o prepreke, a ondje pada razmjerno koraku kod svakog pravila: više podkoraka
-part-error_hint-ContactOfOthers = tijela su udarila o prepreke, a ondje pada razmjerno koraku kod svakog pravila; najmanja je kod `verlet`
+part-error_hint-Contact = tijela su udarila o prepreke ili jedna o druga, a ondje pada razmjerno koraku kod svakog pravila: više podkoraka
+part-error_hint-ContactOfOthers = tijela su udarila o prepreke ili jedna o druga, a ondje pada razmjerno koraku kod svakog pravila; najmanja je kod `verlet`
 part-error_hint-Explicit = s više podkoraka je manja, a manja je i kod pravila višeg reda
 
 ## DampingHint

@@ -87,8 +87,8 @@ terms! {
     pub enum ErrorHint = "part.error_hint" {
         RealTime = "with implicit integrators, it comes from the residual of their equations; use `accuracy = \"exact\"`, or more substeps",
         Exact = "with implicit integrators, it comes from the residual of their equations; use a smaller `tolerance`, or more substeps",
-        Contact = "bodies met obstacles; at obstacles, this error is proportional to the step with every integrator, so use more substeps",
-        ContactOfOthers = "bodies met obstacles; at obstacles, this error is proportional to the step with every integrator, but smallest with `verlet`",
+        Contact = "bodies met obstacles or one another; in contact, this error is proportional to the step with every integrator, so use more substeps",
+        ContactOfOthers = "bodies met obstacles or one another; in contact, this error is proportional to the step with every integrator, but smallest with `verlet`",
         Explicit = "use more substeps, or an integrator of higher order",
     }
 }
