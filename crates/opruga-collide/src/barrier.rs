@@ -101,13 +101,22 @@ impl<const D: usize> Pressed<D> {
     pub fn rubbing(&self, multiplier: [f64; D], stiffer: f64) -> Rubbing<D> {
         let Pressed { id, points, weights, normal, .. } = *self;
         let across = subtract(&multiplier, &scaled(&normal, dot(&multiplier, &normal)));
-        let (size, most) = (length(&across), self.friction * self.force);
-        let multiplier = if size > most { scaled(&across, most / size) } else { across };
-        Rubbing { id, points, weights, normal, most, stiffness: stiffer * STICKING * self.stiffness, multiplier }
+        let stiffness = stiffer * STICKING * self.stiffness;
+        let mut rub = Rubbing { id, points, weights, normal, most: 0.0, stiffness, multiplier: across };
+        rub.limit(self.friction * self.force);
+        rub
     }
 }
 
 impl<const D: usize> Rubbing<D> {
+    /// Sets the largest friction force [N]. The multiplier is shortened to it.
+    pub fn limit(&mut self, most: f64) {
+        let size = length(&self.multiplier);
+        if size > most {
+            self.multiplier = scaled(&self.multiplier, most / size);
+        }
+        self.most = most;
+    }
     /// Returns the slip s [m] that results from the displacements of the points since the start of the step [m].
     pub fn slip(&self, moved: &[[f64; D]]) -> [f64; D] {
         let mut sum = [0.0; D];
@@ -131,6 +140,10 @@ impl<const D: usize> Rubbing<D> {
     pub fn force(&self, slip: &[f64; D]) -> [f64; D] {
         let (pull, size) = self.pull(slip);
         scaled(&pull, -if size > self.most { self.most / size } else { 1.0 })
+    }
+    /// Returns whether the pair slides at this slip [m].
+    pub fn slides(&self, slip: &[f64; D]) -> bool {
+        self.pull(slip).1 > self.most
     }
     /// Returns ∂²D/∂s² as the direction of t and two values [N/m]: along t, and perpendicular to both t and the normal.
     fn curvature(&self, slip: &[f64; D]) -> ([f64; D], [f64; 2]) {

@@ -42,7 +42,7 @@ pub trait OpenStep<const D: usize>: Send {
     /// Assembles the derivatives in the last evaluated state and factors them in the free directions; returns whether that was possible. The
     /// derivatives are exact if `exact` is set and the exact ones are positive definite.
     fn factor(&mut self, system: &System<D>, exact: bool) -> bool;
-    /// The mean diagonal entry of A at a node [N/m]; 0 if pins hold all of its axes.
+    /// The mean diagonal entry of A at a node [N/m]; 0 if pins determine all of its axes.
     fn stiffness(&self, system: &System<D>, node: usize) -> f64;
     /// How far prescribed nodes still have to move [m].
     fn prescribed(&self) -> &[f64];
@@ -61,8 +61,9 @@ pub trait OpenStep<const D: usize>: Send {
     fn follow(&mut self, system: &System<D>, forces: &[f64], tolerance: f64, out: &mut [f64]) -> bool;
     /// The work that friction on obstacles and the forces that hold nodes do along the correction [J].
     fn given(&mut self) -> f64;
-    /// Decides which nodes obstacles hold, and how they hold each one. Returns whether this decision has changed.
-    fn judge(&mut self, system: &System<D>) -> bool;
+    /// Decides which nodes obstacles hold, and how they hold each one, in an iteration of a search. Returns whether this decision has changed. From a
+    /// certain iteration on, it does not change any more.
+    fn judge(&mut self, system: &System<D>, iteration: u32) -> bool;
     /// The correction below which the search ends [m].
     fn goal(&self) -> f64;
     /// The largest number of iterations, and whether a step that has not converged is then accepted.

@@ -5,6 +5,7 @@
 use crate::barrier_search::{Opened, Refused, Search};
 use opruga_collide::{Touching, Trouble};
 use opruga_math::Lane;
+use opruga_solve::dot;
 
 /// The largest fraction of the slope that may remain after a correction. Without this limit, corrections alternate between sticking and sliding,
 /// because the energies differ by less than their rounding errors (`what_sticks_on_a_body_does_not_creep`).
@@ -21,6 +22,40 @@ const MOST_HALVINGS: u32 = 40;
 
 /// Energies whose difference is below this fraction of their terms count as equal.
 const ROUNDING: f64 = 1e-12;
+
+/// The energies on which the length of a correction depends.
+struct Energies {
+    bodies: Vec<OwnEnergy>,
+    /// B + D (see `barrier_search`) [J].
+    between: f64,
+}
+
+/// The incremental potential of a body.
+struct OwnEnergy {
+    /// Φ and the size of its terms [J]; `None` with damping or a model without an energy.
+    energy: Option<[f64; 2]>,
+    /// The slope of Φ, or the work of the residual, along the whole correction [J].
+    slope: f64,
+}
+
+impl Energies {
+    /// Returns the change since the start of a part of a correction, and the size of its terms [J].
+    ///
+    /// The work of a body that has no potential is the mean of the slopes at both ends. Its forces are smooth. Those of barriers and of friction are
+    /// not, so the slopes alone would let corrections alternate between sticking and sliding
+    /// (`plates_grip_and_lift_a_block_under_a_barrier`).
+    fn change_since(&self, before: &Energies, part: f64) -> [f64; 2] {
+        let mut change = [self.between - before.between, self.between + before.between];
+        for (after, before) in self.bodies.iter().zip(&before.bodies) {
+            let [own, size] = match (before.energy, after.energy) {
+                (Some([before, size]), Some([after, other])) => [after - before, size + other],
+                _ => [0.5 * part * (before.slope + after.slope), 0.0],
+            };
+            change = [change[0] + own, change[1] + size];
+        }
+        change
+    }
+}
 
 impl<const D: usize> Search<'_, '_, D> {
     /// The slope of the sum of all energies along the correction, minus the work of the obstacles.
@@ -58,7 +93,7 @@ impl<const D: usize> Search<'_, '_, D> {
         let mut part = self.free_part(&far)?;
         let start = std::mem::take(&mut self.x);
         let moved = self.moved.clone();
-        let before = self.energy();
+        let before = self.energies();
         let given = self.by_obstacles + self.opened.iter_mut().map(|open| open.step.given()).sum::<f64>();
         let rounding: f64 = self.opened.iter().map(|open| open.step.rounding(&self.islands[open.island].system)).sum();
         let between = |part: f64| {
@@ -82,13 +117,8 @@ impl<const D: usize> Search<'_, '_, D> {
                 now = self.slope(&gradient);
             }
             // If the step is small, the difference between the energies is lost in rounding.
-            let risen = match (before, self.energy().filter(|_| allowed)) {
-                (Some([before, size]), Some([after, other])) => {
-                    let rounding = ROUNDING * (size + other + (part * given).abs()) + rounding;
-                    after - part * given - before > rounding
-                }
-                _ => false,
-            };
+            let [change, size] = if allowed { self.energies().change_since(&before, part) } else { [0.0; 2] };
+            let risen = change - part * given > ROUNDING * (size + (part * given).abs()) + rounding;
             if allowed && !risen && now <= SLOPE_LEFT * slope.abs() {
                 let steep = part == 1.0 && now < -STEEP * slope.abs();
                 self.stretch = if steep { (2.0 * self.stretch).smaller(LONGEST_STRETCH) } else { 1.0 };
@@ -118,21 +148,17 @@ impl<const D: usize> Search<'_, '_, D> {
         Ok(gone)
     }
 
-    /// The sum of Φ of all bodies, B and D (see `barrier_search`), and the sum of the magnitudes of these terms [J]; `None` with damping.
-    fn energy(&self) -> Option<[f64; 2]> {
-        let [mut sum, mut size] = [0.0; 2];
-        for open in &self.opened {
-            let [energy, parts] = open.step.potential(&self.islands[open.island].system)?;
-            (sum, size) = (sum + energy, size + parts);
-        }
-        for pair in &self.pressed {
-            (sum, size) = (sum + pair.energy, size + pair.energy);
-        }
-        for rub in &self.rubbing {
-            let energy = rub.energy(&rub.slip(&self.moved));
-            (sum, size) = (sum + energy, size + energy);
-        }
-        Some([sum, size])
+    /// The energies in the state that was evaluated last.
+    fn energies(&mut self) -> Energies {
+        let own = |open: &mut Opened<D>| {
+            let energy = open.step.potential(&self.islands[open.island].system);
+            let residual = open.step.residual().to_vec();
+            OwnEnergy { energy, slope: dot(open.step.correction(), &residual) }
+        };
+        let bodies = self.opened.iter_mut().map(own).collect();
+        let pressed = self.pressed.iter().map(|pair| pair.energy);
+        let between = pressed.chain(self.rubbing.iter().map(|rub| rub.energy(&rub.slip(&self.moved)))).sum();
+        Energies { bodies, between }
     }
 
     /// The fraction of the paths to these positions [m] that the points can follow before any pair meets.

@@ -5,6 +5,7 @@ mod any_scene;
 mod any_world;
 mod at_start;
 mod barrier;
+mod barrier_friction;
 mod barrier_line_search;
 mod barrier_search;
 pub mod blueprint;

@@ -357,7 +357,7 @@ impl<const D: usize> Search<'_, '_, D> {
             let Opened { island, step, .. } = &mut body.open;
             step.advance(1.0);
             let system = &self.islands[*island].system;
-            body.constraints_changed |= step.judge(system);
+            body.constraints_changed |= step.judge(system, 0);
             let displacement = step.correction();
             for (p, at) in body.points.clone().zip(&body.coordinates) {
                 (0..D).for_each(|d| touching.before[0][p][d] += displacement[at + d]);

@@ -21,7 +21,7 @@ use opruga_math::Lane;
 const SLOW: f64 = 0.03;
 
 /// From this iteration on, contacts do not change any more. Contacts that would still change make little difference.
-const MOST_DECISIONS: u32 = 30;
+pub(super) const MOST_DECISIONS: u32 = 30;
 
 /// Newton's method: exact, to the tolerance of its settings.
 #[derive(Clone, Copy, Debug)]

@@ -9,6 +9,7 @@ use super::friction::SlipRule;
 use super::holding;
 use super::line_search::given_along;
 use super::linear::{Filter, Mixture};
+use super::newton::MOST_DECISIONS;
 use super::rounding::rounding_of_forces;
 use super::rule::Rule;
 use super::settings::{MOST_HALVINGS, Otherwise, Settings, Solver};
@@ -19,7 +20,6 @@ use opruga_core::open_step::OpenStep;
 use opruga_core::potential::Definiteness;
 use opruga_core::system::System;
 use opruga_math::Lane;
-use opruga_solve::blocks::isotropic;
 
 /// A step that has been started.
 struct Open<R, const D: usize> {
@@ -168,8 +168,9 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
         factored
     }
     fn stiffness(&self, system: &System<D>, node: usize) -> f64 {
-        let pinned = !self.workspace.free[node] && self.workspace.projectors[node] == isotropic(0.0);
-        if pinned {
+        // Nodes that stick to an obstacle move when something pushes them hard enough.
+        let is_pinned = self.workspace.pin_displacement[node * D..(node + 1) * D].iter().all(|x| !x.is_nan());
+        if is_pinned {
             0.0
         } else {
             self.workspace.linear.size_at(&self.mixture(system, Definiteness::Clamped), node) / D as f64
@@ -218,8 +219,10 @@ impl<R: Rule<D>, const D: usize> OpenStep<D> for Open<R, D> {
     fn given(&mut self) -> f64 {
         given_along(&mut self.workspace)
     }
-    fn judge(&mut self, system: &System<D>) -> bool {
-        if system.contacts.is_none() {
+    fn judge(&mut self, system: &System<D>, iteration: u32) -> bool {
+        let is_settled = iteration >= MOST_DECISIONS;
+        self.workspace.contacting.is_settled = is_settled;
+        if system.contacts.is_none() || is_settled {
             return false;
         }
         let settings = Settings { solver: Solver::Auto, ..self.settings };
