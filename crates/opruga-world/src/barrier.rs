@@ -55,8 +55,14 @@ impl<const D: usize> Meeting<D> {
         outcome
     }
 
-    /// Makes a step of length h that ends at a given time [s]. If the search does not converge and the scene allows it, makes two steps of half the
-    /// length.
+    /// Whether the steps of all bodies have a budget of iterations.
+    fn have_budget(&self, islands: &[&mut Island<D>]) -> bool {
+        let has = |island: &Island<D>| island.integrator.has_budget() && !island.system.exact;
+        self.pushed.iter().all(|pushed| has(islands[pushed.island]))
+    }
+
+    /// Makes a step of length h that ends at a given time [s]. If the search fails, repeats steps in real time with exact steps. If the scene allows it,
+    /// makes two steps of half the length instead of a step that does not converge.
     fn advance_as_one(
         &mut self,
         islands: &mut [&mut Island<D>],
@@ -67,15 +73,23 @@ impl<const D: usize> Meeting<D> {
     ) -> Result<(), Refused> {
         let multipliers = kept.multipliers.clone();
         kept.most_halvings = 0;
-        match self.find_common_end(islands, kept, (h, time), step.plan.h) {
-            Err(Refused::Step(error)) if halvings < kept.most_halvings && error != StepError::BrokenOff {} => {}
-            outcome => return outcome,
+        let outcome = self.find_common_end(islands, kept, (h, time), step.plan.h);
+        let failed = matches!(&outcome, Err(Refused::Step(error)) if *error != StepError::BrokenOff {});
+        let has_budget = self.have_budget(islands);
+        if !failed || !has_budget && halvings >= kept.most_halvings {
+            return outcome;
         }
         kept.multipliers = multipliers;
+        self.pushed.iter().for_each(|pushed| islands[pushed.island].rewind());
+        if has_budget {
+            // The residual that a budget leaves may be too large near obstacles (`plates_lift_a_block_in_real_time_under_a_barrier`).
+            self.pushed.iter().for_each(|pushed| islands[pushed.island].system.exact = true);
+            let outcome = self.advance_as_one(islands, step, kept, (h, time), halvings);
+            self.pushed.iter().for_each(|pushed| islands[pushed.island].system.exact = false);
+            return outcome;
+        }
         for pushed in &self.pushed {
-            let island = &mut islands[pushed.island];
-            island.rewind();
-            let solver = &mut island.system.work.solver;
+            let solver = &mut islands[pushed.island].system.work.solver;
             solver.halved += 1;
             solver.deepest = solver.deepest.max(u64::from(halvings) + 1);
         }
@@ -107,7 +121,7 @@ impl<const D: usize> Meeting<D> {
             opened.push(Opened { island: pushed.island, first, step: begun? });
             first += island.system.nodes * D;
         }
-        let has_budget = opened.iter().all(|open| islands[open.island].integrator.has_budget());
+        let has_budget = self.have_budget(islands);
         kept.most_halvings = opened.iter().map(|open: &Opened<D>| open.step.most_halvings()).min().unwrap_or(0);
         let mut x = self.touching.before[0].clone();
         self.touching.surface.follow(&mut x);

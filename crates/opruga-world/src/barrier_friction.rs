@@ -12,7 +12,7 @@ use opruga_math::Lane;
 /// (`friction_between_gas_rings_settles_in_every_step`).
 ///
 /// Sticking becomes at most a hundred times as stiff. Corrections between stiffer sticking and sliding hardly advance, and a gripper whose plates are
-/// smaller than the block then finds no end (`plates_smaller_than_a_block_lift_it_under_a_barrier`).
+/// smaller than the block then finds no end (`plates_smaller_than_a_block_grip_it_under_a_barrier`).
 const SLOW: f64 = 0.5;
 const MOST_STICKING: f64 = 100.0;
 

@@ -5,6 +5,7 @@ use super::contact_query::ContactQuery;
 use super::convergence::{count, finish};
 use super::direction::Keep;
 use super::ends::{Found, Ledger, Statics, commit, end, enter_end, enter_stage, open_ledger};
+use super::fallback::exactly;
 use super::friction::SlipRule;
 use super::holding;
 use super::line_search::given_along;
@@ -49,6 +50,7 @@ pub(super) fn open<R: Rule<D>, const D: usize>(
     h: f64,
 ) -> Result<Box<dyn OpenStep<D>>, StepError> {
     let mut workspace = system.cache.take::<Workspace<D>>();
+    let settings = if system.exact { exactly(&settings) } else { settings };
     let rule = rule.pushed();
     let rule = rule.in_contact().unwrap_or(rule);
     // Data that are reused from step to step are valid only if the body is solved alone.

@@ -15,6 +15,9 @@ const ENOUGH: [f64; 2] = [0.2, 0.2];
 /// quadrilaterals still gained energy under `bdf2`.
 const ENOUGH_UNDAMPED: [f64; 2] = [1e-3, 0.05];
 
+/// The default of the largest number of iterations for a step whose end is found together with the ends of other bodies, unless the step has a budget.
+pub(super) const COMMON_ITERATIONS: u32 = 100;
+
 /// How the equations of a step are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Settings {
@@ -203,7 +206,7 @@ impl Settings {
         let iterations = |own: u32| values.integer("iterations").map_or(own, |n| n as u32);
         Settings {
             iterations: iterations(if real_time { 3 } else { 100 }),
-            common_iterations: iterations(if real_time { 10 } else { 100 }),
+            common_iterations: iterations(if real_time { 10 } else { COMMON_ITERATIONS }),
             tolerance: values.number("tolerance").unwrap_or(1e-9),
             real_time,
             leaves: if DAMPING_LITTLE.contains(&values.kind()) { ENOUGH_UNDAMPED } else { ENOUGH },
