@@ -76,7 +76,6 @@ mod contacts;
 mod counts;
 mod coupled;
 mod creases;
-mod curvature;
 mod distances;
 mod elimination;
 mod entries;
@@ -136,7 +135,6 @@ pub use closest::{closest_of_segments, closest_on_facet, closest_on_segment, fac
 pub use contacts::Colliders;
 pub use counts::Counts;
 pub use coupled::{Coupled, Respond};
-pub use curvature::Curvature;
 pub use gap::Gap;
 pub use inside::Buried;
 pub use law::{Laws, PairLaw};

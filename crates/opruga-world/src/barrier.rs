@@ -82,7 +82,7 @@ impl<const D: usize> Meeting<D> {
         kept.multipliers = multipliers;
         self.pushed.iter().for_each(|pushed| islands[pushed.island].rewind());
         if has_budget {
-            // The residual that a budget leaves may be too large near obstacles (`plates_lift_a_block_in_real_time_under_a_barrier`).
+            // A budget may be too small for obstacles that press hard (`plates_that_press_hard_in_long_steps_arrive_under_a_barrier`).
             self.pushed.iter().for_each(|pushed| islands[pushed.island].system.exact = true);
             let outcome = self.advance_as_one(islands, step, kept, (h, time), halvings);
             self.pushed.iter().for_each(|pushed| islands[pushed.island].system.exact = false);
@@ -150,6 +150,7 @@ impl<const D: usize> Meeting<D> {
             converged: true,
             stretch: 1.0,
             by_obstacles: 0.0,
+            unprescribed: 0.0,
             sticking: 1.0,
             staying,
         };

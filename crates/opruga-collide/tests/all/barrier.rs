@@ -1,6 +1,6 @@
 //! The barrier: forces are derivatives of its energy, and nothing passes through it.
 
-use opruga_collide::{Barrier, Curvature, Laws, PairLaw, Pressed, Surface};
+use opruga_collide::{Barrier, Laws, PairLaw, Pressed, Surface};
 use opruga_math::{Lane, Simd};
 use opruga_mesh::Mesh;
 
@@ -103,70 +103,6 @@ fn forces_are_the_gradient_of_the_energy_in_the_plane() {
 fn forces_are_the_gradient_of_the_energy_in_space() {
     forces_are_the_gradient::<3>(0.3);
     forces_are_the_gradient::<3>(0.01);
-}
-
-/// Gradients of the energies of pairs after a displacement of all points: for each pair, a vector for each of its points.
-fn gradients<const D: usize>(
-    barrier: &Barrier<D>,
-    surface: &Surface<D>,
-    x: &[[f64; D]],
-    u: &[[f64; D]],
-    by: f64,
-) -> Vec<[[f64; D]; 4]> {
-    let moved: Vec<_> = x.iter().zip(u).map(|(x, u)| std::array::from_fn(|d| x[d] + by * u[d])).collect();
-    let pairs = pressed(barrier, surface, &moved);
-    pairs.iter().map(|pair| pair.weights.map(|w| pair.normal.map(|n| -pair.force * w * n))).collect()
-}
-
-fn second_derivatives_are_the_change_of_forces<const D: usize>(angle: f64) {
-    let (mut seed, mut most) = (5, 0);
-    for apart in [0.04, 0.06, 0.09] {
-        let (surface, x) = blocks::<D>(apart, angle, &mut seed);
-        let barrier = barrier(&surface, &x, &mut seed);
-        let u: Vec<[f64; D]> = x.iter().map(|_| std::array::from_fn(|_| random(&mut seed))).collect();
-        let step = 1e-6;
-        let [before, after] = [-step, step].map(|by| gradients(&barrier, &surface, &x, &u, by));
-        for (k, pair) in pressed(&barrier, &surface, &x).iter().enumerate() {
-            if pair.fading != [[0.0; D]; 4] {
-                continue;
-            }
-            let Curvature { matrix, rates, mixed, turning } = pair.curvature_with_turns(&x);
-            let dot = |a: &[f64; D], b: &[f64; D]| (0..D).map(|d| a[d] * b[d]).sum::<f64>();
-            let own = pair.points.map(|p| u[p as usize]);
-            let along: [f64; D] = std::array::from_fn(|d| (0..4).map(|i| pair.weights[i] * own[i][d]).sum());
-            let turns = rates.map(|rate| (0..4).map(|i| rate[i] * dot(&pair.normal, &own[i])).sum::<f64>());
-            let force: [f64; D] =
-                std::array::from_fn(|d| dot(&matrix[d], &along) + mixed[0][d] * turns[0] + mixed[1][d] * turns[1]);
-            let moment: [f64; 2] =
-                std::array::from_fn(|k| dot(&mixed[k], &along) + turning[k][0] * turns[0] + turning[k][1] * turns[1]);
-            most = rates.iter().filter(|rates| **rates != [0.0; 4]).count().max(most);
-            let size = pair.curvature + pair.force;
-            for i in 0..4 {
-                for d in 0..D {
-                    let change = (after[k][i][d] - before[k][i][d]) / (2.0 * step);
-                    let turned = rates[0][i] * moment[0] + rates[1][i] * moment[1];
-                    let found = pair.weights[i] * force[d] + turned * pair.normal[d];
-                    assert!(
-                        (change - found).abs() < 1e-4 * size,
-                        "{apart}: {:?} {i} {d}: {change} {found}",
-                        pair.points
-                    );
-                }
-            }
-        }
-    }
-    // The closest points of edges, and those of corners and facets, move along both features.
-    assert_eq!(most, D - 1);
-}
-
-#[test]
-fn second_derivatives_are_the_change_of_forces_in_the_plane() {
-    second_derivatives_are_the_change_of_forces::<2>(0.0);
-}
-
-#[test]
-fn second_derivatives_are_the_change_of_forces_in_space() {
-    second_derivatives_are_the_change_of_forces::<3>(0.3);
 }
 
 /// At the end of the reach of the barrier, energy, force and curvature are zero. They grow as the gap closes.

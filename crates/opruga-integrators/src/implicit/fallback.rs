@@ -4,7 +4,7 @@ use super::balance::{Balance, Solved};
 use super::minimiser::Minimiser;
 use super::newton::Newton;
 use super::real_time::{self, Trust, iterate, mark_stale};
-use super::settings::{COMMON_ITERATIONS, Settings};
+use super::settings::{COMMON_ITERATIONS, Otherwise, Settings};
 use super::stage::{CANCELLATION, evaluate, potential, rounding_of_models};
 use super::workspace::Workspace;
 use opruga_core::error::StepError;
@@ -116,10 +116,12 @@ fn begin_anew<const D: usize>(system: &System<D>, workspace: &mut Workspace<D>, 
     }
 }
 
-/// The settings for steps in which few iterations gave a wrong result.
+/// The settings for steps in which few iterations gave a wrong result. They halve a step that does not converge, because in real time the user cannot
+/// change settings between steps.
 pub(crate) fn exactly(settings: &Settings) -> Settings {
     let common_iterations = settings.common_iterations.max(COMMON_ITERATIONS);
-    Settings { real_time: false, iterations: MOST_ITERATIONS, common_iterations, ..*settings }
+    let otherwise = Otherwise::Halve;
+    Settings { real_time: false, iterations: MOST_ITERATIONS, common_iterations, otherwise, ..*settings }
 }
 
 /// Whether the incremental potential of the result is above the potential of the initial positions, from which only held nodes
