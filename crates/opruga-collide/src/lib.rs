@@ -63,6 +63,7 @@
 mod active_nodes;
 mod barrier;
 mod began_inside;
+mod blocks;
 mod body_pairs;
 mod bounds;
 mod candidates;

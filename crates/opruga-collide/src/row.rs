@@ -206,6 +206,27 @@ impl<const D: usize> Row<D> {
         }
     }
 
+    /// The normal velocity of a row that acts on its own points, given their indices in the list of velocities [m/s].
+    #[inline(always)]
+    pub(crate) fn normal_velocity(&self, points: &[u32; 4], v: &[[f64; D]]) -> f64 {
+        let mut sum = -dot(&self.carry, &self.normal);
+        for k in 0..=D {
+            sum += self.weights[k] * dot(&v[points[k] as usize], &self.normal);
+        }
+        sum
+    }
+
+    /// Applies an impulse [N s] to the points of such a row.
+    #[inline(always)]
+    pub(crate) fn push(&self, points: &[u32; 4], impulse: &[f64; D], inverse_mass: &[[f64; D]], v: &mut [[f64; D]]) {
+        for k in 0..=D {
+            let p = points[k] as usize;
+            for d in 0..D {
+                v[p][d] += self.weights[k] * impulse[d] * inverse_mass[p][d];
+            }
+        }
+    }
+
     /// The total impulse [N s].
     pub(crate) fn impulse(&self) -> [f64; D] {
         let mut out = self.friction_impulse;

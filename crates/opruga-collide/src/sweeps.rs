@@ -1,5 +1,6 @@
 //! Sweeps of projected Gauss–Seidel over a set of contacts that points connect.
 
+use crate::blocks::{Blocks, solve as solve_block};
 use crate::coupled::Coupled;
 use crate::row::Row;
 use crate::spread::Spread;
@@ -17,12 +18,35 @@ pub(crate) struct Sweeps<'a, const D: usize> {
 }
 
 impl<const D: usize> Sweeps<'_, D> {
-    /// Sweeps over rows whose points respond independently; returns whether any velocity changed by more than `enough` [m/s].
-    pub(crate) fn sweep_alone(&mut self, backward: bool, enough: f64) -> bool {
-        let turn = |_: &mut (), row: &mut Row<D>, points: &[u32; 4], inverse_mass: &[_], v: &mut [_]| {
-            row.solve(points, inverse_mass, v)
+    /// Finds the contacts that are solved together in pairs.
+    pub(crate) fn find_blocks(&self, blocks: &mut Blocks) {
+        blocks.find(self.rows, self.heads, self.inverse_mass);
+    }
+
+    /// Sweeps over rows whose points respond independently; returns whether any velocity changed by more than `enough` [m/s]. The impulses of a block
+    /// are found together before the turn of each of its rows, which adds friction.
+    pub(crate) fn sweep_alone(&mut self, backward: bool, enough: f64, blocks: &mut Blocks) -> bool {
+        let turn = |blocks: &mut Blocks,
+                    k: usize,
+                    rows: &mut [Row<D>],
+                    heads: &[([u32; 4], u32)],
+                    inverse_mass: &[_],
+                    v: &mut [_]| {
+            let mut changed: f64 = 0.0;
+            if let Some((other, coupling)) = blocks.partner(k)
+                && let Ok(both) = rows.get_disjoint_mut([k, other])
+            {
+                changed = solve_block(both, [&heads[k].0, &heads[other].0], coupling, inverse_mass, v);
+            }
+            rows[k].solve(&heads[k].0, inverse_mass, v).larger(changed)
         };
-        self.sweep(backward, enough, (&mut (), &Spread::default()), turn, |(), _, _| {}).0
+        let followers =
+            |blocks: &Blocks, k: usize, _: &Row<D>, heads: &[([u32; 4], u32)], visit: &mut dyn FnMut(u32)| {
+                if let Some((other, _)) = blocks.partner(k) {
+                    heads[other].0.iter().take(D + 1).for_each(|p| visit(*p));
+                }
+            };
+        self.sweep(backward, enough, (blocks, &Spread::default()), turn, followers).0
     }
 
     /// Sweeps over rows with coupled or carried points; returns whether any velocity changed by more than `enough`, and the largest change [m/s].
@@ -33,14 +57,20 @@ impl<const D: usize> Sweeps<'_, D> {
         spread: &Spread,
         coupled: &mut Coupled<D>,
     ) -> (bool, f64) {
-        let turn = |coupled: &mut Coupled<D>, row: &mut Row<D>, _: &[u32; 4], inverse_mass: &[_], v: &mut [_]| {
+        let turn = |coupled: &mut Coupled<D>,
+                    k: usize,
+                    rows: &mut [Row<D>],
+                    _: &[([u32; 4], u32)],
+                    inverse_mass: &[_],
+                    v: &mut [_]| {
+            let row = &mut rows[k];
             if row.coupled || row.spread[1] > 0 {
                 return row.solve_coupled(spread, inverse_mass, coupled, v);
             }
             let points = row.points;
             row.solve(&points, inverse_mass, v)
         };
-        let followers = |coupled: &Coupled<D>, row: &Row<D>, visit: &mut dyn FnMut(u32)| {
+        let followers = |coupled: &Coupled<D>, _: usize, row: &Row<D>, _: &[_], visit: &mut dyn FnMut(u32)| {
             if row.coupled {
                 coupled.followers(row.on(spread), visit);
             }
@@ -48,7 +78,7 @@ impl<const D: usize> Sweeps<'_, D> {
         self.sweep(backward, enough, (coupled, spread), turn, followers)
     }
 
-    /// Sweeps over all rows by `turn`, which returns the change of the velocity of its row [m/s]. A row is skipped as long as no velocity of its
+    /// Sweeps over all rows by `turn`, which gets the index of its row and returns the change of velocities [m/s]. A row is skipped as long as no velocity of its
     /// points has changed by more than `enough` since its last turn, so the cost of a sweep depends on the number of rows that still change.
     /// `followers` visits the points that respond together with the points of the row. Returns whether any velocity changed by more than `enough`,
     /// and the largest change [m/s].
@@ -58,27 +88,27 @@ impl<const D: usize> Sweeps<'_, D> {
         backward: bool,
         enough: f64,
         (others, spread): (&mut C, &Spread),
-        turn: impl Fn(&mut C, &mut Row<D>, &[u32; 4], &[[f64; D]], &mut [[f64; D]]) -> f64,
-        followers: impl Fn(&C, &Row<D>, &mut dyn FnMut(u32)),
+        turn: impl Fn(&mut C, usize, &mut [Row<D>], &[([u32; 4], u32)], &[[f64; D]], &mut [[f64; D]]) -> f64,
+        followers: impl Fn(&C, usize, &Row<D>, &[([u32; 4], u32)], &mut dyn FnMut(u32)),
     ) -> (bool, f64) {
         let Sweeps { rows, heads, inverse_mass, v, stamps, now } = self;
         let (mut largest, mut changed): (f64, bool) = (0.0, false);
         for k in 0..rows.len() {
             let k = if backward { rows.len() - 1 - k } else { k };
-            let (head, last) = &mut heads[k];
-            let points = spread.points_of::<D>(head);
-            if *last > 0 && points.iter().all(|p| stamps[*p as usize] <= *last) {
+            let (head, last) = heads[k];
+            let points = spread.points_of::<D>(&head);
+            if last > 0 && points.iter().all(|p| stamps[*p as usize] <= last) {
                 continue;
             }
             **now += 1;
-            let change = turn(others, &mut rows[k], head, inverse_mass, v);
+            let change = turn(others, k, rows, heads, inverse_mass, v);
             largest = change.larger(largest);
             if change > enough {
                 changed = true;
                 points.iter().for_each(|p| stamps[*p as usize] = **now);
-                followers(others, &rows[k], &mut |p| stamps[p as usize] = **now);
+                followers(others, k, &rows[k], heads, &mut |p| stamps[p as usize] = **now);
             }
-            *last = **now;
+            heads[k].1 = **now;
         }
         (changed, largest)
     }

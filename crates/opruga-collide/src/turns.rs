@@ -1,5 +1,6 @@
 //! Sets of contacts that points connect.
 
+use crate::blocks::Blocks;
 use crate::coupled::Coupled;
 use crate::least_parts;
 use crate::lists;
@@ -23,6 +24,9 @@ pub(crate) const TOLERANCE: f64 = 1e-2;
 /// balance the remaining velocities and therefore contain an error. With a fraction of 1e-5, the pressure on a patch is wrong
 /// by 2e-4 (the cases `contact-patch-…` of the verification require 1e-6).
 pub(crate) const COUPLED_TOLERANCE: f64 = 1e-9;
+
+/// The first sweep that solves blocks of two contacts together. Most sets converge before it, and need no blocks.
+const FIRST_WITH_BLOCKS: usize = 3;
 
 /// The sets of rows that points connect. The structure also stores the times at which rows were last solved and at which their velocities last
 /// changed, counted in turns of rows. The times are stored separately from the rows, which are large.
@@ -391,7 +395,7 @@ impl<const D: usize> Turns<D> {
         });
         let turns = AtomicU64::new(0);
         threads::each_in_pool(parts, |part| {
-            let mut now = 0;
+            let (mut now, mut blocks) = (0, Blocks::default());
             let [first_row, first_copy] = [&*starts, &*first_alone].map(|starts| starts[part.sets.start]);
             for set in part.sets.clone() {
                 let of =
@@ -410,9 +414,14 @@ impl<const D: usize> Turns<D> {
                     stamps: &mut part.stamps[own],
                     now: &mut now,
                 };
-                let mut sweep = 0;
-                while sweep < most && sweeps.sweep_alone(sweep % 2 == 1, enough) {
-                    sweep += 1;
+                blocks.clear(sweeps.rows.len());
+                for sweep in 0..most {
+                    if sweep == FIRST_WITH_BLOCKS {
+                        sweeps.find_blocks(&mut blocks);
+                    }
+                    if !sweeps.sweep_alone(sweep % 2 == 1, enough, &mut blocks) {
+                        break;
+                    }
                 }
             }
             turns.fetch_add(u64::from(now), Ordering::Relaxed);
