@@ -155,6 +155,7 @@ pub(crate) fn solve<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sweeps::Sweeps;
 
     /// Two vertices that almost coincide, each with an edge of the other body: the vertices have the indices 0 and 1.
     fn vertices_that_almost_coincide(numbers: &mut impl FnMut() -> f64) -> [Row<2>; 2] {
@@ -199,5 +200,34 @@ mod tests {
                 assert!((row.normal_impulse * left).abs() < 1e-12, "{k}: {row:?}, {left} m/s");
             }
         }
+    }
+
+    /// The number of sweeps after which the impulses of two vertices that almost coincide no longer change.
+    fn sweeps(with_blocks: bool) -> usize {
+        let mut rows = vertices_that_almost_coincide(&mut || 0.1);
+        rows[0].target = -0.01;
+        let mut heads = rows.each_ref().map(|row| (row.points, 0));
+        let (mut v, mut stamps, mut now) = ([[0.0, 1.0], [0.0, -1.0], [0.0, -1.0], [0.0, 1.0]], [0; 4], 0);
+        let inverse_mass = [[1.0; 2]; 4];
+        let mut sweeps = Sweeps {
+            rows: &mut rows,
+            heads: &mut heads,
+            inverse_mass: &inverse_mass,
+            v: &mut v,
+            stamps: &mut stamps,
+            now: &mut now,
+        };
+        let mut blocks = Blocks::default();
+        blocks.clear(2);
+        if with_blocks {
+            sweeps.find_blocks(&mut blocks);
+        }
+        (0..1000).take_while(|sweep| sweeps.sweep_alone(sweep % 2 == 1, 1e-5, &mut blocks)).count()
+    }
+
+    #[test]
+    fn a_block_saves_the_sweeps_that_move_an_impulse_from_one_contact_to_the_other() {
+        let (single, together) = (sweeps(false), sweeps(true));
+        assert!(single > 60 && together < 5, "{single} sweeps, {together} with a block");
     }
 }
